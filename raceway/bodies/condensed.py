@@ -10,7 +10,7 @@ import attrs
 from raceway.bodies.mesh import unrefined
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
-from raceway.framework.duties import is_hertzian
+from raceway.framework.duties import is_hertzian, is_swept
 from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S, Times, compiled_motion, runs
 from raceway.planning.parts import Balls, Decisions, Motion
@@ -186,7 +186,7 @@ class Condensed:
     def faults(self, problem: Problem) -> list[Mistake]:
         """What condensed rings need: dimensions of bodies of revolution, the elements of the structured mesher, seats that hold."""
         faults = []
-        if problem.mesh is not None and problem.mesh.name != "structured":
+        if problem.mesh is not None and not is_swept(problem.mesh):
             why = "condensed bodies are bodies of revolution, swept from their sections: use mesh.kind = 'structured'"
             faults.append(Mistake("mesh.kind", problem.mesh.name, why))
         for key in ("bore", "outer_diameter", "width"):

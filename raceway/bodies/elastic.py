@@ -11,7 +11,7 @@ from raceway.bodies.condensed import section_cost
 from raceway.bodies.mesh import mesh_faults, predicted_mesh, refined, unrefined
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
-from raceway.framework.duties import is_constraint, is_hertzian
+from raceway.framework.duties import is_constraint, is_hertzian, is_swept
 from raceway.framework.options import one_of, option, positive
 from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S
@@ -131,7 +131,7 @@ def _by_superelements(problem: Problem, mesh: Tables, cells: int, unknowns: int)
 
 def _equal_sectors(problem: Problem) -> bool:
     """Whether the mesh of a ring is known to be as many equal sectors as there are balls, before it is made."""
-    return problem.mesh is not None and problem.mesh.name == "structured" and problem.bearing.ball_count >= 3
+    return is_swept(problem.mesh) and problem.bearing.ball_count >= 3
 
 
 def _stable_step(problem: Problem) -> float:

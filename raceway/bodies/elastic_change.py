@@ -41,7 +41,7 @@ def elastic_change(model: Model, equilibrium: Equilibrium) -> dict[str, float] |
     Seats that give way change the sign: ``supports.outer_seat`` and ``inner_seat`` of condensed bodies.
     """
     b, z = model.problem.bearing, model.system.ball_count
-    if model.problem.bodies.name != "rigid":
+    if not model.traits.contacts_alone:
         return f"bodies.kind = '{model.problem.bodies.name}'"
     if b.bore is None or b.outer_diameter is None or not b.equal_rows:
         return "needs `bearing.bore` and `bearing.outer_diameter` of equal rows"

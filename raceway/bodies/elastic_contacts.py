@@ -143,7 +143,7 @@ class ElasticBodies(Bearing):
 
     def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
         """Elements that lock."""
-        return locking(model.problem)
+        return locking(model.problem, model.problem.bodies.formulation == "one_point")
 
 
 def _elastic(system: Ring) -> ElasticRing:

@@ -126,9 +126,8 @@ def _refusal(mesher: Mesher, name: str, fault: str, ratio: float) -> MeshError:
 _FROM, _ONE_POINT = 0.49, 0.4
 
 
-def locking(problem: Problem) -> list[str]:
-    """A warning for each material that is nearly incompressible."""
-    one_point = getattr(problem.bodies, "formulation", None) == "one_point"
+def locking(problem: Problem, one_point: bool = False) -> list[str]:
+    """A warning for each material that is nearly incompressible; ``one_point`` : of elements with hourglass control."""
     least = _ONE_POINT if one_point else _FROM
     warnings = []
     for part in ("rings", "balls"):

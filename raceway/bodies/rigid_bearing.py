@@ -11,16 +11,15 @@ from raceway.bodies.basis import Basis, changing_speed, contact_pairs, excitatio
 from raceway.bodies.contacts import against_hertz
 from raceway.bodies.model import Bearing, Told
 from raceway.bodies.mounting import place_ring
-from raceway.contact_laws.hertz import Hertz
 from raceway.core.columns import Number, per_ball
 from raceway.core.contact.geometry import BallBearing
-from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
 from raceway.framework.duties import law_params
 from raceway.framework.estimate import Estimate
 from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
+from raceway.framework.registry import default_registry
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables
@@ -58,8 +57,8 @@ def build(problem: Problem, plan: ScenePlan) -> RigidBearing:
 
 def with_hertz(problem: Problem) -> Problem:
     """The problem with Hertz's law and one force a contact, where other bodies start from."""
-    contact = attrs.evolve(problem.contact, kind="hertz", law=Hertz(), discretisation="resultant")
-    return attrs.evolve(problem, contact=contact)
+    law = default_registry().find("contact_law", "hertz").plugin()
+    return attrs.evolve(problem, contact=attrs.evolve(problem.contact, kind=law.name, law=law, discretisation="resultant"))
 
 
 def rigid_system(problem: Problem, plan: ScenePlan, basis: Basis) -> System:
@@ -87,7 +86,10 @@ def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
     out[..., ring.DIAMETER] = geometry.ball_diameter
     if problem.contact.friction > 0.0:
         out[..., ring.FRICTION] = problem.contact.friction
-        out[..., ring.STICK] = problem.contact.stick_stiffness or _stick_stiffness(problem, inner, outer, reference)
+        # Along the groove, the ellipse's major axis, the mean of both races.
+        nu = 0.5 * (problem.bearing.rings.poisson + problem.bearing.balls.poisson)
+        sticking = (e.stick_ratio(nu)[0] * 1.5 * reference / float(e.approach(reference)) for e in (inner, outer))
+        out[..., ring.STICK] = problem.contact.stick_stiffness or 0.5 * sum(sticking)
     if plan.gyroscopic:
         add_moments(out, problem, geometry)
     return {
@@ -142,12 +144,6 @@ def add_moments(scalars: np.ndarray, problem: Problem, geometry: BallBearing) ->
     scalars[..., ring.BALL_OVER_PITCH] = geometry.ball_diameter / geometry.pitch_diameter
     moment_of_inertia = geometry.ball_mass(problem.bearing.balls.density) * geometry.ball_diameter**2 / 10.0
     scalars[..., ring.GYROSCOPIC] = moment_of_inertia * problem.spin_speed * geometry.cage_speed(problem.spin_speed)
-
-
-def _stick_stiffness(problem: Problem, inner: Ellipse, outer: Ellipse, load: float) -> float:
-    """Tangential stiffness [N/m] of a contact that sticks along the groove, the ellipse's major axis; mean of both races."""
-    nu = 0.5 * (problem.bearing.rings.poisson + problem.bearing.balls.poisson)
-    return 0.5 * sum(e.stick_ratio(nu)[0] * 1.5 * load / float(e.approach(load)) for e in (inner, outer))
 
 
 def _ball_table(problem: Problem, plan: ScenePlan, basis: Basis) -> np.ndarray:

@@ -41,6 +41,7 @@ class CylindricalRollers:
     """
 
     name: ClassVar[str] = "cylindrical_rollers"
+    rollers: ClassVar[bool] = True
 
     roller_length: float = option(unit="m", help="effective length L of the line contacts", rule=positive())
     crown: float = option(

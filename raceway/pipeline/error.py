@@ -34,12 +34,12 @@ from raceway.core.ring.ring import TOLERANCE
 from raceway.core.ring.system import compiled, surrogate
 from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.framework.estimate import Estimate, Note
+from raceway.framework.registry import default_registry
 from raceway.out.quantities import C, K
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import Simulation, simulate
 from raceway.pipeline.transient_error import Clean, Identified, Run, distance, settled_value, without_free_vibration
 from raceway.planning.resolve import fits
-from raceway.plugins.identifiers import Fft1x
 from raceway.storage.tables import Tables
 
 #: Least steps per turn (of ``integrator.steps_per_turn``), and how close the second run may come to the stable limit.
@@ -377,7 +377,8 @@ def _largest_misfit(run: Identified) -> tuple[float, float]:
     series = list(fit.series)
     if all(abs(w / fit.speed - 1.0) > _SAME_SPEED for w, _ in series) and not model.traits.every_node:
         record = simulate(model, run.equilibrium).record
-        series.append((fit.speed, Fft1x().identify([record], run.equilibrium, model).dynamic_stiffness))
+        by_lines = default_registry().find("identifier", "fft_1x").plugin()
+        series.append((fit.speed, by_lines.identify([record], run.equilibrium, model).dynamic_stiffness))
     misfits = []
     for w, z in series:
         fitted = complex(K.of(fit) - fit.mass_used * w**2, w * C.of(fit))

@@ -13,6 +13,7 @@ from raceway.bodies.running import running_pairs
 from raceway.core.record import Record
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, missing_quantities, quantities_at, quantity_report
+from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables
 
 
@@ -50,6 +51,11 @@ def stated_quantities(model: Model, equilibrium: Equilibrium, record: Record | N
     asked = model.scene.source.get("quantities", {})
     warnings += [f"[quantities.{name}] has no effect: {why}" for name, why in missing.items() if asked.get(name)]
     return StatedQuantities(values, tables, tuple(warnings), missing)
+
+
+def plugins_stating(problem: Problem, number: str) -> list[str]:
+    """Names of the plug-ins of quantities that a problem has and that state a number."""
+    return [one.name for one in fitting_quantities(problem) if number in {each.name for each in one.numbers}]
 
 
 def stated_numbers(points: SolvedPoints, names: Iterable[str]) -> dict[str, np.ndarray]:

@@ -27,7 +27,6 @@ from raceway.core.signals import Identification, Line, lines
 from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, RacewayError, SceneError
 from raceway.framework.estimate import Estimate
 from raceway.framework.registry import Registry, default_registry
-from raceway.integrators.methods import Newmark
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.error import body_errors, error_table, error_warnings, misfit_warnings, no_error, unresolved
 from raceway.pipeline.front import PATIENCE
@@ -273,7 +272,7 @@ def _moved(
         if not automatic or all(motion.whole.counts["floquet"]["verdict"] != "unstable" for motion in motions):
             return model, motions, []
         why = "the steady orbit is unstable"
-    plan = plan_of(model.problem.integrated(Newmark(), why))
+    plan = plan_of(model.problem.integrated("newmark", why))
     registry.notify("raceway_plan_made", plan=plan)
     allowance.planned += plan.predicted_wall_s
     model = attrs.evolve(model, problem=plan.problem, plan=plan)
@@ -301,6 +300,13 @@ def _stated(scene: Scene, model: Model, equilibrium: Equilibrium, simulation: Si
         if simulation is not None:
             band["not_computed"] = "the motion is computed at one set of temperatures; kyy at rest has a band"
     return stated
+
+
+def _friction(motion: Simulation) -> float:
+    """Energy that friction took from a motion [J]."""
+    if motion.whole.energies:
+        return friction_lost(motion.whole.energies)
+    return motion.model.bearing.friction_lost(motion.model.system, motion.whole)
 
 
 def _work(motions: list[Simulation]) -> Tables:
@@ -332,13 +338,6 @@ def _stability(motions: list[Simulation]) -> Tables:
         "max_penetration_m": max((count["max_penetration_m"] for count in counts), default=None),
         "status": "completed",
     }
-
-
-def _friction(motion: Simulation) -> float:
-    """Energy that friction took from a motion [J]."""
-    if motion.whole.energies:
-        return friction_lost(motion.whole.energies)
-    return motion.model.bearing.friction_lost(motion.model.system, motion.whole)
 
 
 def _drift(motion: Simulation) -> float | None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from raceway.framework.duties import has_rollers
+from raceway.framework.registry import default_registry
 from raceway.out.answer import Part
 from raceway.out.damping import DRY, dry_damping_note
 from raceway.out.quantities import (
@@ -106,7 +108,11 @@ class Screen(NamedTuple):
 
 def screen(result: ReadTables) -> Screen:
     """Of one run, from the content of result.json."""
-    rows = [*_answer_rows(result), *equilibrium_rows(result), *quantity_rows(result), *_tolerances(result)]
+    rows = [*_answer_rows(result), *equilibrium_rows(result), *quantity_rows(result)]
+    if result.get("tolerances"):
+        from raceway.pipeline.gradient import tolerance_rows
+
+        rows += tolerance_rows(result["tolerances"])
     # The rows without the numbers that a part of the error of Z is as large as, or larger.
     error = result["error"]
     parts = error.get("unresolved")
@@ -118,10 +124,11 @@ def screen(result: ReadTables) -> Screen:
     # Geometry, arrangement and model, one per line.
     scene, angle = result["scene"], f"{result['equilibrium']['free_contact_angle_deg']:.5g} deg"
     b = scene["bearing"]
-    lines = scene["bodies"]["kind"] == "cylindrical_rollers"
-    if b.get("radial_clearance") and not b.get("contact_angle_deg") and not lines:
+    kinds = default_registry().entries.get(("bodies", scene["bodies"]["kind"]), [])
+    rollers = any(has_rollers(entry.plugin) for entry in kinds)
+    if b.get("radial_clearance") and not b.get("contact_angle_deg") and not rollers:
         angle += ", from the clearance"
-    balls = f"{b['ball_count']} {'rollers' if lines else 'balls'} of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
+    balls = f"{b['ball_count']} {'rollers' if rollers else 'balls'} of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
     geometry = result.get("geometry") or {}
     maker = f"; maker {geometry['maker'] or 'not said'}" if geometry else ""
     words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}{maker}"]
@@ -148,8 +155,13 @@ def screen(result: ReadTables) -> Screen:
         words.append(f"{name}: {'two' if count == 2 else count} {what}, {places}, {mounted}")
     words += [geometry["designation"]] if "designation" in geometry else []
     law = f"law {scene['contact']['kind']}, {scene['contact']['discretisation']}"
-    words.append(f"{scene['bodies']['kind']} bodies, {law}{_integrator(result['plan'].get('integrator'))}")
-    return Screen(result["title"], "\n".join(words), [micro(text) for text in result["warnings"]], rows, _left_out(result))
+    if chosen := result["plan"].get("integrator"):  # ``raceway plan`` has the reason
+        law += f"; integrator {chosen['kind']}{', by default' if chosen['why'] else ''}"
+    words.append(f"{scene['bodies']['kind']} bodies, {law}")
+    omitted = [row["part"] for row in result["plan"]["left_out"]]
+    more = f" and {len(omitted) - _LEFT_OUT_SHOWN} more" if len(omitted) > _LEFT_OUT_SHOWN else ""
+    left_out = f"left out: {', '.join(omitted[:_LEFT_OUT_SHOWN])}{more} (raceway plan)"
+    return Screen(result["title"], "\n".join(words), [micro(text) for text in result["warnings"]], rows, left_out)
 
 
 def report(result: ReadTables) -> list[Part]:
@@ -163,26 +175,6 @@ def report(result: ReadTables) -> list[Part]:
         sections(shown.rows),
         Words("\n".join([*model, shown.left_out]), "dim"),
     ]
-
-
-def _tolerances(result: ReadTables) -> list[Row]:
-    if not result.get("tolerances"):
-        return []
-    from raceway.pipeline.gradient import tolerance_rows
-
-    return tolerance_rows(result["tolerances"])
-
-
-def _left_out(result: ReadTables) -> str:
-    left_out = result["plan"]["left_out"]
-    parts = ", ".join(row["part"] for row in left_out[:_LEFT_OUT_SHOWN])
-    more = len(left_out[_LEFT_OUT_SHOWN:])
-    return f"left out: {parts}{f' and {more} more' if more else ''} (raceway plan)"
-
-
-def _integrator(chosen: ReadTables | None) -> str:
-    """The method of the motion; ``raceway plan`` has the reason why it was chosen."""
-    return "" if chosen is None else f"; integrator {chosen['kind']}{', by default' if chosen['why'] else ''}"
 
 
 #: How the rows of a pair stand to each other.

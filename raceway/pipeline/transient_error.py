@@ -46,8 +46,9 @@ from raceway.core.signals import Identification, stiffness, synchronous_phasor, 
 from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
 from raceway.framework.duties import ramp_turns
 from raceway.framework.estimate import Estimate, Note
+from raceway.framework.registry import default_registry
 from raceway.pipeline.simulate import OnProgress, Simulation, SteadyMotions, settles_elsewhere, simulate, steady_record
-from raceway.plugins.identifiers import Tangent, whole_turns
+from raceway.plugins.identifiers import whole_turns
 from raceway.storage.tables import Tables
 
 #: Free vibrations below this share of the 1x power shift nothing that can be seen.
@@ -206,9 +207,9 @@ def _lasting(motion: Simulation, record: Record, value: complex) -> complex:
     forced = float(((periodic - periodic.mean(axis=0)) ** 2).sum(axis=1).mean())
     if forced == 0.0 or free < _LEAST_FREE * forced:
         return 0j
-    tangent = Tangent().identify([], motion.equilibrium, motion.model).dynamic_stiffness
+    tangent = default_registry().find("identifier", "tangent").plugin().identify([], motion.equilibrium, motion.model)
     share = 2.0 * free / forced
-    return share / (1.0 + share) * (value - tangent)
+    return share / (1.0 + share) * (value - tangent.dynamic_stiffness)
 
 
 @attrs.frozen

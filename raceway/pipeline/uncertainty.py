@@ -26,13 +26,12 @@ from raceway.bodies.model import Equilibrium, Model, model_of, tilts_follow
 from raceway.bodies.rigid_bearing import build, with_hertz
 from raceway.core.ring.ring import TOLERANCE
 from raceway.errors import RacewayError
-from raceway.framework.duties import fitting_quantities
 from raceway.framework.estimate import Estimate
 from raceway.framework.shown import Fact, number_within, percents
 from raceway.out.quantities import HEADLINE, KXX, KYY, L10R, P0, PEAK_BALL_LOAD, PRELOAD, STIFFNESSES, K, Quantity, Z
 from raceway.out.quantities import KYY_TILTS_FOLLOW as FOLLOWS
 from raceway.pipeline.equilibrium import pressures, solve_equilibrium
-from raceway.pipeline.quantities import solved_point, stated_numbers
+from raceway.pipeline.quantities import plugins_stating, solved_point, stated_numbers
 from raceway.planning.resolve import Problem
 from raceway.storage.tables import ReadTables, Tables
 
@@ -80,9 +79,12 @@ def _part(change: Sequence[float] | None, how: str, **more: object) -> Tables:
 def uncertainty_table(result: Result) -> Tables:
     """The table: quantity -> value, unit, low, high, relative, parts, rule; None with its reason in ``why``."""
     table, why, unresolved = dict[str, Tables | None](), dict[str, str](), ", ".join(result.error["unresolved"] or [])
-    lives = result.stated.missing.get("life", "no life is computed")
+    lives = result.stated.missing.get(L10R.path.partition(".")[0], "no life is computed")
     absent = {K: "the scene is static", L10R: lives, PRELOAD: "the bearing has no preload"}
-    scatters, hertz = _at_scatters(result), _under_hertz(result)
+    scatters, hertz = _at_scatters(result), dict[str, float]()
+    if getattr(result.error["how"]["contact"], "estimate", None) is Estimate.AGAINST_HERTZ:  # the law is not Hertz's
+        own, other = _numbers(result.model, result.equilibrium), _rigid_numbers(result.model, result.model.problem)
+        hertz = {name: other[name] / value - 1.0 for name, value in own.items() if name in other}
     elastic = elastic_change(result.model, result.equilibrium) if result.bodies is None else {}
     for quantity in HEADLINE:
         value, name = quantity.of(result), quantity.name
@@ -215,14 +217,6 @@ def _tolerances(result: Result, quantity: Quantity) -> Iterator[tuple[str, Table
         yield "tolerances", _part(ends or None, "95 % to first order" if ends else band["why"] or "no derivative")
 
 
-def _under_hertz(result: Result) -> dict[str, float]:
-    """Changes of numbers at rest by exact Hertz; empty where the law is Hertz's, or what replaces it on elastic bodies."""
-    if getattr(result.error["how"]["contact"], "estimate", None) is not Estimate.AGAINST_HERTZ:
-        return {}
-    own, other = _numbers(result.model, result.equilibrium), _rigid_numbers(result.model, result.model.problem)
-    return {name: other[name] / value - 1.0 for name, value in own.items() if name in other}
-
-
 def _at_scatters(result: Result) -> dict[str, Range]:
     """Changes of numbers at rest by inferred numbers at the ends of their scatter."""
     inferred, problem = (result.geometry or {}).get("inferred", {}), result.model.problem
@@ -258,8 +252,7 @@ def _rigid_numbers(model: Model, problem: Problem, **numbers: Any) -> dict[str, 
 
 def _numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float]:
     """Headline quantities at rest that are no zeros."""
-    plugins = [one.name for one in fitting_quantities(model.problem) if L10R.name in {number.name for number in one.numbers}]
-    lives = stated_numbers(solved_point(model, equilibrium, None), plugins)
+    lives = stated_numbers(solved_point(model, equilibrium, None), plugins_stating(model.problem, L10R.name))
     k, force = equilibrium.stiffness, equilibrium.contact_force
     numbers = {KXX.name: k[0, 0], KYY.name: k[1, 1], FOLLOWS.name: tilts_follow(k, model.problem.supports.tilt)}
     numbers |= {PEAK_BALL_LOAD.name: force.max(), P0.name: pressures(model, force).max()}

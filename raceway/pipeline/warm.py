@@ -23,13 +23,11 @@ import numpy as np
 from raceway.bodies.columns import ColumnBearing, column_problem, mounted_columns, solved_columns, why_not
 from raceway.bodies.model import model_of
 from raceway.bodies.mounting import preload_table
-from raceway.bodies.rigid import Rigid
-from raceway.contact_laws.hertz import Hertz
 from raceway.core.thermal import NODES
 from raceway.errors import ConvergenceError, RacewayError, SceneError
-from raceway.framework.duties import fitting_quantities
+from raceway.framework.registry import default_registry
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.quantities import solved_point, stated_numbers
+from raceway.pipeline.quantities import plugins_stating, solved_point, stated_numbers
 from raceway.planning.plan import ScenePlan, make_plan, plan_of
 from raceway.planning.resolve import Problem, resolve
 from raceway.plugins.heat import NO_THINNING, ZERO_C, thermal_network
@@ -48,6 +46,8 @@ _TOLERANCE, _QUICK, _SLOW = 1e-3, 25, 300
 _LONGEST = 50.0
 #: Temperature [C] beyond which no bearing runs: steel has lost its hardness, and oils burn.
 _HOTTEST = 400.0
+#: The life of a band.
+_LIFE = "l10r_hours"
 #: Speeds at once, and rounds, in which the first one without steady temperatures is looked for: to 1/4000 of the range.
 _SPEEDS, _ROUNDS = 17, 3
 
@@ -154,7 +154,7 @@ def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
     factors = np.array(list(product(friction, conductances, conductances))).T
     columns = {key: np.repeat(column, factors.shape[1]) for key, column in _one(simple).items()}
     warmth = warm(simple, columns, make_plan(simple), list(factors))
-    running, rated = {}, any(plugin.name == "life" for plugin in fitting_quantities(resolve(simple)))
+    running, rating = {}, plugins_stating(resolve(simple), _LIFE)
     for corner in np.flatnonzero(~warmth.runaway):
         with suppress(SceneError):
             problem = _at_row(simple, warmth.columns, corner)
@@ -163,7 +163,7 @@ def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
             preloaded = scene.bearing.preloaded and preload_table(model, equilibrium)
             point = solved_point(model, equilibrium, None)
             network = thermal_network(point, *factors[:, corner])
-            life = stated_numbers(point, ("life",))["l10r_hours"] if rated else [np.nan]
+            life = stated_numbers(point, rating)[_LIFE] if rating else [np.nan]
             running[corner] = [
                 preloaded["running_n"] if preloaded else np.nan,
                 network.heats.sum(),
@@ -188,8 +188,8 @@ def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
         table |= {"kxx_n_per_m": ends(kxx), "kyy_n_per_m": ends(kyy)}
     if scene.bearing.preloaded:
         table["running_preload_n"] = ends(preload)
-    if rated and simple is scene:
-        table["l10r_hours"] = ends(life, falls=True)
+    if rating and simple is scene:
+        table[_LIFE] = ends(life, falls=True)
     return table
 
 
@@ -250,10 +250,11 @@ def _simple(scene: Scene) -> Scene:
     """The scene whose loads decide its temperatures: with rigid bodies where its own are not computed as columns."""
     if resolve(scene).traits.contacts_alone or not why_not(scene, False):
         return scene
-    law = scene.contact.law if "resultant" in scene.contact.law.discretisations else Hertz()
+    law, find = scene.contact.law, default_registry().find
+    law = law if "resultant" in law.discretisations else find("contact_law", "hertz").plugin()
     contact = attrs.evolve(scene.contact, kind=law.name, law=law, discretisation="resultant", friction=0.0)
     supports = attrs.evolve(scene.supports, outer_seat="rigid", inner_seat="rigid")
-    return attrs.evolve(scene, bodies=Rigid(), mesh=None, contact=contact, supports=supports)
+    return attrs.evolve(scene, bodies=find("bodies", "rigid").plugin(), mesh=None, contact=contact, supports=supports)
 
 
 def _in_columns(

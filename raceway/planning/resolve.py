@@ -13,8 +13,8 @@ from raceway.core.columns import Number, at_row, cos, is_column, largest, log, s
 from raceway.errors import SceneError
 from raceway.framework.contracts import Traits
 from raceway.framework.duties import BodyKind, changes_speed, duration_s, has_phase, ramp_turns, speed_rpm, steady_form
+from raceway.framework.registry import default_registry
 from raceway.framework.rules import Rule, speaking
-from raceway.integrators.methods import Newmark, Periodic
 from raceway.scene.bearing import Bearing
 from raceway.scene.growth import RunningBearing, ring_inertia
 from raceway.scene.lubricant import lubricated
@@ -122,9 +122,9 @@ class Problem(SceneTables):
             part = part[name]
         return True
 
-    def integrated(self, method: Newmark | Periodic, why: str) -> Problem:
+    def integrated(self, kind: str, why: str) -> Problem:
         """The same problem by another integrator, and why planning chose it."""
-        integrator = attrs.evolve(self.integrator, kind=method.name, method=method)
+        integrator = attrs.evolve(self.integrator, kind=kind, method=default_registry().find("integrator", kind).plugin())
         return attrs.evolve(self, integrator=integrator, integrator_why=why)
 
     @cached_property
@@ -453,8 +453,8 @@ def resolve(scene: Scene) -> Problem:
         return problem
     why = problem.unsteady or next((words for _, words in speaking(_TRANSIENT, problem)), "")
     if why:
-        return problem.integrated(Newmark(), why)
-    return problem.integrated(Periodic(), "the force repeats every turn and contacts have no memory")
+        return problem.integrated("newmark", why)
+    return problem.integrated("periodic", "the force repeats every turn and contacts have no memory")
 
 
 def _damped_limit(limit: float, time_constant: float) -> float:

@@ -27,6 +27,7 @@ class Structured:
     """Structured hexahedra: rings swept from their profile, balls as cubed spheres, both graded to the contacts."""
 
     name: ClassVar[str] = "structured"
+    swept: ClassVar[bool] = True
 
     element_size: float = option(0.5e-3, unit="m", help="longest edge of a cell", rule=positive())
     nodes_per_semi_axis: int = option(

@@ -29,7 +29,7 @@ from raceway.core.ring.kernels.layout import DAMPING
 from raceway.core.ring.ring import Ring
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, RacewayError
-from raceway.integrators.methods import Newmark
+from raceway.framework.registry import default_registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import Result
 from raceway.scene.scene import Scene
@@ -152,15 +152,16 @@ def _integrated(
 ) -> Attractor:  # fmt: skip
     """The motion from a start, by its last turns."""
     on_steps = None if on_progress is None else (lambda step, total: on_progress("beside unstable orbits", step, total))
+    newmark = default_registry().find("integrator", "newmark").plugin()
     try:
         try:
-            record, undamped = integrate(Newmark(), system, start(system), schedule, on_steps), False
+            record, undamped = integrate(newmark, system, start(system), schedule, on_steps), False
         except RacewayError:
             # The dashpots' force jumps where a contact closes, and a ball may have no equilibrium within the jump.
             if system.scalars[DAMPING] == 0.0:
                 raise
             bare, undamped = system.without(DAMPING), True
-            record = integrate(Newmark(), bare, start(bare), schedule, on_steps)
+            record = integrate(newmark, bare, start(bare), schedule, on_steps)
     except RacewayError as why:
         return Attractor(parameter, FAILED, turns, why=str(why))
     last, w = min(_JUDGED, turns // 2), 2.0 * np.pi / (schedule.dt * _STEPS)

@@ -14,7 +14,6 @@ import attrs
 import numpy as np
 
 from raceway.bodies.model import Model, build_model
-from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.core.ring.kernels import layout
 from raceway.core.ring.system import System, compiled
 from raceway.errors import SceneError
@@ -105,7 +104,7 @@ def _model(scene: Scene, rpm: float) -> Model:
     """At a speed; what its force also depends on is refused."""
     model = build_model(with_numbers(attrs.evolve(scene, excitation=None), {SPIN: rpm}))
     faults = {
-        "bodies.kind": not isinstance(model.bearing, RigidBearing) and "are not rigid, or roll on lines",
+        "bodies.kind": not model.traits.contacts_alone and "are not rigid, or roll on lines",
         "contact.kind": renews(scene.contact.law) and "follows the running loads",
         "contact.friction": scene.contact.friction > 0.0 and "has a memory of slips: set it to 0, or",
         "bearing.preload_kind": model.system.sliding is not None and "lets rows slide on a spring",
@@ -133,7 +132,12 @@ def _law(system: System, depth: float) -> tuple[Numbers, float, float]:
     params, kinds = np.unique(system.law_params, axis=0, return_inverse=True)
 
     def forces(approach: np.ndarray) -> np.ndarray:
-        return np.stack([_force(system, params, one) for one in approach], axis=1)
+        n, memory, each = len(params), system.law_state.shape[1], list[np.ndarray]()
+        for one in approach:
+            state, out = np.zeros((n, memory)), np.zeros((3, n))
+            system.law(np.full(n, -one), np.zeros(n), np.ascontiguousarray(params), state, state.copy(), 1.0, *out)
+            each.append(out[0])
+        return np.stack(each, axis=1)
 
     kinds, approach = kinds.ravel(), depth * np.geomspace(_SHALLOWEST, 1.0, 25)
     values, outer = forces(approach), slice(system.ball_count, None)
@@ -161,11 +165,3 @@ def _law(system: System, depth: float) -> tuple[Numbers, float, float]:
         "kinds": kinds,
     }
     return {"LAW": 0, "SEAT_POWER": 2.0 / 3.0, "seats": seats, **table}, float(values[:, -1].min()), error
-
-
-def _force(system: System, params: np.ndarray, approach: float) -> np.ndarray:
-    """(n,) of contacts at rest with parameters (n, k) at one approach [m]."""
-    n, memory = len(params), system.law_state.shape[1]
-    state, out = np.zeros((n, memory)), np.zeros((3, n))
-    system.law(np.full(n, -approach), np.zeros(n), np.ascontiguousarray(params), state, state.copy(), 1.0, *out)
-    return out[0]
