@@ -17,7 +17,7 @@ from raceway.bodies.basis import Basis, first_guess, gyroscopic, make_basis
 from raceway.bodies.contacts import contact_angles
 from raceway.bodies.rigid_bearing import contact_parts
 from raceway.bodies.running import renewed, running_pairs
-from raceway.core.columns import Number, distinct, has_columns, per_ball, some
+from raceway.core.columns import distinct, has_columns, per_ball, some
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.excitations import no_force
 from raceway.core.periodic.collocation import one_pitch
@@ -409,7 +409,8 @@ def assembled_columns(cls: type[C], problem: Problem, plan: ScenePlan, basis: Ba
     parts["scalars"][:, ring.CAGE] = 0.0  # at rest; balls of periodic motions stand
     columns = 2 + elastic_columns(parts["scalars"][0])
     kernels = Kernels(parts["kernel"], parts["base_kernel"], columns, parts["law"])
-    load = _columns(n, problem.load.axial, *problem.load.radial, *problem.load.moment)
+    loads = (problem.load.axial, *problem.load.radial, *problem.load.moment)
+    load = np.stack([np.broadcast_to(number, n) for number in loads], axis=1).astype(float)
     tilt = problem.supports.tilt
     shaft = np.broadcast_to(0.0 if isinstance(tilt, str) else tilt, n).astype(float)
     none = np.zeros((5, 5))
@@ -435,11 +436,6 @@ def solved_columns(bearing: ColumnBearing, states: States, turn: Callable[[int],
         ellipse=bearing.contact_ellipse,
         turn=turn,
     )
-
-
-def _columns(n: int, *numbers: Number) -> np.ndarray:
-    """(n, k) of k numbers."""
-    return np.stack([np.broadcast_to(number, n) for number in numbers], axis=1).astype(float)
 
 
 def _rows(record: R, chosen: np.ndarray) -> R:

@@ -100,6 +100,8 @@ def _setup(problem: Problem, basis: Basis, rigid: System) -> BearingData:
     outer = 0.0 if problem.excitation is None else problem.excitation.amplitude_n
     # A radial load is carried by a few balls: 5 F / Z (Stribeck).
     most = basis.ball_load + 5.0 * (float(np.hypot(*problem.load.radial)) + outer) / b.ball_count
+    # Stiffness of sticking points [N/m3] from that of a contact: spread over Hertz's ellipse.
+    sticking, (along, across) = contact.stick_stiffness, map(float, basis.inner.semi_axes(basis.ball_load))
     return BearingData(
         geometry=basis.geometry,
         azimuth=basis.azimuth,
@@ -122,14 +124,5 @@ def _setup(problem: Problem, basis: Basis, rigid: System) -> BearingData:
         ball_force=float(rigid.table[0, CENTRIFUGAL]),
         growth=problem.running.radial_growth(b.of_rows[0]),
         friction=contact.friction,
-        stick=_stick(problem, basis),
+        stick=None if sticking is None else sticking / (np.pi * along * across),
     )
-
-
-def _stick(problem: Problem, basis: Basis) -> float | None:
-    """Stiffness of sticking points [N/m3] from that of a contact: spread over Hertz's ellipse; None where nothing is given."""
-    stiffness = problem.contact.stick_stiffness
-    if stiffness is None:
-        return None
-    along, across = (float(x) for x in basis.inner.semi_axes(basis.ball_load))
-    return stiffness / (np.pi * along * across)

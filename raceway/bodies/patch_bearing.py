@@ -41,7 +41,6 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
-    from raceway.core.contact.hertz import Ellipse
 
 
 #: Entries of the stiffness below this part of sqrt(K_ii K_jj) are ripple or cancel out: no relative difference.
@@ -266,18 +265,14 @@ def _system(
     problem: Problem, basis: Basis, ring: Ring, reach: Reach, nodes: float, load: float
 ) -> tuple[PatchSystem, Spacing]:
     """A ring like another one, on patches with so many points along the semi-axes at a load [N]."""
-    spacing = Spacing.of(_semi_axes(basis.inner, load), nodes, 0.5 * basis.geometry.ball_diameter, reach.widest)
+    a, b = basis.inner.semi_axes(load)
+    spacing = Spacing.of((float(a), float(b)), nodes, 0.5 * basis.geometry.ball_diameter, reach.widest)
     make = _maker(problem, spacing)
     laws = _point_laws(problem, basis, spacing)
     pool = Pool(make(reach), laws, _widening(basis, reach, make), problem.contact.friction)
     mass = basis.geometry.ball_mass(problem.bearing.balls.density) if problem.kinematics.ball_inertia else 0.0
     fields = {f.name: getattr(ring, f.name) for f in attrs.fields(Ring)}
     return PatchSystem(**{**fields, "table": ring.table.copy()}, rigid=surrogate(ring), pool=pool, ball_mass=mass), spacing
-
-
-def _semi_axes(ellipse: Ellipse, load: float) -> tuple[float, float]:
-    a, b = ellipse.semi_axes(load)
-    return float(a), float(b)
 
 
 def _first_reach(problem: Problem, basis: Basis, rigid: System, guess: np.ndarray) -> Reach:

@@ -110,10 +110,11 @@ def equilibrium_rows(result: ReadTables) -> list[Row]:
     """Displacement and loads; the tangent stiffness where it is not the answer itself."""
     found, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
     moved, dynamic = found["displacement"], result["identification"] is not None
-    rows = [
-        (f"Equilibrium under {_loads(result['scene']['load'])}", "", ""),
-        X.fact(result, "axial, + preloads the bearing"),
-    ]
+    load = result["scene"]["load"]
+    words = [f"{load['axial']:g} N axial"]
+    words += [f"{load['radial'][0]:g}, {load['radial'][1]:g} N radial"] if any(load["radial"]) else []
+    words += [f"{load['moment'][0]:g}, {load['moment'][1]:g} N m"] if any(load["moment"]) else []
+    rows = [(f"Equilibrium under {', '.join(words)}", "", ""), X.fact(result, "axial, + preloads the bearing")]
     across = [in_micro(moved[name]) for name in ("y", "z")]
     if across != ["0", "0"]:
         rows.append(("displacement y, z", f"{', '.join(across)} µm", "radial"))
@@ -123,14 +124,6 @@ def equilibrium_rows(result: ReadTables) -> list[Row]:
     rows += _mounted(found)
     rows += loaded_balls(result, ["most", "least"] if dynamic else ["least"])
     return rows + (tangent_rows(result) if dynamic else [])
-
-
-def _loads(load: ReadTables) -> str:
-    """Constant loads, without those that are 0."""
-    words = [f"{load['axial']:g} N axial"]
-    words += [f"{load['radial'][0]:g}, {load['radial'][1]:g} N radial"] if any(load["radial"]) else []
-    words += [f"{load['moment'][0]:g}, {load['moment'][1]:g} N m"] if any(load["moment"]) else []
-    return ", ".join(words)
 
 
 def _mounted(found: ReadTables) -> list[Row]:

@@ -120,7 +120,11 @@ def simulate(
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
     watch = None if on_progress is None else (lambda: on_progress("the search for orbits", 0, 0))
     start = start or _chosen_start(model, equilibrium, watch)
-    critical = _critical_step(model, equilibrium, start.orbit) if method.inertial else None
+    # Stable limit of explicit steps: the shortest of the states known before the run.
+    slopes = [(equilibrium.stiffness_rows_held, equilibrium.damping_rows_held)]
+    orbit = start.orbit
+    slopes += [] if orbit is None else zip(orbit.stiffness, orbit.damping, strict=True)
+    critical = min(model.system.damped_time_step(*slope) for slope in slopes) if method.inertial else None
     steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)
     step_warnings = _step_warnings(model, equilibrium, period, steps_per_turn, critical)
     ramp_length = ramp_turns(model.problem.excitation) or 2.0 * model.plan.turns / 3.0
@@ -240,13 +244,6 @@ def _motion(model: Model, equilibrium: Equilibrium, start: Start, dt: float) -> 
     if start.orbit is not None:
         return model.bearing.on_orbit(system, start.orbit, dt)
     return model.bearing.at_rest(system, q, ball, start.kind == "ramp")
-
-
-def _critical_step(model: Model, equilibrium: Equilibrium, orbit: Orbit | None) -> float:
-    """Stable limit of explicit steps: the shortest of the states known before the run."""
-    slopes = [(equilibrium.stiffness_rows_held, equilibrium.damping_rows_held)]
-    slopes += [] if orbit is None else zip(orbit.stiffness, orbit.damping, strict=True)
-    return min(model.system.damped_time_step(stiffness, damping) for stiffness, damping in slopes)
 
 
 def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:

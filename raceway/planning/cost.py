@@ -65,16 +65,13 @@ def compiled_motion(problem: Problem, balls: Balls, motion: Motion, times: Times
         each += _CHANGING_S
     samples = motion.turns * recorded_per_turn(motion.steps_per_turn, motion.turns, method.inertial)
     steps = 0 if method.steady else motion.turns * motion.steps_per_turn
-    return times.search * _orbit(problem) + samples * share * times.sample + steps * each
-
-
-def _orbit(problem: Problem) -> float:
-    """Time [s] for the steady orbit of rigid rings that is the answer, or that a transient starts on."""
-    if not problem.integrator.method.inertial:
-        return 0.0
-    searched = problem.tilts and problem.excitation.sense == 0
-    searched = searched and problem.excitation.amplitude_n > _SEARCH_FROM * abs(problem.load.axial)
-    return _SEARCH_S if searched else _ORBIT_S
+    # A steady orbit is the answer, or a transient starts on it.
+    orbit = 0.0
+    if method.inertial:
+        searched = problem.tilts and problem.excitation.sense == 0
+        searched = searched and problem.excitation.amplitude_n > _SEARCH_FROM * abs(problem.load.axial)
+        orbit = _SEARCH_S if searched else _ORBIT_S
+    return times.search * orbit + samples * share * times.sample + steps * each
 
 
 #: A point of columns with 12 balls and all quantities of a sweep: its equilibrium, also with an oil film, what heat adds; its orbit under

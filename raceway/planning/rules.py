@@ -60,11 +60,6 @@ def _unknowns(p: Problem) -> int:
     return 0 if harmonics is None or not p.recorded else 2 * harmonics + 2
 
 
-def _steady(p: Problem) -> bool:
-    """Whether the steady motion itself is solved for."""
-    return p.recorded and p.integrator.method.steady
-
-
 def _inertial(p: Problem) -> bool:
     return p.recorded and p.integrator.method.inertial
 
@@ -191,7 +186,10 @@ _MOTION: tuple[Rule[Problem], ...] = (
         lambda p: f"has no driver `{missing_driver(p.integrator.method.scheme, p.traits.compiled)}`, which {_slow(p)} needs: its "
         "forces are not compiled. Use 'newmark' or 'quasi_static', or contact resultants on rigid or condensed bodies",
     ),
-    Rule("integrator.kind", lambda p: _steady(p) and p.unsteady, lambda p: f"{p.unsteady}: use 'newmark'"),
+    Rule(
+        "integrator.kind", lambda p: p.recorded and p.integrator.method.steady and p.unsteady,
+        lambda p: f"{p.unsteady}: use 'newmark'",
+    ),
     Rule(
         "rotor.mass", lambda p: _inertial(p) and p.inertia.mass <= 0.0,
         "the moving mass is 0: set it, or bearing.bore and bearing.width, which give the inner ring a mass",

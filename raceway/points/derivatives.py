@@ -45,7 +45,12 @@ def jacobian(
             allowed(key, float(end)) for end in ((value - 2.0 * steps[key]).min(), (value + 2.0 * steps[key]).max())
         )
         stencils[key] = _FORWARD if not low else _CENTRAL if high else _BACKWARD
-    answer, out = columns(_moved(inputs, stencils, steps)), dict[str, Columns]()
+    # All inputs at all shifts of one key after another.
+    moves = [(moved, shift * steps[moved]) for moved, stencil in stencils.items() for shift in stencil]
+    shifted = {
+        key: np.concatenate([value + move * (moved == key) for moved, move in moves]) for key, value in inputs.items()
+    }
+    answer, out = columns(shifted), dict[str, Columns]()
     for name in outputs:
         parts, first = answer[name].reshape((-1, len(size), *answer[name].shape[1:])), 0
         out[name] = {}
@@ -54,9 +59,3 @@ def jacobian(
             out[name][key] = (slope.T / steps[key]).T
             first += len(stencil)
     return out
-
-
-def _moved(inputs: Columns, stencils: Mapping[str, Mapping[int, float]], steps: Columns) -> Columns:
-    """All inputs at all shifts of one key after another."""
-    moves = [(moved, shift * steps[moved]) for moved, stencil in stencils.items() for shift in stencil]
-    return {key: np.concatenate([value + move * (moved == key) for moved, move in moves]) for key, value in inputs.items()}

@@ -517,7 +517,10 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
                 share = f"; {100.0 * effect.share / (1.0 - largest.share):.2g} % of the rest"
             else:
                 share = f"; {100.0 * effect.share:.3g} % of the variation"
-            mixed = ", a mean of rises and falls" if _mixed(factorial, key) else ""
+            ends = [
+                [factorial.resolved_change(key, {other: end}) for end in (0, 1)] for other in factorial.keys if other != key
+            ]
+            mixed = ", a mean of rises and falls" if any(low * high < 0.0 for low, high in ends) else ""
             change = f"{percent(effect.log_change)} ({about.read(effect.difference or 0.0):+.2f} {unit}{share}{mixed})"
             parts.append(f"{_step(comparison.axis(key))} changes it by {change}")
         elif abs(effect.log_change) + factorial.error >= _HARDLY and not effect.resolved:
@@ -560,15 +563,6 @@ def _between(comparison: Findings, quantity: str, axis: Axis) -> tuple[str, list
         if (far := max((max(to - max(end, 0.0), min(end, 0.0) - to) for to, end in changes), default=0.0)) > least:
             farthest, least = (shown(value), [to for to, _ in changes]), far
     return farthest
-
-
-def _mixed(factorial: _Factorial, key: str) -> bool:
-    """Whether an axis raises the quantity at some value of another axis and lowers it at the other."""
-    return any(
-        factorial.resolved_change(key, {partner: 0}) * factorial.resolved_change(key, {partner: 1}) < 0.0
-        for partner in factorial.keys
-        if partner != key
-    )
 
 
 def _where_resolved(comparison: Findings, factorial: _Factorial, key: str) -> str:

@@ -318,8 +318,11 @@ class Function:
             computed = Computed.of(example, bearing, excitations, self.tolerance, self.outputs)
             fine = ~bearing.conspicuous & computed.fine & (reason[rows] == "")
             status[rows[fine]] = PointStatus.COMPUTED
-            if self.scene.heat is not None:
-                self._warn_of_oil(chosen, rows, fine, reason)
+            oil = self.scene.lubricant
+            if self.scene.heat is not None and oil is not None and oil.thins:
+                from raceway.plugins.heat import beyond_oil
+
+                reason[rows[fine]] = [beyond_oil(float(level)) for level in chosen["lubricant.temperature_c"][fine]]
             for name in self.outputs:
                 part = QUANTITIES[name](computed) if name in QUANTITIES else computed.of_plugin(self._stated[name][0], name)
                 values.setdefault(name, np.full((n, *part.shape[1:]), np.nan))[rows[fine]] = part[fine]
@@ -332,14 +335,6 @@ class Function:
         warmth = warm(self.scene, columns, plan)
         reason[rows[warmth.runaway]] = RUNAWAY
         return {**columns, **warmth.columns}
-
-    def _warn_of_oil(self, columns: Columns, rows: np.ndarray, fine: np.ndarray, reason: np.ndarray) -> None:
-        """Reasons of computed rows whose oil is beyond its data."""
-        from raceway.plugins.heat import beyond_oil
-
-        oil = self.scene.lubricant
-        if oil is not None and oil.thins:
-            reason[rows[fine]] = [beyond_oil(float(level)) for level in columns["lubricant.temperature_c"][fine]]
 
     def _refused(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
         """(n,) whether a number is none, or a rule of its key alone refuses it."""

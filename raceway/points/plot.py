@@ -524,7 +524,8 @@ def layout(
         raise RacewayError(f"no selected point has a {name}: {selection.gaps or 'none was finished'}")
     _refuse_strangers(selection, x, y)
     numeric = [key for key, values in axes.items() if _numeric(values)]
-    kind = kind or _kind(axes, numeric)
+    both = len(axes) == 2 and len(numeric) == 2
+    kind = kind or ("map" if both and min(len(values) for values in axes.values()) > _MOST_COLOURS else "curves")
     if not x and not (others := [key for key in numeric or axes if key != y]):
         raise RacewayError(f"{kind}: no axis is left for x: leave out --y, or an --at")
     x = x or min(others, key=lambda key: (key not in _FIRST_X, -len(axes[key])))
@@ -600,11 +601,6 @@ def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:
 def names(dataset: Dataset) -> list[str]:
     """Variables with numbers."""
     return [str(name) for name, data in dataset.data_vars.items() if data.dtype.kind in "fiu"]
-
-
-def _kind(axes: Tables, numeric: list[str]) -> str:
-    both = len(axes) == 2 and len(numeric) == 2
-    return "map" if both and min(len(values) for values in axes.values()) > _MOST_COLOURS else "curves"
 
 
 def _refuse_strangers(selection: Selection, x: str | None, y: str | None) -> None:

@@ -119,7 +119,11 @@ def make_design(tables: ReadTables, vary: Vary, limit_s: float, registry: Regist
     if not settings:
         why = left_out[0][2] if left_out else "the scene is static and has no mesh"
         raise SceneError.at("--vary", None, f"no setting is left to run: {why}")
-    return Design(tuple(settings), tuple(left_out), _base(tables, settings, registry), title, tuple(notes))
+    # The scene's own physics where it is among the settings, else the first's.
+    physics = setting_at(tables, "", {}, registry).physics
+    runnable = [setting.physics for setting in settings if setting.scene is not None]
+    base = physics if physics in runnable or not runnable else runnable[0]
+    return Design(tuple(settings), tuple(left_out), base, title, tuple(notes))
 
 
 def setting_at(
@@ -144,13 +148,6 @@ def setting_at(
 def needs_motion(scene: Scene) -> bool:
     """Whether an integrator takes part at all."""
     return scene.excitation is not None and "record" in scene.identifier.method.needs
-
-
-def _base(tables: ReadTables, settings: list[Setting], registry: Registry) -> str:
-    """The scene's own physics where it is among the settings, else the first's."""
-    physics = setting_at(tables, "", {}, registry).physics
-    candidates = [setting.physics for setting in settings if setting.scene is not None]
-    return physics if physics in candidates or not candidates else candidates[0]
 
 
 def _default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]]:

@@ -102,7 +102,8 @@ def key_schema(field: Any) -> Tables:
         return {**_table(field.type), "description": field.metadata.get("help", "")}
     facts = dict(getattr(field.validator, "facts", {}))
     words, pattern = facts.pop("words", None), facts.pop("pattern", None)
-    kinds = [k for k in _members(field.type) if words is None or k is not str]
+    members = get_args(field.type) if get_origin(field.type) in (Union, UnionType) else [field.type]
+    kinds = [k for k in members if k is not NoneType and (words is None or k is not str)]
     limits = {key: facts[key] for key in _LIMITS if key in facts}
     unit, text = field.metadata.get("unit", ""), field.metadata.get("help", "")
     forms = [form for kind in kinds for form in _forms(kind, limits, bool(unit))]
@@ -117,12 +118,6 @@ def key_schema(field: Any) -> Tables:
     if field.default is not attrs.NOTHING and field.default is not None and not isinstance(field.default, attrs.Factory):  # type: ignore[arg-type]
         schema["default"] = list(field.default) if isinstance(field.default, tuple) else field.default
     return schema
-
-
-def _members(kind: object) -> list[Any]:
-    if get_origin(kind) in (Union, UnionType):
-        return [member for member in get_args(kind) if member is not NoneType]
-    return [kind]
 
 
 def _forms(kind: Any, limits: dict[str, float], measured: bool) -> list[Tables]:
