@@ -43,7 +43,10 @@ def solve_equilibrium(
             "no load acts on the bearing: all motions are free and the stiffness is undefined. Set `load.axial`, or hold "
             'the ring with supports.axial = "displacement" under an axial load.'
         )
-    _foresee_free_motion(model)
+    # What nothing holds shows on another system in milliseconds, where the bearing's own equilibrium takes minutes.
+    if (rigid := model.bearing.foreseen) is not None:
+        q, ball, _ = rigid.solve_equilibrium(model.bearing.guess)
+        _refuse_free_motion(model, rigid.stiffness_at(q, rigid.evaluate(q, ball=ball)), q)
     q, ball, iterations = model.bearing.solve_equilibrium(near, on_progress)
     still = system.without(CAGE)
     now = still.evaluate(q, ball=ball)
@@ -57,16 +60,6 @@ def solve_equilibrium(
     equilibrium = Equilibrium(q, stiffness, damping, *held, *state, iterations, warnings)
     law = report_of(model, equilibrium)
     return equilibrium if law is None else attrs.evolve(equilibrium, warnings=(*law.warnings, *warnings))
-
-
-def _foresee_free_motion(model: Model) -> None:
-    """What nothing holds shows on another system in milliseconds, where the bearing's own equilibrium takes minutes."""
-    rigid = model.bearing.foreseen
-    if rigid is None:
-        return
-    q, ball, _ = rigid.solve_equilibrium(model.bearing.guess)
-    now = rigid.evaluate(q, ball=ball)
-    _refuse_free_motion(model, rigid.stiffness_at(q, now), q)
 
 
 def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> None:

@@ -95,7 +95,13 @@ def error_table(run: Identified) -> Tables:
     model = run.model
     table = body_errors(model, run.equilibrium, Estimate.NO_MOTION())
     how: dict[str, str] = table["how"]
-    parts = _motion_errors(run) if run.motions else {"time_step": Part(TOLERANCE, Estimate.NO_TIME_STEP())}
+    parts = {"time_step": Part(TOLERANCE, Estimate.NO_TIME_STEP())}
+    if run.motions:
+        step, second = _time_step(run)
+        transient = _transient(run, step)
+        if model.problem.depends_on_start and transient.size is not None:
+            transient = _from_other_start(run, second or Run.of(run.motion), transient)
+        parts = {"time_step": step, "transient": transient, "identification": _identification(run)}
     parts["mesh"] = Part(table["mesh"], how["mesh"])
     if model.traits.calibrated:
         parts["contact"] = Part(table["contact"], how["contact"])
@@ -139,14 +145,6 @@ def error_warnings(error: Tables, identified: bool) -> list[str]:
     if identified and why.estimate in _TOTAL_UNKNOWN:
         warnings.append(f"the error of Z is {why}")
     return warnings
-
-
-def _motion_errors(run: Identified) -> dict[str, Part]:
-    step, second = _time_step(run)
-    transient = _transient(run, step)
-    if run.model.problem.depends_on_start and transient.size is not None:
-        transient = _from_other_start(run, second or Run.of(run.motion), transient)
-    return {"time_step": step, "transient": transient, "identification": _identification(run)}
 
 
 def _no_total(run: Identified, parts: dict[str, Part]) -> Note | None:

@@ -461,7 +461,22 @@ def facts(result: Result) -> list[Fact]:
     """Name, value with unit, remark of what a result shows in short: K with its error first."""
     count = len(result.warnings)
     warning = [(f"{count} warning{'' if count == 1 else 's'}", "see .warnings", result.warnings[0])] if count else []
-    return [*_identified_facts(result), *warning, *_equilibrium_facts(result), *_computed_facts(result)]
+    loads, forces = result.ball_loads, result.equilibrium.contact_force
+    told = {"uncertainty": result.uncertainty, "equilibrium": result.at_rest}
+    problem, cost = result.model.problem, result.cost
+    kind = f"{problem.bodies.name} bodies, {problem.contact.kind}, {problem.integrator.kind}"
+    steps = f"{cost['steps']} steps" if cost["steps"] else "static"
+    compiled = f"; compiling, apart and once: {cost['compile_s']:.2g} s" if cost["compile_s"] else ""
+    return [
+        *_identified_facts(result),
+        *warning,
+        *(stated(quantity, told) for quantity in (KXX, KYY, KYY_TILTS_FOLLOW) if quantity.of(result) is not None),
+        X.fact(result),
+        ("ball loads", f"{np.min(loads):.5g} to {np.max(loads):.5g} N", f"static, {len(loads)} balls, inner race"),
+        *largest_facts(largest_contacts(forces, pressures(result.model, forces), "largest"), "static"),
+        ("bearing", str(problem.scene.source["bearing"].get("preset") or "own geometry"), kind),
+        ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}"),
+    ]
 
 
 def _identified_facts(result: Result) -> list[Fact]:
@@ -487,28 +502,6 @@ def _identified_facts(result: Result) -> list[Fact]:
     error = "not estimated" if total is None else f"{total:.1e}"
     absolute = "" if total is None else f", of K {K.text(result.equivalent_stiffness_error, 2)}"
     return [*rows, ("error of Z", error, f"numerical, relative{absolute}")]
-
-
-def _equilibrium_facts(result: Result) -> list[Fact]:
-    loads, forces = result.ball_loads, result.equilibrium.contact_force
-    told = {"uncertainty": result.uncertainty, "equilibrium": result.at_rest}
-    return [
-        *(stated(quantity, told) for quantity in (KXX, KYY, KYY_TILTS_FOLLOW) if quantity.of(result) is not None),
-        X.fact(result),
-        ("ball loads", f"{np.min(loads):.5g} to {np.max(loads):.5g} N", f"static, {len(loads)} balls, inner race"),
-        *largest_facts(largest_contacts(forces, pressures(result.model, forces), "largest"), "static"),
-    ]
-
-
-def _computed_facts(result: Result) -> list[Fact]:
-    problem, cost = result.model.problem, result.cost
-    kind = f"{problem.bodies.name} bodies, {problem.contact.kind}, {problem.integrator.kind}"
-    steps = f"{cost['steps']} steps" if cost["steps"] else "static"
-    compiled = f"; compiling, apart and once: {cost['compile_s']:.2g} s" if cost["compile_s"] else ""
-    return [
-        ("bearing", str(problem.scene.source["bearing"].get("preset") or "own geometry"), kind),
-        ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}"),
-    ]
 
 
 def chosen_reports(names: Iterable[str], registry: Registry) -> list[Chosen]:

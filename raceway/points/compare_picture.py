@@ -29,7 +29,13 @@ def draw(comparison: Findings) -> Figure:
     """
     along, quantities = _along(comparison), list(comparison.quantities.values())
     if along is None:
-        return _dots(comparison, quantities)
+        figure = new_figure(9.0, 2.2 + 0.32 * len(comparison.rows))
+        panels = figure.subplots(1, len(quantities), sharey=True)
+        for quantity, panel in zip(quantities, panels, strict=True):
+            _dots_on(panel, comparison.rows, quantity)
+        _name_lines(panels[0], comparison)
+        figure.suptitle(wrapped(f"{_named(quantities)}: {comparison.title}"), fontsize=12)
+        return figure
     texts = {key: [_text(value) for value in comparison.axis(key).values] for key in _by_interaction(comparison, along)}
     column = next((key for key in list(texts)[:1] if len(texts[key]) <= _MOST_COLUMNS), None)
     styles = {key: values for key, values in texts.items() if key != column}
@@ -153,17 +159,6 @@ def _handles(styles: dict[str, list[str]], doubt: bool) -> list[Line2D]:
     if doubt:
         handles.append(Line2D([], [], linestyle="", marker="x", color=GREY, label="unreliable: not in the effects"))
     return handles
-
-
-def _dots(comparison: Findings, quantities: list[Quantity]) -> Figure:
-    """A dot for each run, where no axis has numbers: one line a combination, the quantities side by side."""
-    figure = new_figure(9.0, 2.2 + 0.32 * len(comparison.rows))
-    panels = figure.subplots(1, len(quantities), sharey=True)
-    for quantity, panel in zip(quantities, panels, strict=True):
-        _dots_on(panel, comparison.rows, quantity)
-    _name_lines(panels[0], comparison)
-    figure.suptitle(wrapped(f"{_named(quantities)}: {comparison.title}"), fontsize=12)
-    return figure
 
 
 def _dots_on(panel: Axes, rows: Sequence[Row], quantity: Quantity) -> None:

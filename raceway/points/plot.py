@@ -273,9 +273,10 @@ def draw(layout: _Layout) -> Figure:
     parts = (
         [(None, data)] if panels is None else [(value, data.sel({panels: value})) for value in data[panels].values.tolist()]
     )
-    figure = _figure(kind, len(parts))
     columns = min(len(parts), 3)
     rows = -(-len(parts) // columns)
+    size = (2.0 + 4.0 * columns, 1.2 + (3.9 if kind != "surface" else 4.2) * rows) if len(parts) > 1 else (8.6, 5.6)
+    figure = new_figure(*size)
     projection = {"projection": "3d"} if kind == "surface" else {}
     grid = figure.subplots(
         rows, columns, squeeze=False, sharex=kind != "surface", sharey=kind != "surface", subplot_kw=projection
@@ -329,13 +330,6 @@ def write(figure: Figure, path: Path) -> Path:
             memory, format=path.suffix.lower()[1:], dpi=_DOTS_PER_INCH, metadata={"Date": None} if vector else None
         )
     return write_whole(memory.getvalue(), path)
-
-
-def _figure(kind: str, count: int) -> Figure:
-    columns, rows = min(count, 3), -(-count // 3)
-    if count == 1:
-        return new_figure(8.6, 5.6)
-    return new_figure(2.0 + 4.0 * columns, 1.2 + (3.9 if kind != "surface" else 4.2) * rows)
 
 
 def _curves(axes: Axes, data: DataArray, x: str, y: str | None, label: str) -> None:

@@ -43,7 +43,9 @@ def put_beside(axes: Axes, labels: Sequence[_Label]) -> None:
     occupied = [(point, np.full(2, _MARKER)) for point in points]
     for (text, at, tone), point in zip(labels, points, strict=True):
         half = 0.5 * _SIZE * np.array([_WIDE * len(text), _HIGH])
-        for middle, away in _places(point, half):
+        ways = ((direction, away) for away in _AWAY for direction in _DIRECTIONS)  # near ones first
+        for direction, away in ways:
+            middle = point + direction * half + away * direction / np.linalg.norm(direction)
             inside = (middle - half >= low).all() and (middle + half <= high).all()
             if inside and not any((np.abs(middle - centre) < half + size).all() for centre, size in occupied):
                 occupied.append((middle, half))
@@ -53,15 +55,6 @@ def put_beside(axes: Axes, labels: Sequence[_Label]) -> None:
                     arrowprops=line, in_layout=False,
                 )  # fmt: skip
                 break
-
-
-def _places(point: np.ndarray, half: np.ndarray) -> list[tuple[np.ndarray, float]]:
-    """Middles of a label around its point, near ones first, and how far away they are."""
-    return [
-        (point + direction * half + away * direction / np.linalg.norm(direction), away)
-        for away in _AWAY
-        for direction in _DIRECTIONS
-    ]
 
 
 #: Errors below are drawn here: a logarithm has no zero.

@@ -42,8 +42,6 @@ from raceway.storage.tables import ReadTables, Tables
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from raceway.bodies.model import Equilibrium, Model
-
 
 @attrs.frozen(eq=False)
 class _Sensitivity:
@@ -185,19 +183,6 @@ def _percent(share: float | None) -> str:
     return "" if share is None else "0" if abs(share) < _SHOWN else f"{share:+.3g}"
 
 
-def _rows(
-    model: Model, equilibrium: Equilibrium, now: dict[str, float], gradients: Iterable[Gradient]
-) -> tuple[_Sensitivity, ...]:
-    """By keys that change something, largest influence on the first number first."""
-    rows, first = [], next(iter(now))
-    for gradient in gradients:
-        key = gradient.statics.key
-        slopes = {name: x for name, x in derivatives(model, equilibrium, gradient).items() if name in now}
-        shares = {name: slopes[name] * key.value / now[name] for name in now if now[name]} if key.value else {}
-        rows.append(_Sensitivity(gradient, slopes, shares))
-    return tuple(sorted(rows, key=lambda row: -abs(row.influence.get(first, 0.0))))
-
-
 def _table(row: _Sensitivity) -> Tables:
     statics, motion = row.gradient.statics, row.gradient.motion
     half = len(statics.contact_force) // 2
@@ -319,9 +304,15 @@ def sensitivities(
     if asked and refused:
         raise SceneError([Mistake(key.path, key.value, why) for key, why in refused])
     by_key = [(key, answer) for key, answer in answers if not isinstance(answer, NoDerivative)]
-    rows = _rows(model, equilibrium, now, (gradient for _, gradient in by_key if not gradient.nothing))
+    rows, first = list[_Sensitivity](), next(iter(now))
+    for gradient in (gradient for _, gradient in by_key if not gradient.nothing):
+        key = gradient.statics.key
+        slopes = {name: x for name, x in derivatives(model, equilibrium, gradient).items() if name in now}
+        shares = {name: slopes[name] * key.value / now[name] for name in now if now[name]} if key.value else {}
+        rows.append(_Sensitivity(gradient, slopes, shares))
+    rows.sort(key=lambda row: -abs(row.influence.get(first, 0.0)))  # the largest influence on the first number first
     took, warning = working_processor_time() - begun, "" if gradients.orbit is None else gradients.orbit.warning
     nothing = tuple(key for key, gradient in by_key if gradient.nothing)
     models, band = sum(gradient.statics.models for _, gradient in by_key), first_order_band(model, equilibrium, tolerances)
     words, warnings = definitions(model, equilibrium), (warning,) if warning else ()
-    return Sensitivities(read.title, now, words, rows, nothing, refused, run_s, took, models, warnings, band)
+    return Sensitivities(read.title, now, words, tuple(rows), nothing, refused, run_s, took, models, warnings, band)
