@@ -471,19 +471,15 @@ class Assembly:
         u = self.nodal(y, self._u)
         if contact is None:
             return self.internal(y, u), u
-        near, at = contact.near, self._at(contact)
+        near = contact.near
+        if self._near is None or self._near[0] is not near:
+            self._near = near, Selection.of(near.entries, self.free, self.tied, self._tie)
+        at = self._near[1]
         rate = at.nodal(v) if dt > 0.0 else None
         pressing: list[np.ndarray] = []
         out = self.internal(y, u, lambda: pressing.append(contact.evaluate_near(dt, u[near.entries], rate)))
         at.add(pressing[0], out)
         return out, u
-
-    def _at(self, contact: Contact) -> Selection:
-        """The entries that a contact's places hang on; looked up anew when they have changed."""
-        near = contact.near
-        if self._near is None or self._near[0] is not near:
-            self._near = near, Selection.of(near.entries, self.free, self.tied, self._tie)
-        return self._near[1]
 
     def stiffness(self) -> csr_matrix:
         """(3 nodes, 3 nodes) sparse stiffness of bodies and beds, made at the first call."""

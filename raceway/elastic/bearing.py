@@ -352,14 +352,6 @@ def _cage_rows(points: np.ndarray, mass: np.ndarray, along: np.ndarray) -> np.nd
     return np.vstack([(mass[:, None] / total * along).reshape(1, -1), about @ turn])
 
 
-def _equal_parts(assembly: Assembly, azimuth: np.ndarray) -> list[Group]:
-    """The inner ring, the outer ring and the balls (Z,) at their azimuths [rad], each body in one group; supports are equal, too."""
-    rings = [Group(_ring_parts(assembly, index, azimuth), [index]) for index in (0, 1)]
-    bodies = [(body.points, np.asarray(body.operator.cells)) for body in assembly.bodies[2:]]
-    balls = same_bodies(bodies, azimuth, assembly.starts[2:-1])
-    return rings + [Group(copies, [ball + 2 for ball in members]) for copies, members in balls]
-
-
 def _ring_parts(assembly: Assembly, index: int, azimuth: np.ndarray) -> Copies:
     body, first = assembly.bodies[index], int(assembly.starts[index])
     seat = np.zeros(len(body.points), dtype=bool)
@@ -396,7 +388,10 @@ class ElasticBearing:
             held = np.zeros((len(mesh.points), 3), dtype=bool)
             bodies.append(Body(name, HexOperator(mesh.points, mesh.cells, *setup.balls, *self._formulation), held))
         assembly = Assembly(bodies)
-        assembly.groups = _equal_parts(assembly, setup.azimuth)
+        rings = [Group(_ring_parts(assembly, index, setup.azimuth), [index]) for index in (0, 1)]
+        parts = [(body.points, np.asarray(body.operator.cells)) for body in assembly.bodies[2:]]
+        balls = same_bodies(parts, setup.azimuth, assembly.starts[2:-1])  # supports are equal, too
+        assembly.groups = rings + [Group(copies, [ball + 2 for ball in members]) for copies, members in balls]
         if setup.caged:
             assembly.hold(self._cage(assembly))
         self._mass = [assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]] for k in range(self.ball_count)]

@@ -266,7 +266,9 @@ def factored(
     waiting: dict[int, tuple[np.ndarray, np.ndarray]] = {}
     fronts: list[_Front] = []
     count = len(dissection.domains)
-    work = np.cumsum([_operations(domain) for domain in dissection.domains]).tolist()
+    sizes = [(3 * len(domain.inner), 3 * len(domain.border)) for domain in dissection.domains]
+    # Millions of multiplications that each front takes.
+    work = np.cumsum([int(1e-6 * (s**3 / 3 + s * s * b + s * b * b)) + 1 for s, b in sizes]).tolist()
     for number, domain in enumerate(dissection.domains):
         inner, border = _unknowns(domain.inner, free), _unknowns(domain.border, free)
         s, size = len(inner), len(inner) + len(border)
@@ -290,12 +292,6 @@ def factored(
 def _unknowns(nodes: np.ndarray, free: np.ndarray) -> np.ndarray:
     unknowns = of_nodes(nodes)
     return unknowns[free[unknowns]]
-
-
-def _operations(domain: _Domain) -> int:
-    """Millions of multiplications that a front takes."""
-    s, b = 3 * len(domain.inner), 3 * len(domain.border)
-    return int(1e-6 * (s**3 / 3 + s * s * b + s * b * b)) + 1
 
 
 def _eliminate(front: np.ndarray, s: int, inner: np.ndarray, border: np.ndarray, fronts: list[_Front]) -> np.ndarray:

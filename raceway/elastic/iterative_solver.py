@@ -118,7 +118,11 @@ def nodal_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assembly)
             middle = 0.5 * g.pitch_diameter * s.radial(k)
             points = surface_points(ball.points, ball.facet_nodes("surface"), middle)
             side = (points.place - middle) @ s.line(k, g.contact_angle)
-            points = _near(points, (side < 0.0) == (race == 0), surface, reach)
+            # Whole facets, four points each, on the race's side of the ball, whose gap in the groove is small.
+            x, radius = points.place[:, 0] - surface[1], np.hypot(points.place[:, 1], points.place[:, 2])
+            small = surface[5] - np.hypot(x, radius - surface[4]) < reach
+            near = (((side < 0.0) == (race == 0)) & small).reshape(-1, 4).any(axis=1)
+            points = points[np.repeat(near, 4)]
             points = SurfacePoints(points.place, points.area, points.nodes + assembly.starts[k + 2], points.weights)
             pairs.append(Pair(f"ball {k}, {word} race", points, surface, facets, int(assembly.starts[race])))
     pair = np.repeat(np.arange(len(pairs)), [len(p.points.area) for p in pairs])
@@ -225,14 +229,6 @@ def _sticking(setup: BearingData, area: np.ndarray) -> np.ndarray:
     return 2.0 * (1.0 - nu) / (2.0 - nu) * penalty_stiffness(setup.modulus, 2.0 * np.sqrt(area))
 
 
-def _near(points: SurfacePoints, side: np.ndarray, surface: np.ndarray, reach: float) -> SurfacePoints:
-    """Points on one side of the ball whose gap in the groove is below ``reach`` [m]; whole facets, four points each."""
-    x, radius = points.place[:, 0] - surface[1], np.hypot(points.place[:, 1], points.place[:, 2])
-    gap = surface[5] - np.hypot(x, radius - surface[4])
-    near = (side & (gap < reach)).reshape(-1, 4).any(axis=1)
-    return points[np.repeat(near, 4)]
-
-
 #: Iterations after which a solve gives up, and after which the multigrid is made anew for the next one.
 MOST_ITERATIONS, _MANY_ITERATIONS = 600, 300
 #: Iterations of a solve with factors that still fit, and how many more all solves together may take before new factors pay.
@@ -280,9 +276,10 @@ class LinearSolver:
         # Factors hold the contacts' stiffness of when they were made, unless whole contacts are added to them.
         aged = isinstance(self._multigrid, _Factorised) and self._whole is None
         stale = stale or aged and self._extra > _WORTH_FACTORS
+        length = float(np.cbrt(a.free_mass.max() / a.bodies[0].operator.density))
         heavier = (
             abs(np.log((ratio + 1e-300) / (self._built + 1e-300))) > np.log(_OTHER_MASS)
-            and max(ratio, self._built) * a.free_mass.max() > 1e-3 * self.modulus * self._length()
+            and max(ratio, self._built) * a.free_mass.max() > 1e-3 * self.modulus * length
         )
         if stale or heavier:
             self._make(c_k, c_m)
@@ -299,10 +296,6 @@ class LinearSolver:
     def forget(self) -> None:
         """The next solve makes its multigrid anew."""
         self._multigrid = None
-
-    def _length(self) -> float:
-        a = self.assembly
-        return float(np.cbrt(a.free_mass.max() / a.bodies[0].operator.density))
 
     def _make(self, c_k: float, c_m: float) -> None:
         a, contact = self.assembly, self.contact

@@ -125,7 +125,9 @@ def sectors(points: np.ndarray, cells: np.ndarray, azimuth: np.ndarray, marks: n
     for k in range(count):
         distance, nodes[k] = tree.query(points[nodes_of_sector] @ turns[k].T)
         rows = np.sort(nodes[k][local], axis=1), np.sort(numbers[sector == k], axis=1)
-        if distance.max() > SAME * size or (marks[nodes[k]] != marks[nodes_of_sector]).any() or not _same_rows(*rows):
+        image, original = (each[np.lexsort(each.T)] for each in rows)
+        other = (marks[nodes[k]] != marks[nodes_of_sector]).any() or not np.array_equal(image, original)
+        if distance.max() > SAME * size or other:
             return None
     before = np.flatnonzero(np.isin(nodes[0], nodes[-1]))
     # The image of a node of the first cut plane is that node's copy in the next sector, which this sector shares.
@@ -141,10 +143,6 @@ def _cut(away: np.ndarray, step: float) -> float:
     places = np.unique(np.round(np.mod(away, step) / step, 9)) * step
     between = 0.5 * (places + np.append(places[1:], places[0] + step))
     return float(between[np.argmin(np.abs(between - 0.5 * step))])
-
-
-def _same_rows(first: np.ndarray, second: np.ndarray) -> bool:
-    return np.array_equal(first[np.lexsort(first.T)], second[np.lexsort(second.T)])
 
 
 #: Called with the work done and that of all.

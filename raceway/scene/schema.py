@@ -29,7 +29,13 @@ def scene_schema(registry: Registry | None = None) -> Tables:
     tables: Tables = {"title": {"type": "string", "minLength": 1, "description": "for people and folder names"}}
     for name, cls in TABLES.items():
         if name not in PLUGIN_TABLES:
-            tables[name] = _bearing(cls) if name == "bearing" else _table(cls)
+            tables[name] = _table(cls)
+    # Geometry is required unless a preset gives it.
+    bearing = tables["bearing"]
+    bearing["anyOf"] = [{"required": ["preset"]}, {"required": bearing.pop("required")}]
+    bearing["properties"]["preset"]["enum"] = list(catalogue())
+    for part in ("rings", "balls"):
+        bearing["properties"][part]["properties"]["material"]["enum"] = list(materials())
     for name, (kind, default) in PLUGIN_TABLES.items():
         tables[name] = _plugin_table(name, kind, default, registry)
     for name, cls in STUDY_TABLES.items():
@@ -56,16 +62,6 @@ def _table(cls: type) -> Tables:
         "required": [field.name for field in fields if field.default is attrs.NOTHING],
         "additionalProperties": False,
     }
-
-
-def _bearing(cls: type) -> Tables:
-    """Geometry is required unless a preset gives it."""
-    table = _table(cls)
-    table["anyOf"] = [{"required": ["preset"]}, {"required": table.pop("required")}]
-    table["properties"]["preset"]["enum"] = list(catalogue())
-    for part in ("rings", "balls"):
-        table["properties"][part]["properties"]["material"]["enum"] = list(materials())
-    return table
 
 
 def _plugin_table(name: str, kind: str, default: str | None, registry: Registry) -> Tables:

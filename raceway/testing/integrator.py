@@ -152,7 +152,10 @@ class IntegratorSuite(Suite):
     def test_steady_motion(self, method: Integrator) -> str:
         system = linear_system()
         record = integrate(method, system, motion(system, np.zeros(5), np.zeros(5)), Schedule(_TURN / 36, 36, 1))
-        amplitudes = _closed_form(system)
+        free, force = np.flatnonzero(system.free > 0.0), system.outer_force(0.0) - 1j * system.outer_force(0.25 * _TURN)
+        dynamic = system.stiffness - SPEED**2 * system.mass + 1j * SPEED * system.damping
+        amplitudes = np.zeros(5, dtype=complex)  # of the displacement Re(x e^(j w t))
+        amplitudes[free] = np.linalg.solve(dynamic[np.ix_(free, free)], force[free])
         off = record.displacement - (np.exp(1j * SPEED * record.time)[:, None] * amplitudes).real
         linear = _within(np.abs(off).max() / np.abs(amplitudes).max(), _stated_error(record), "the closed form")
         # A mass pushed to and fro on a Hertzian contact, against an integration that begins at the record's end.
@@ -358,16 +361,6 @@ def _stated_error(record: Record) -> float:
     error = record.counts.get("error")
     require(isinstance(error, float) and np.isfinite(error) and error >= 0.0, f"counts['error'] = {error!r} is no error")
     return float(error)  # type: ignore[arg-type]
-
-
-def _closed_form(system: System) -> np.ndarray:
-    """(5,) complex amplitudes x of the displacement Re(x e^(j w t))."""
-    free = np.flatnonzero(system.free > 0.0)
-    force = system.outer_force(0.0) - 1j * system.outer_force(0.25 * _TURN)
-    dynamic = system.stiffness - SPEED**2 * system.mass + 1j * SPEED * system.damping
-    amplitudes = np.zeros(5, dtype=complex)
-    amplitudes[free] = np.linalg.solve(dynamic[np.ix_(free, free)], force[free])
-    return amplitudes
 
 
 def _within(off: float, stated: float, word: str) -> str:
