@@ -2,6 +2,7 @@ PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
 SCENE  ?= examples/b7206.toml
+PACKAGES := $(wildcard ./packages/*)
 INSTALL = $(BIN)/python -m pip install -q -c constraints.txt
 
 # What a bare Debian lacks for gmsh (linked), pyvista (opened at run time, without a display), the tests of pages (a browser)
@@ -62,20 +63,22 @@ $(VENV)/.base: $(VENV)/.python pyproject.toml constraints.txt
 	$(INSTALL) -e .
 	touch $@
 
-$(VENV)/.all: $(VENV)/.python pyproject.toml constraints.txt
-	@echo "installing with all extras into $(VENV): two minutes or more, 1.6 GB"
-	$(INSTALL) -e '.[all]'
+$(VENV)/.all: $(VENV)/.python pyproject.toml constraints.txt $(wildcard packages/*/pyproject.toml)
+	@echo "installing with all packages into $(VENV): two minutes or more, 1.6 GB"
+	$(INSTALL) hatchling editables
+	$(INSTALL) --no-build-isolation -e '.[pictures,sweep,elastic,dev]' $(addprefix -e ,$(PACKAGES))
 	touch $@ $(VENV)/.base
 
-$(VENV)-docs/.installed: $(VENV)/.python pyproject.toml constraints.txt
+$(VENV)-docs/.installed: $(VENV)/.python pyproject.toml constraints.txt $(wildcard packages/*/pyproject.toml)
 	@echo "installing Sphinx and ROSS into $(VENV)-docs: some minutes, 2.1 GB, most of it what ROSS needs"
 	$(PYTHON) -m venv $(VENV)-docs
-	$(VENV)-docs/bin/python -m pip install -q -c constraints.txt -e '.[sweep,view,ross,docs]' pytest
+	$(VENV)-docs/bin/python -m pip install -q -c constraints.txt -e '.[pictures,sweep,docs]' $(addprefix -e ,$(PACKAGES)) -e './packages/raceway-rotor[ross]' pytest
 	touch $@
 
 constraints: $(VENV)/.python ## constraints.txt, kept where pyproject.toml allows; UPGRADE=--upgrade takes the newest versions
 	$(BIN)/python -m pip install -q uv
-	$(BIN)/uv pip compile -q $(UPGRADE) --universal --python-version 3.11 --extra all --extra docs --no-annotate --custom-compile-command 'make constraints' -o constraints.txt pyproject.toml
+	printf '%s\n' '.[pictures,sweep,elastic,dev,docs]' $(PACKAGES) | $(BIN)/uv pip compile -q $(UPGRADE) --universal --python-version 3.11 --no-annotate --custom-compile-command 'make constraints' - | grep -v '^\./\|^\.\[' > constraints.new
+	mv constraints.new constraints.txt
 
 apt-line: ## what installs the system libraries that some tests need, as root on Debian
 	@echo $(APT_LINE)

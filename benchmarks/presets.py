@@ -9,14 +9,14 @@ from math import pi
 from pathlib import Path
 
 import attrs
+from raceway_catalogue.deep_groove import GROOVES
+from raceway_catalogue.infer import _sizes_of
+from raceway_catalogue.inferred import Inferred, infer_printed
+from raceway_catalogue.printed import printed_by
+from raceway_catalogue.rating_conventions import CONFORMITY, POISSON, YOUNG
 
 from raceway.errors import SceneError
 from raceway.scene.clearance import clearance_range
-from raceway.studies.catalogue.deep_groove import GROOVES
-from raceway.studies.catalogue.infer import _sizes_of
-from raceway.studies.catalogue.inferred import Inferred, infer_printed
-from raceway.studies.catalogue.printed import printed_by
-from raceway.studies.catalogue.rating_conventions import CONFORMITY, POISSON, YOUNG
 
 FOLDER = Path(__file__).resolve().parents[1] / "raceway" / "data" / "series"
 SERIES = ("70", "72", "79")

@@ -1,4 +1,4 @@
-"""A rotor in ROSS on two B7206C, as stiff as its own unbalance finds them: pip install '.[ross]', python examples/ross_rotor.py."""
+"""A rotor in ROSS on two B7206C, as stiff as its own unbalance finds them: pip install './packages/raceway-rotor[ross]', python examples/ross_rotor.py."""
 
 import sys
 

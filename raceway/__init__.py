@@ -2,9 +2,9 @@
 
 cli            the command line: ``raceway``
 ross           bearings inside rotors of the program ROSS
-studies        many runs made into one answer, a folder a study, each with its command
 points         one scene at many points: sweeps, comparisons, precision, bands, branches
 out            how an answer is shown: tables, pages, progress
+extend         names for packages and plug-ins beside those below
 testing        conformance suites for plug-ins; the scaffold of a new one
 pipeline       one run: equilibrium, motion, identification, error, result
 bodies         rings and balls: rigid, condensed or elastic; from scene and plan to a model
@@ -52,8 +52,26 @@ Examples
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from lazy_loader import attach_stub
 
 __version__ = "0.2.0"
 
-__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
+_own, _, _names = attach_stub(__name__, str(Path(__file__).with_name("names.pyi")))
+
+
+def __getattr__(name: str) -> object:
+    """A public name, of this package or of one that is installed beside it."""
+    if name in _names:
+        return _own(name)
+    if name.startswith("_") and name != "__all__":
+        raise AttributeError(f"module 'raceway' has no attribute '{name}'")
+    from raceway.framework.packages import further_name, public_names
+
+    return sorted([*_names, *public_names()]) if name == "__all__" else further_name(name)
+
+
+def __dir__() -> list[str]:
+    names: list[str] = __getattr__("__all__")  # type: ignore[assignment]
+    return names

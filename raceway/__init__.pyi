@@ -1,67 +1,78 @@
-"""The public list: names and the modules that define them, imported when they are first used."""
+"""Every public name, of ``raceway`` (names.pyi) and of its packages: made by ``python -m benchmarks.documents``."""
 
 __version__: str
 
 from .bodies.model import build_model as build_model
-from .cli.command import Command as Command, Option as Option
+from .cli.command import Command as Command
+from .cli.command import Option as Option
 from .core.jit import jit as jit
-from .core.signatures import FORCE as FORCE, LAW as LAW
-from .errors import (
-    BeyondPlanError as BeyondPlanError,
-    ConvergenceError as ConvergenceError,
-    MeshError as MeshError,
-    Mistake as Mistake,
-    PluginError as PluginError,
-    RacewayError as RacewayError,
-    SceneError as SceneError,
-    StabilityError as StabilityError,
-)
+from .core.signatures import FORCE as FORCE
+from .core.signatures import LAW as LAW
+from .errors import BeyondPlanError as BeyondPlanError
+from .errors import ConvergenceError as ConvergenceError
+from .errors import MeshError as MeshError
+from .errors import Mistake as Mistake
+from .errors import PluginError as PluginError
+from .errors import RacewayError as RacewayError
+from .errors import SceneError as SceneError
+from .errors import StabilityError as StabilityError
 from .framework.doors import door as door
 from .framework.hookspecs import hookimpl as hookimpl
-from .framework.options import (
-    above as above,
-    at_least as at_least,
-    between as between,
-    finite as finite,
-    inside as inside,
-    length as length,
-    one_of as one_of,
-    option as option,
-    optional as optional,
-    positive as positive,
-    word_or as word_or,
-    worded as worded,
-)
+from .framework.options import above as above
+from .framework.options import at_least as at_least
+from .framework.options import between as between
+from .framework.options import finite as finite
+from .framework.options import inside as inside
+from .framework.options import length as length
+from .framework.options import one_of as one_of
+from .framework.options import option as option
+from .framework.options import optional as optional
+from .framework.options import positive as positive
+from .framework.options import word_or as word_or
+from .framework.options import worded as worded
 from .out.answer import Answer as Answer
 from .out.quantities import Quantity as Quantity
 from .pipeline.front import run as run
 from .pipeline.result import Result as Result
-from .planning.plan import Check as Check, ScenePlan as ScenePlan, check as check, make_plan as make_plan, plan as plan
-from .points.band import Band as Band, band as band
+from .planning.plan import Check as Check
+from .planning.plan import ScenePlan as ScenePlan
+from .planning.plan import check as check
+from .planning.plan import make_plan as make_plan
+from .planning.plan import plan as plan
+from .points.band import Band as Band
+from .points.band import band as band
 from .points.branch import Followed as Followed
-from .points.compare import Comparison as Comparison, compare as compare
+from .points.compare import Comparison as Comparison
+from .points.compare import compare as compare
 from .points.follow import follow as follow
-from .points.function import Function as Function, PointStatus as PointStatus, function as function
-from .points.law import LawCurves as LawCurves, law as law
-from .points.precision import Precision as Precision, precision as precision
-from .points.sensitivities import Sensitivities as Sensitivities, sensitivities as sensitivities
+from .points.function import Function as Function
+from .points.function import PointStatus as PointStatus
+from .points.function import function as function
+from .points.law import LawCurves as LawCurves
+from .points.law import law as law
+from .points.precision import Precision as Precision
+from .points.precision import precision as precision
+from .points.sensitivities import Sensitivities as Sensitivities
+from .points.sensitivities import sensitivities as sensitivities
 from .points.sweep import sweep as sweep
 from .scene.catalogue import Preset as Preset
-from .scene.inputs import evolve as evolve, load_scene as load_scene
+from .scene.inputs import evolve as evolve
+from .scene.inputs import load_scene as load_scene
 from .scene.reading import scene_from_dict as scene_from_dict
 from .scene.scene import Scene as Scene
-from .studies.app.server import app as app
-from .studies.catalogue.catalogue import catalogue as catalogue
-from .studies.catalogue.infer import infer as infer
-from .studies.catalogue.inferred import Inferred as Inferred
-from .studies.fit.fit import fit as fit
-from .studies.fit.fitted import Fitted as Fitted
-from .studies.fit.identify import Identified as Identified, identify as identify
-from .studies.fmu.export import FMU as FMU, export_fmu as export_fmu
-from .studies.rotor.export import (
-    CoefficientFile as CoefficientFile,
-    RossTable as RossTable,
-    export_coefficients as export_coefficients,
-    export_ross as export_ross,
-)
-from .studies.view.view import View as View, view as view
+from raceway_rotor.export import CoefficientFile as CoefficientFile
+from raceway_fmu.export import FMU as FMU
+from raceway_measure.fit.fitted import Fitted as Fitted
+from raceway_measure.fit.identify import Identified as Identified
+from raceway_catalogue.inferred import Inferred as Inferred
+from raceway_rotor.export import RossTable as RossTable
+from raceway_view.view import View as View
+from raceway_app.server import app as app
+from raceway_catalogue.catalogue import catalogue as catalogue
+from raceway_rotor.export import export_coefficients as export_coefficients
+from raceway_fmu.export import export_fmu as export_fmu
+from raceway_rotor.export import export_ross as export_ross
+from raceway_measure.fit.fit import fit as fit
+from raceway_measure.fit.identify import identify as identify
+from raceway_catalogue.infer import infer as infer
+from raceway_view.view import view as view

@@ -60,8 +60,10 @@ class RacewayError(Exception):
 
 
 def extra(name: str) -> str:
-    """What to type for an extra of this package, which is installed from its sources."""
-    return f"pip install '.[{name}]' in a checkout of Raceway"
+    """What to type for an extra of this package, or for a package "raceway-...", which are installed from their sources."""
+    source = f"./packages/{name}" if name.startswith("raceway-") else f".[{name}]"
+    source = f"'{source}'" if "[" in source else source
+    return f"pip install {source} in a checkout of Raceway"
 
 
 @attrs.frozen

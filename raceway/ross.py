@@ -1,4 +1,4 @@
-"""Bearings under a rotor in ROSS, computed where ROSS asks for them.  Importing it imports ROSS, the extra ``ross``.
+"""Bearings under a rotor in ROSS, computed where ROSS asks for them.  Importing it imports ROSS, in raceway-rotor's extra ``ross``.
 
 RollingBearing            a ``ross.BearingElement`` that computes K and C itself at (frequency, speed)
 run_unbalance_response    ROSS's, with the stiffness that each bearing has at its own motion
@@ -20,7 +20,12 @@ Examples
 
 from __future__ import annotations
 
-from raceway.studies.rotor.bearing import RollingBearing
-from raceway.studies.rotor.responses import UnbalanceResponse, run_time_response, run_unbalance_response
+from raceway.framework.packages import further_name
 
-__all__ = ["RollingBearing", "UnbalanceResponse", "run_time_response", "run_unbalance_response"]
+__all__ = ["RollingBearing", "UnbalanceResponse", "run_time_response", "run_unbalance_response"]  # noqa: F822
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"module 'raceway.ross' has no attribute '{name}'")
+    return further_name(f"ross.{name}")

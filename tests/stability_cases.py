@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 
-from raceway.studies.stability.study import Limit
+from raceway_checks.stability.study import Limit
 
 
 def hang(rows, bench):

@@ -8,23 +8,15 @@ import re
 
 import attrs
 import pytest
+from raceway_article import study as driver
+from raceway_article.design import ARTICLE, FRICTIONS, ROTATING, Setting, _shaft_tilt_stiffness, article_tables, design
+from raceway_article.figures import Picture, drawings
+from raceway_article.page import page
 
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import default_registry
 from raceway.points.attractor import FAILED, Attractor
 from raceway.scene.inputs import read_toml
-from raceway.studies.article import study as driver
-from raceway.studies.article.design import (
-    ARTICLE,
-    FRICTIONS,
-    ROTATING,
-    Setting,
-    _shaft_tilt_stiffness,
-    article_tables,
-    design,
-)
-from raceway.studies.article.figures import Picture, drawings
-from raceway.studies.article.page import page
 from tests.test_commands import SMALL
 from validation.article_study import curves, row, study
 from validation.command_line import EXAMPLES, invoke

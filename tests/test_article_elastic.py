@@ -9,14 +9,14 @@ import re
 import tomllib
 
 import pytest
+from raceway_article import elastic
+from raceway_article.elastic import SCENE, _Design, _Run, design
+from raceway_article.elastic_page import drawings, page
 
 import raceway as rw
 from raceway import ConvergenceError, SceneError
 from raceway.out.progress import RemainingTime
 from raceway.scene.inputs import read_toml
-from raceway.studies.article import elastic
-from raceway.studies.article.elastic import SCENE, _Design, _Run, design
-from raceway.studies.article.elastic_page import drawings, page
 from raceway.testing import default_registry
 from validation.article_study import elastic_rows, elastic_study
 from validation.command_line import EXAMPLES, invoke

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from raceway_article import claims
+from raceway_article.claims import _exponent, _judge, _where, verdicts
+from raceway_article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding
 
-from raceway.studies.article import claims
-from raceway.studies.article.claims import _exponent, _judge, _where, verdicts
-from raceway.studies.article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding
 from validation.article_study import curves, static
 
 W = np.linspace(0.0, 1.0, 9)

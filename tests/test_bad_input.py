@@ -84,13 +84,8 @@ def test_a_mistake_in_a_scene(case):
 
 def test_several_mistakes_are_told_together():
     changes = [
-        "load.axial=nan",
-        "bearing.ball_count=12.7",
-        "contact.kind=hrtz",
-        "integrator.turnz=3",
-        "nothing",
-        "rotor.mass=-1",
-    ]
+        "load.axial=nan", "bearing.ball_count=12.7", "contact.kind=hrtz", "integrator.turnz=3", "nothing", "rotor.mass=-1",
+    ]  # fmt: skip
     found = invoke("run", ARTICLE, *(word for change in changes for word in ("--set", change)), "--json")
     assert found.exit_code == 2
     paths = [error["path"] for error in json.loads(found.stdout)["errors"]]

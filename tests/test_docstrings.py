@@ -19,8 +19,9 @@ ROOT = Path(__file__).resolve().parents[1]
 
 @attrs.frozen
 class Source:
-    """A module: its path below the package's folder, text and syntax tree."""
+    """A module: its place, its path below ``raceway`` or beside it, text and syntax tree."""
 
+    place: Path
     path: Path
     text: str
     tree: ast.Module
@@ -50,10 +51,13 @@ class Source:
 
 def source(path: Path) -> Source:
     text = path.read_text(encoding="utf-8")
-    return Source(path.relative_to(ROOT / "raceway"), text, ast.parse(text))
+    own = ROOT / "raceway"
+    beside = ROOT.joinpath(*path.relative_to(ROOT).parts[:2])
+    return Source(path, path.relative_to(own if path.is_relative_to(own) else beside), text, ast.parse(text))
 
 
-MODULES = [source(path) for path in sorted((ROOT / "raceway").rglob("*.py"))]
+PATHS = [*sorted((ROOT / "raceway").rglob("*.py")), *sorted(ROOT.glob("packages/*/raceway_*/**/*.py"))]
+MODULES = [source(path) for path in PATHS]
 WORDS = {module.path.as_posix(): module.words for module in MODULES}
 #: In a docstring: ``word``, ``module.name``.
 NAME = re.compile(r"``([A-Za-z_]\w*(?:\.\w+)*)``")
@@ -94,11 +98,9 @@ def test_a_package_lists_its_modules_once_each_and_names_what_is_in_it(module):
     folder, text = module.path.parent, module.docstrings[0]
     listed = Counter(name for heads in ENTRY.findall(text) for name in "".join(heads).split(", "))
     present = {
-        path.stem
-        for path in (ROOT / "raceway" / folder).iterdir()
-        if path.suffix == ".py" or (path / "__init__.py").exists()
+        path.stem for path in module.place.parent.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()
     }
-    public = {"data", *raceway.__all__} if folder == Path() else set()
+    public = {"data", *raceway.__all__} if folder == Path() else {"data"}
     assert set(listed) - public == present - {"__init__", "__main__"} and max(listed.values()) == 1
     own = set().union(*(words for path, words in WORDS.items() if Path(path).parent == folder), raceway.__all__)
     names = [name for name in NAME.findall(text) if not name.startswith("raceway.")]

@@ -36,8 +36,8 @@ NOT_RUN = {
     ".venv/bin/pip install '.[pictures]'": _ENVIRONMENT,
     "pip install '.[sweep]'": _ENVIRONMENT,
     ".venv/bin/pip install '.[sweep]'": _ENVIRONMENT,
-    ".venv/bin/pip install '.[all]'": _ENVIRONMENT,
-    "python -m venv .venv-ross && .venv-ross/bin/pip install -e '.[sweep,ross]'": _ENVIRONMENT,
+    ".venv/bin/pip install . ./packages/*": _ENVIRONMENT,
+    "python -m venv .venv-ross && .venv-ross/bin/pip install -e '.[sweep]' -e './packages/raceway-rotor[ross]'": _ENVIRONMENT,
     "RACEWAY_ROSS_PYTHON=.venv-ross/bin/python .venv/bin/python -m pytest --evidence tests/evidence/test_ross.py": "writes a report of this checkout",
     ".venv/bin/python -m benchmarks.documents": "writes documents of this checkout; benchmarks/tests compare them",
     ".venv/bin/python -m pytest --evidence tests/evidence/test_NAME.py": "writes a report of this checkout",
@@ -59,21 +59,9 @@ NOT_RUN = {
 }
 #: Pages of more than some seconds; their commands run with the slow tests.
 SLOW = {
-    "CONTRIBUTING",
-    "article",
-    "cluster",
-    "coefficients",
-    "compare",
-    "elastic",
-    "fit",
-    "identify",
-    "map",
-    "mesh",
-    "nodal_contact",
-    "plotting",
-    "precision",
-    "rig",
-}
+    "CONTRIBUTING", "article", "cluster", "coefficients", "compare", "elastic", "fit", "identify", "map", "mesh",
+    "nodal_contact", "plotting", "precision", "rig",
+}  # fmt: skip
 SLOW |= {"film", "fit", "follow", "measurements", "ross", "sensitivities", "stability", "sweep", "view", "warm_spindle"}
 #: Listings of Python in other hands: tests/test_docs.py; ROSS is in the environment of make docs, whose tutorial does the same.
 ELSEWHERE = {"plugins": "", "ross": "ross"}

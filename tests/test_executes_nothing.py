@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from raceway_meshing.gmsh import Gmsh
 
 from raceway import load_scene
-from raceway.plugins.gmsh import Gmsh
 from tests.mesh.solids import write
 from validation.command_line import EXAMPLES, invoke, python
 

@@ -13,20 +13,7 @@ from raceway.scene.lubricant import GRADES, Walther, _mineral_thinning, pressure
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.testing import run
 from raceway.testing.contact_law import _example_pairs
-from validation.film import (
-    MEASURED,
-    OIL,
-    ROLLED,
-    SPINDLE,
-    inlet_film,
-    pair,
-    preload_by_hand,
-    regimes,
-    rolled,
-    rolled_by_regime,
-    scene,
-    springs,
-)
+from validation import film as published
 
 DRY_LAW = {"kind": "hertz"}
 
@@ -34,7 +21,7 @@ DRY_LAW = {"kind": "hertz"}
 def refused(contact, **tables):
     """What is said of a scene that cannot run."""
     with pytest.raises(rw.SceneError) as told:
-        make_plan(scene(contact, **tables))
+        make_plan(published.scene(contact, **tables))
     return str(told.value)
 
 
@@ -44,7 +31,7 @@ def test_thickness_is_that_of_the_formulas_written_out():
     modulus, along, across, k = np.full(n, 2.3e11), np.full(n, 4e-3), np.full(n, 0.1), rng.uniform(1.0, 9.0, n)
     found = film(viscous, 2e-8, modulus, along, across, load, k)
     for i in range(n):
-        each = regimes(viscous[i] / (2.3e11 * 4e-3), 2e-8 * 2.3e11, load[i] / (2.3e11 * 4e-3**2), k[i], 25.0)
+        each = published.regimes(viscous[i] / (2.3e11 * 4e-3), 2e-8 * 2.3e11, load[i] / (2.3e11 * 4e-3**2), k[i], 25.0)
         best = max(range(4), key=lambda one: each[one][1])
         assert found.regime[i] == best
         # Both are a few powers in double precision.
@@ -52,17 +39,17 @@ def test_thickness_is_that_of_the_formulas_written_out():
 
 
 def test_a_printed_exercise_comes_out_where_its_regime_holds():
-    slow, fast = (film(**rolled(path)) for path, _ in ROLLED)
-    assert f"{1e6 * slow.minimum[0]:.3f}" == ROLLED[0][1]
+    slow, fast = (film(**published.rolled(path)) for path, _ in published.ROLLED)
+    assert f"{1e6 * slow.minimum[0]:.3f}" == published.ROLLED[0][1]
     # The exercise does not ask which regime holds; after 1 m it is another one, whose film is thicker than its answer.
     assert [REGIMES[one.regime[0]] for one in (slow, fast)] == ["piezoviscous-elastic", "isoviscous-rigid"]
-    assert f"{1e6 * fast.minimum[0]:.3f}" == "0.626" != ROLLED[1][1] == f"{rolled_by_regime(1.0)[0]:.3f}"
+    assert f"{1e6 * fast.minimum[0]:.3f}" == "0.626" != published.ROLLED[1][1] == f"{published.rolled_by_regime(1.0)[0]:.3f}"
 
 
 def test_the_heat_of_the_inlet_is_that_of_the_equations_it_was_fitted_to():
     """A fit "with sufficient accuracy for design use": 15 %."""
     for loading in (0.1, 1.0, 12.0, 100.0):
-        assert float(thermal_reduction(loading)) == pytest.approx(inlet_film(loading), rel=0.15)
+        assert float(thermal_reduction(loading)) == pytest.approx(published.inlet_film(loading), rel=0.15)
     # Textbooks print it as 3.94 / (3.94 + L^0.62), to three digits.
     assert float(thermal_reduction(7.0)) == pytest.approx(3.94 / (3.94 + 7.0**0.62), rel=1e-3)
     assert float(thermal_reduction(0.0)) == 1.0
@@ -94,7 +81,7 @@ def test_the_heat_of_the_inlet_takes_about_half_of_the_preload_that_a_film_gives
         found = run(
             rw.Scene.from_dict(
                 {
-                    "bearing": SPINDLE,
+                    "bearing": published.SPINDLE,
                     "contact": law,
                     "kinematics": {"spin_speed_rpm": 18000.0, "gyroscopic": "none", "ring_growth": False},
                 }
@@ -102,7 +89,7 @@ def test_the_heat_of_the_inlet_takes_about_half_of_the_preload_that_a_film_gives
         )
         return found.to_dict()["equilibrium"], found.warnings
 
-    dry, cold, hot = (running(law) for law in (DRY_LAW, {**OIL, "inlet_heating": "none"}, OIL))
+    dry, cold, hot = (running(law) for law in (DRY_LAW, {**published.OIL, "inlet_heating": "none"}, published.OIL))
     loads = [equilibrium["preload"]["running_n"] for equilibrium, _ in (dry, cold, hot)]
     # 1001 and 1666 N were found by independent solvers; "about half" of the gain.
     assert loads[:2] == pytest.approx([1001.0, 1666.0], abs=1.0)
@@ -111,7 +98,7 @@ def test_the_heat_of_the_inlet_takes_about_half_of_the_preload_that_a_film_gives
     assert hot[0]["law"]["inlet_heating"] == "murch_wilson" and without["inner_film_thermal_reduction"] == 1.0
     reduced = ball["inner_film_thermal_reduction"] * ball["inner_film_isothermal_m"]
     assert ball["inner_film_central_m"] == pytest.approx(reduced, rel=1e-12)
-    by_hand = {**OIL, "temperature_viscosity": 0.035, "conductivity": 0.14}
+    by_hand = {**published.OIL, "temperature_viscosity": 0.035, "conductivity": 0.14}
     # L = 0.035 * 0.0278 * 41.9^2 / 0.14 = 12.2
     assert running(by_hand)[0]["balls"][0]["inner_film_thermal_reduction"] == pytest.approx(
         3.94 / (3.94 + 12.2**0.62), abs=5e-3
@@ -125,14 +112,16 @@ def test_the_heat_of_the_inlet_takes_about_half_of_the_preload_that_a_film_gives
 
 def test_what_a_film_adds_to_hertz_is_no_error():
     """At 300 N and 18 000 r/min films are as thick as the elastic approach: a regime of the law, which says nothing against K."""
-    spring = {**SPINDLE, "preload_kind": "spring"}
-    found = run(rw.Scene.from_dict({"bearing": spring, "contact": OIL, "kinematics": {"spin_speed_rpm": 18000.0}}))
+    spring = {**published.SPINDLE, "preload_kind": "spring"}
+    found = run(rw.Scene.from_dict({"bearing": spring, "contact": published.OIL, "kinematics": {"spin_speed_rpm": 18000.0}}))
     assert found.error["contact"] is None and "no error" in found.error["how"]["contact"] and not found.error["unresolved"]
 
 
 def test_slow_bearings_have_no_warning_of_their_film():
     assert not [
-        one for one in run(scene({**OIL, "roughness": None}, excitation={"speed_rpm": 1000.0})).warnings if "film" in one
+        one
+        for one in run(published.scene({**published.OIL, "roughness": None}, excitation={"speed_rpm": 1000.0})).warnings
+        if "film" in one
     ]
 
 
@@ -157,14 +146,16 @@ def test_oils_by_name_have_a_viscosity_index_of_95(oil):
 
 
 def test_the_rule_for_the_pressure_viscosity_coefficient_moves_films_by_less_than_a_fifth():
-    for viscosities, coefficients in MEASURED:
+    for viscosities, coefficients in published.MEASURED:
         for viscosity, alpha in zip(viscosities, coefficients, strict=True):
             if alpha is not None:
                 assert 0.8 < (pressure_viscosity(1e-3 * viscosity) / (1e-9 * alpha)) ** 0.53 < 1.25
 
 
 def test_without_viscosity_a_film_is_the_dry_law():
-    wet, dry = (run(scene(law, load={"radial": [200.0, 0.0]})) for law in ({"kind": "film", "viscosity": 1e-30}, DRY_LAW))
+    wet, dry = (
+        run(published.scene(law, load={"radial": [200.0, 0.0]})) for law in ({"kind": "film", "viscosity": 1e-30}, DRY_LAW)
+    )
     # The film is thinner than the rounding of every length that it is added to.
     assert np.abs(wet.displacement - dry.displacement).max() <= 1e-12 * np.abs(dry.displacement).max()
     assert wet.equivalent_stiffness == pytest.approx(dry.equivalent_stiffness, rel=1e-9)
@@ -172,10 +163,10 @@ def test_without_viscosity_a_film_is_the_dry_law():
 
 def test_a_rigid_mounting_gains_the_preload_of_the_film_and_a_sprung_one_none():
     for kind in ("rigid", "spring"):
-        found = run(pair(OIL, kind, 10000.0))
+        found = run(published.pair(published.OIL, kind, 10000.0))
         table, basis = found.to_dict()["equilibrium"], found.model.basis
         films = tuple(table["balls"][0][f"{race}_film_central_m"] for race in ("inner", "outer"))
-        hand = preload_by_hand(1000.0, (basis.inner.factor, basis.outer.factor), films)
+        hand = published.preload_by_hand(1000.0, (basis.inner.factor, basis.outer.factor), films)
         assert hand > 1200.0
         # The hand solves the same closed form; loads and films meet to 1e-11.
         assert table["preload"]["running_n"] == pytest.approx(hand if kind == "rigid" else 1000.0, rel=1e-8)
@@ -185,35 +176,37 @@ def test_the_film_follows_a_speed_that_changes():
     """A run-up's system at a speed is that of a steady scene, but for loads and angles, which move films by 1e-3 or less."""
     up = {"kind": "run_up", "first_speed_rpm": 6000.0, "speed_rpm": 12000.0, "unbalance": 1e-6}
     tables = {
-        "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "contact": OIL, "kinematics": {"ball_inertia": False},
+        "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "contact": published.OIL, "kinematics": {"ball_inertia": False},
     }  # fmt: skip
     changing = rw.Scene.from_dict(
         {**tables, "excitation": {**up, "duration_s": 1.0}, "identifier": {"kind": "order_tracking"}}
     )
     system = rw.build_model(changing).system
-    steady = scene(OIL, kinematics={"ball_inertia": False, "spin_speed_rpm": 6000.0})
+    steady = published.scene(published.OIL, kinematics={"ball_inertia": False, "spin_speed_rpm": 6000.0})
     wanted = rw.build_model(steady).system
     assert system.spin.constants(system, 6000.0 * np.pi / 30.0).reach == pytest.approx(wanted.reach, rel=2e-3)
 
 
-@pytest.mark.parametrize("law", [DRY_LAW, OIL])
+@pytest.mark.parametrize("law", [DRY_LAW, published.OIL])
 def test_damping_is_tau_times_the_stiffness_of_the_springs(law):
     for tau in TIME_CONSTANTS:
-        found = run(scene({**law, "time_constant": tau}, kinematics={"ball_inertia": False}))
+        found = run(published.scene({**law, "time_constant": tau}, kinematics={"ball_inertia": False}))
         # 1e-3: the steps' phase error at the low end; the closed form is that of small motions.
-        assert found.equivalent_damping == pytest.approx(tau * springs(found.model, found.equilibrium), rel=1e-3)
+        assert found.equivalent_damping == pytest.approx(tau * published.springs(found.model, found.equilibrium), rel=1e-3)
 
 
 def test_a_loss_factor_is_w_c_over_the_stiffness_of_the_springs():
     """tau = eta / w: at 12 000 r/min a loss factor of 0.02 is lost of what the contacts' springs take."""
-    found = run(scene({**DRY_LAW, "loss_factor": 0.02}, kinematics={"ball_inertia": False}, identifier={"kind": "tangent"}))
+    found = run(
+        published.scene({**DRY_LAW, "loss_factor": 0.02}, kinematics={"ball_inertia": False}, identifier={"kind": "tangent"})
+    )
     w = 12000.0 * np.pi / 30.0
     # The closed form is that of small motions, which the tangent knows; its dashpot follows the balls to second order in eta.
-    assert found.equivalent_damping * w == pytest.approx(0.02 * springs(found.model, found.equilibrium), rel=1e-3)
+    assert found.equivalent_damping * w == pytest.approx(0.02 * published.springs(found.model, found.equilibrium), rel=1e-3)
 
 
 def test_the_dashpot_is_the_derivative_of_the_force_by_the_rate():
-    one = scene({"kind": "hertz", "time_constant": 1e-5}, kinematics={"ball_inertia": False})
+    one = published.scene({"kind": "hertz", "time_constant": 1e-5}, kinematics={"ball_inertia": False})
     model = rw.build_model(one)
     q, ball, _ = model.system.solve_equilibrium(model.guess)
     v, h = np.array([1e-3, 2e-3, -1e-3, 0.0, 0.0]), 1e-6
@@ -226,7 +219,7 @@ def test_the_dashpot_is_the_derivative_of_the_force_by_the_rate():
 
 
 def test_a_band_has_both_ends_and_its_origin():
-    found = run(scene({"kind": "hertz", "damping": "band"}, kinematics={"ball_inertia": False}))
+    found = run(published.scene({"kind": "hertz", "damping": "band"}, kinematics={"ball_inertia": False}))
     told = found.to_dict()["identification"]
     low, high = told["band"]["equivalent_damping"]
     assert high / low == pytest.approx(10.0, rel=1e-3)
@@ -234,18 +227,18 @@ def test_a_band_has_both_ends_and_its_origin():
     assert "band" in told["damping_origin"]
     losses = np.array([low, high]) * 12000.0 * np.pi / 30.0 / np.array(told["band"]["equivalent_stiffness"])
     assert told["band"]["loss_factor"] == pytest.approx(losses.tolist(), rel=1e-12)
-    alone = run(scene({"kind": "hertz", "time_constant": TIME_CONSTANTS[1]}, kinematics={"ball_inertia": False}))
+    alone = run(published.scene({"kind": "hertz", "time_constant": TIME_CONSTANTS[1]}, kinematics={"ball_inertia": False}))
     errors = told["band"]["equivalent_damping_error"]
     assert errors == [found.equivalent_damping_error, alone.equivalent_damping_error] and errors[0] != errors[1]
-    assert run(scene(DRY_LAW)).to_dict()["identification"]["damping_origin"] == DRY
+    assert run(published.scene(DRY_LAW)).to_dict()["identification"]["damping_origin"] == DRY
 
 
 @pytest.mark.parametrize("tau", [2.5e-5, 1e-4])
 def test_an_explicit_step_is_shortened_by_the_damping(tau):
     contact, kinematics = {"kind": "hertz", "time_constant": tau}, {"ball_inertia": False}
-    found = run(scene(contact, integrator={"kind": "central_difference"}, kinematics=kinematics))
+    found = run(published.scene(contact, integrator={"kind": "central_difference"}, kinematics=kinematics))
     # The error of 1 % allowed; a step that is too long gives C of another size and sign, and does not always end the run.
-    assert found.equivalent_damping == pytest.approx(tau * springs(found.model, found.equilibrium), rel=1e-2)
+    assert found.equivalent_damping == pytest.approx(tau * published.springs(found.model, found.equilibrium), rel=1e-2)
 
 
 @pytest.mark.parametrize(
@@ -270,13 +263,13 @@ def test_mistakes_are_told_with_a_remedy(contact, told):
 
 
 def test_a_film_needs_a_speed_and_bodies_that_renew_laws():
-    assert "needs the running speed" in refused(OIL, kinematics={"spin_speed_rpm": 0.0})
-    assert "rigid or condensed" in refused(OIL, bodies={"kind": "elastic"})
+    assert "needs the running speed" in refused(published.OIL, kinematics={"spin_speed_rpm": 0.0})
+    assert "rigid or condensed" in refused(published.OIL, bodies={"kind": "elastic"})
     assert "rigid or condensed" in refused({"kind": "hertz", "time_constant": 1e-5}, bodies={"kind": "elastic"})
 
 
 def test_boundary_lubrication_is_said():
-    found = run(scene({**OIL, "roughness": 5e-6}))
+    found = run(published.scene({**published.OIL, "roughness": 5e-6}))
     assert any("boundary lubrication" in one for one in found.warnings)
     ball = found.to_dict()["equilibrium"]["balls"][0]
     assert ball["inner_film_parameter"] == pytest.approx(ball["inner_film_minimum_m"] / 5e-6, rel=1e-12)
@@ -296,7 +289,7 @@ def test_a_ball_between_races_of_two_angles_rolls_without_slip_on_both():
 def test_a_film_that_leaves_no_equilibrium_is_told_by_its_law():
     """A film of 0.01 N on twelve balls, h ~ 1/Q^2, is thicker than there is room in the grooves."""
     with pytest.raises(rw.RacewayError, match="contact law 'film' at the running speed: .*Raise the load, lower the speed"):
-        run(scene(OIL, load={"axial": 0.01}, excitation={"force": 1e-3}))
+        run(published.scene(published.OIL, load={"axial": 0.01}, excitation={"force": 1e-3}))
 
 
 def test_film_parameters_are_quantities_of_any_scene_with_an_oil():

@@ -5,19 +5,19 @@ import json
 import attrs
 import numpy as np
 import pytest
+from raceway_measure.fit.estimate import Free, estimate, free_keys, judged
+from raceway_measure.fit.linear import _aliased, _free_parts, _Linear, _spectra_of, _spectrum, _tone, _uneven
+from raceway_measure.fit.signals import signals_of, write_recording
+from raceway_measure.fit.table import _TableResiduals, measurements_in
+from raceway_measure.rig.signals import record as rig_record
+from raceway_measure.rig.signals import response, slow_roll_record, white_noise
+from raceway_rotor.rig_table import rig_of
+from raceway_rotor.shaft import balance, bearing, rotor
 
 import raceway as rw
 from raceway import ConvergenceError, SceneError, load_scene
 from raceway.scene.changes import with_number
-from raceway.scene.reading import rig_of
 from raceway.storage.number_table import NumberTable
-from raceway.studies.fit.estimate import Free, estimate, free_keys, judged
-from raceway.studies.fit.linear import _aliased, _free_parts, _Linear, _spectra_of, _spectrum, _tone, _uneven
-from raceway.studies.fit.signals import signals_of, write_recording
-from raceway.studies.fit.table import _TableResiduals, measurements_in
-from raceway.studies.rig.signals import record as rig_record
-from raceway.studies.rig.signals import response, slow_roll_record, white_noise
-from raceway.studies.shaft import balance, bearing, rotor
 from raceway.testing import b7206c, default_registry
 from validation.command_line import EXAMPLES, invoke
 from validation.shaker import hammer_record, record, turning_record

@@ -7,11 +7,11 @@ import sys
 
 import numpy as np
 import pytest
+from raceway_rotor.export import point_rows
 
 import raceway as rw
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
 from raceway.plugins.processes import Serial
-from raceway.studies.rotor.export import point_rows
 from validation.command_line import invoke
 
 SCENE = {

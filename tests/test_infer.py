@@ -8,16 +8,16 @@ from contextlib import suppress
 import attrs
 import numpy as np
 import pytest
+from raceway_catalogue.infer import _sizes_of
+from raceway_catalogue.inferred import infer_printed
+from raceway_catalogue.printed import Printed, Rating, _parse_table, printed_by
+from raceway_catalogue.rating_conventions import CONFORMITY, pair_stiffness
 
 import raceway as rw
 from raceway import SceneError
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
 from raceway.core.ratings import BallRow, _groove, _load_factor, _static_factor
-from raceway.studies.catalogue.infer import _sizes_of
-from raceway.studies.catalogue.inferred import infer_printed
-from raceway.studies.catalogue.printed import Printed, Rating, _parse_table, printed_by
-from raceway.studies.catalogue.rating_conventions import CONFORMITY, pair_stiffness
 from validation.command_line import invoke
 
 #: 7206C: 12 balls of 9.525 mm on 46 mm, 15 deg.
@@ -312,7 +312,7 @@ def test_the_catalogue_lists_shows_and_draws(tmp_path):
 
 
 def test_the_section_is_in_proportion():
-    from raceway.studies.catalogue.catalogue import _outline
+    from raceway_catalogue.catalogue import _outline
 
     bearing = rw.Scene.from_dict({"bearing": {"preset": "7014C"}}).bearing
     inner, outer = (_outline(bearing, race) for race in (True, False))

@@ -7,6 +7,7 @@ from typing import ClassVar
 import attrs
 import numpy as np
 import pytest
+from raceway_checks.stability.catalogue import BASE
 
 from raceway import PluginError, SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
 from raceway.core.record import Schedule, State
@@ -16,7 +17,6 @@ from raceway.core.signatures import Outer
 from raceway.core.time.compiled import outer_force
 from raceway.core.time.schemes import Drivers, OneStep, integrate
 from raceway.integrators.methods import Newmark
-from raceway.studies.stability.catalogue import BASE
 from raceway.testing import Registry, model_of, settled, simulate, solve_equilibrium
 from validation import orders
 from validation.scenes import rotating

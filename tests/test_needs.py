@@ -88,7 +88,7 @@ def test_pictures_without_libraries_are_refused_before_anything_is_computed(word
 
 def test_the_mesher_gmsh_without_libraries(bare, tmp_path):
     scene = tmp_path / "scene.toml"
-    ring = ROOT / "raceway/data/meshes/ring.brep"
+    ring = ROOT / "packages/raceway-meshing/raceway_meshing/data/meshes/ring.brep"
     scene.write_text(
         f'[bearing]\npreset = "B7206C"\n[mesh]\nkind = "gmsh"\ninner_ring = "{ring}"\nscale = 1e-3\nelement_size = 2e-3\n'
     )

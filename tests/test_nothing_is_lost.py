@@ -6,15 +6,15 @@ import json
 
 import numpy as np
 import pytest
+from raceway_measure.fit.signals import recording_of, signals_of
+from raceway_meshing.formats import Vtu
+from raceway_meshing.mesh_files import File
 
 from raceway import ConvergenceError, MeshError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.core.mesh.hex_mesh import HexMesh
 from raceway.framework.estimate import Estimate
 from raceway.pipeline.error import no_error
 from raceway.planning.resolve import fits, record_bytes, recorded_per_turn, resolve
-from raceway.plugins.formats import Vtu
-from raceway.plugins.mesh_files import File
-from raceway.studies.fit.signals import recording_of, signals_of
 from raceway.testing import b7206c, run
 from validation.command_line import ARTICLE, MINIMAL, invoke
 from validation.cubes import block

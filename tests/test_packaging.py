@@ -11,26 +11,48 @@ import zipfile
 from importlib.metadata import distribution, requires
 from pathlib import Path
 
+import numpy as np
 import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 import raceway
+from validation.command_line import install, python
+from validation.command_line import raceway as command
 
 ROOT = Path(__file__).resolve().parents[1]
-PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+PROJECT, *DISTRIBUTIONS = (
+    tomllib.loads(path.read_text(encoding="utf-8"))["project"]
+    for path in (ROOT / "pyproject.toml", *sorted(ROOT.glob("packages/*/pyproject.toml")))
+)
 
 
 def test_one_version_everywhere():
     assert PROJECT["version"] == raceway.__version__ == distribution("raceway").version
     assert f"## {raceway.__version__}" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    for package in DISTRIBUTIONS:
+        own = [text for text in package["dependencies"] if text.startswith("raceway")]
+        assert package["version"] == raceway.__version__ == distribution(package["name"]).version
+        assert own and all(text.endswith(f"=={raceway.__version__}") for text in own)
 
 
-def test_all_holds_every_extra_but_ross_and_docs():
-    extras = PROJECT["optional-dependencies"]
-    named = re.search(r"\[(.*)\]", extras["all"][0])
-    assert named is not None
-    assert set(named[1].split(",")) == set(extras) - {"all", "ross", "docs"}
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["fit", "k.csv"], "no command 'fit' (in raceway-measure: pip install ./packages/raceway-measure"),
+        (["export", "--fmu", "x.toml"], "`raceway export --fmu` is in raceway-fmu: pip install ./packages/raceway-fmu"),
+        (["plan", "examples/minimal.toml", "--set", "mesh.kind=gmsh"], "mesher 'gmsh' is in raceway-meshing: pip install"),
+        (["study", "rig", "x.toml"], "no command 'rig' (in raceway-measure: pip install ./packages/raceway-measure"),
+    ],
+)
+def test_what_is_in_a_package_that_is_missing_is_told(words, told):
+    done = command(*words, RACEWAY_DISABLE="measure,fmu,meshing")
+    assert done.returncode == 2 and told in done.stderr
+
+
+def test_a_name_of_a_package_that_is_missing_is_told():
+    code = "import raceway, sys; sys.modules['raceway_measure'] = None\ntry: raceway.fit\nexcept AttributeError as why: print(why)"
+    assert python("-c", code).stdout.startswith("raceway.fit is in raceway-measure: pip install ./packages/raceway-measure")
 
 
 def test_the_base_installation_draws_and_meshes_nothing():
@@ -48,9 +70,10 @@ def test_every_version_of_the_constraints_is_one_that_the_project_allows():
             assert found, f"not NAME==VERSION: {line}"
             pins[found[1]] = found[2]
     extras = PROJECT["optional-dependencies"]
-    asked = [Requirement(text) for name in extras if name != "ross" for text in (*PROJECT["dependencies"], *extras[name])]
-    for requirement in asked:
-        if requirement.name != "raceway":
+    asked = [text for name in extras for text in (*PROJECT["dependencies"], *extras[name])]
+    asked += [text for package in DISTRIBUTIONS for text in package["dependencies"]]
+    for requirement in map(Requirement, asked):
+        if not requirement.name.startswith("raceway"):
             assert requirement.specifier.contains(pins[canonicalize_name(requirement.name)]), requirement
 
 
@@ -107,7 +130,7 @@ def test_tests_and_benchmarks_do_not_import_each_other(folder):
     assert [(str(path.relative_to(ROOT)), word) for path in files for word in imported(path) if word in forbidden] == []
 
 
-PACKAGES = sorted((ROOT / "raceway").rglob("__init__.py"))
+PACKAGES = [*sorted((ROOT / "raceway").rglob("__init__.py")), *sorted(ROOT.glob("packages/*/raceway_*/**/__init__.py"))]
 
 
 @pytest.mark.parametrize("path", PACKAGES, ids=lambda path: path.parent.relative_to(ROOT).as_posix())
@@ -121,3 +144,20 @@ def test_a_package_says_what_is_in_it(path):
     folders = {entry.name for entry in path.parent.iterdir() if entry.is_dir() and any(entry.rglob("*.*"))}
     entries = {name for name in modules | folders if not name.startswith("_")}
     assert entries - listed == set(), "one line each in the docstring"
+
+
+def test_an_ability_comes_from_a_package_alone(tmp_path):
+    """Its command, public name, table of the scene, quantity and picture, by ``raceway_commands``, ``raceway_names``, ``raceway_tables``."""
+    install(tmp_path, "weighing", (ROOT / "examples" / "plugins" / "weighing.py").read_text(encoding="utf-8"))
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        'title = "w"\n[bearing]\npreset = "B7206C"\n[load]\naxial = 400.0\n[weighing]\ngravity = 1.62\n', encoding="utf-8"
+    )
+    done = command("weigh", scene, "--counts", "1", "--out", tmp_path / "out", PYTHONPATH=tmp_path)
+    assert done.returncode == 0 and "weigh" in command("--help", PYTHONPATH=tmp_path).stdout, done.stderr
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {"weights.json", "weights.png"}
+    code = f"import raceway as rw; r = rw.run({str(scene)!r}); print(rw.weigh(r.model.scene, [1]).newtons[0], r.to_dict()['pressure_over_young'])"
+    weight, ratio = python("-c", code, PYTHONPATH=tmp_path).stdout.split(" ", 1)
+    assert float(weight) == pytest.approx(1.62 * 7850.0 * np.pi / 6.0 * 9.525e-3**3, rel=0.01) and "largest" in ratio
+    wrong = command("plan", scene, "--set", "weighing.gravity=-1", PYTHONPATH=tmp_path)
+    assert wrong.returncode == 2 and "weighing.gravity" in wrong.stderr

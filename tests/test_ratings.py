@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from raceway_catalogue.printed import printed_by
 
 from raceway import SceneError, scene_from_dict
 from raceway.core.columns import with_values
 from raceway.scene.catalogue import catalogue
 from raceway.scene.ratings import load_ratings
-from raceway.studies.catalogue.printed import printed_by
 
 BARE = {
     "ball_diameter": 0.0119, "pitch_diameter": 0.09, "ball_count": 20, "conformity_inner": 0.52, "conformity_outer": 0.52,

@@ -10,15 +10,15 @@ import tomllib
 
 import numpy as np
 import pytest
+from raceway_rotor.coefficients import Coefficients, coefficients
+from raceway_rotor.export import _ross_table
+from raceway_rotor.ross_file import NAMES, _smoothed, through_points
 
 from raceway import RacewayError, SceneError
 from raceway.plugins.processes import Serial
 from raceway.points.axes import grid
 from raceway.points.plot import select
 from raceway.points.sweep import fill_store, prepare
-from raceway.studies.rotor.coefficients import Coefficients, coefficients
-from raceway.studies.rotor.export import _ross_table
-from raceway.studies.rotor.ross_file import NAMES, _smoothed, through_points
 from raceway.testing import b7206c
 from tests.stores import MASS, SPEEDS, as_list, damping, made, scene, stiffness
 

@@ -10,12 +10,12 @@ from unittest import mock
 
 import numpy as np
 import pytest
+from raceway_rotor.node_bearing import _secant, node_bearing
+from raceway_rotor.ross_file import ross
 
 import raceway as rw
 from raceway import RacewayError, SceneError
 from raceway.plugins.excitations import harmonic_load
-from raceway.studies.rotor.node_bearing import _secant, node_bearing
-from raceway.studies.rotor.ross_file import ross
 from validation.command_line import EXAMPLES
 
 SPEED = 12000.0 * np.pi / 30.0
@@ -123,7 +123,7 @@ def test_bad_input_is_refused(given, words):
 
 def test_what_is_missing_is_said(monkeypatch):
     monkeypatch.setitem(sys.modules, "ross", None)  # an import of it fails
-    for name in ("raceway.ross", "raceway.studies.rotor.bearing"):
+    for name in ("raceway.ross", "raceway_rotor.bearing"):
         monkeypatch.delitem(sys.modules, name, raising=False)
     with pytest.raises(RacewayError, match=r"RollingBearing needs ROSS: pip install '.\[ross\]'"):
         importlib.import_module("raceway.ross")
@@ -139,7 +139,7 @@ def test_an_old_ross_is_refused(monkeypatch):
 
 def test_an_unbalance_turns_with_the_shaft():
     """A free mass on springs under a force from X towards Y: m_u w^2 / (k - m w^2) of it, Y a quarter turn later; ROSS is not asked."""
-    names = [f"raceway.studies.rotor.{name}" for name in ("bearing", "responses")]
+    names = [f"raceway_rotor.{name}" for name in ("bearing", "responses")]
     with mock.patch.dict(sys.modules, {"ross": types.SimpleNamespace(__version__="3.0", BearingElement=object)}):
         for name in names:
             sys.modules.pop(name, None)

@@ -110,8 +110,8 @@ def test_ansys_reads_the_matrices_across_the_axis(axial):
 
 
 def test_unsymmetric_and_absent_entries_are_told_to_ansys():
-    from raceway.studies.rotor.coefficients import Coefficients
-    from raceway.studies.rotor.files import _ansys_text
+    from raceway_rotor.coefficients import Coefficients
+    from raceway_rotor.files import _ansys_text
 
     still, speed = np.zeros((3, 5, 5)), np.array([0.0, 10.0, 20.0])
     turning = np.array([[2e8, 1e7], [-1e7, 2e8]]) + np.zeros((3, 1, 1))

@@ -12,17 +12,17 @@ from pathlib import Path
 import attrs
 import numpy as np
 import pytest
+from raceway_checks.stability import scenes, systems
+from raceway_checks.stability.catalogue import BASE, SCENES, _laws_with, _with_law, catalogue, transient
+from raceway_checks.stability.scenes import _axial_displacement, _axial_force
+from raceway_checks.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, _rows_of, measured, stability
+from raceway_checks.stability.systems import Bench
 
 from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry, registry_with
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.points.store import written
-from raceway.studies.stability import scenes, systems
-from raceway.studies.stability.catalogue import BASE, SCENES, _laws_with, _with_law, catalogue, transient
-from raceway.studies.stability.scenes import _axial_displacement, _axial_force
-from raceway.studies.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, _rows_of, measured, stability
-from raceway.studies.stability.systems import Bench
 from validation.command_line import ARTICLE, invoke
 
 REGISTRY = default_registry()
@@ -338,7 +338,7 @@ def test_a_scene_of_the_user_is_put_through_the_cases_that_suit_any(tmp_path):
 
 def test_quick_cases_are_the_default_and_the_screen_says_what_is_left_out(tmp_path, monkeypatch):
     cases = (case("answer", value="near"), attrs.evolve(case("answer", value="far"), name="long", quick=False))
-    monkeypatch.setattr("raceway.studies.stability.catalogue.catalogue", lambda *_: cases)
+    monkeypatch.setattr("raceway_checks.stability.catalogue.catalogue", lambda *_: cases)
     words = ("stability", "--processes", 0, "--out", tmp_path)
     quick = invoke(*words)
     assert quick.exit_code == 0 and "left out: 1 cases" in quick.stdout

@@ -9,10 +9,10 @@ from importlib.metadata import PackageNotFoundError
 import numpy as np
 import pytest
 import xarray
+from raceway_rotor import ross_file
 
 from raceway.errors import RacewayError, SceneError
 from raceway.points.plot import LIST, _keys_of, draw, layout, parse_at, select
-from raceway.studies.rotor import ross_file
 from tests.stores import SPEEDS, as_list, made, stiffness
 from validation.command_line import invoke
 

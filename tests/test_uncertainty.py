@@ -6,13 +6,13 @@ from math import hypot, isclose
 import attrs
 import numpy as np
 import pytest
+from raceway_app.picture import at_rest, result_picture
 from rich.console import Console
 
 import raceway as rw
 from raceway.bodies.elastic_change import elastic_change
 from raceway.out.quantities import KXX, KYY, K
 from raceway.pipeline.uncertainty import interval, stated
-from raceway.studies.app.picture import at_rest, result_picture
 from validation.command_line import MINIMAL, invoke
 
 STATIC = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}

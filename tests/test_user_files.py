@@ -11,21 +11,21 @@ import zlib
 
 import numpy as np
 import pytest
+from raceway_measure.fit.signals import signals_of
+from raceway_meshing.abaqus import Abaqus
+from raceway_meshing.formats import Msh, Vtu
+from raceway_meshing.gmsh import Gmsh
+from raceway_meshing.mesh_files import File
 
 from raceway import MeshError, RacewayError, SceneError, scene_from_dict
 from raceway.framework import sources as plugin_sources
 from raceway.framework.sources import import_file
 from raceway.plugins import formats
-from raceway.plugins.abaqus import Abaqus
-from raceway.plugins.formats import Msh, Vtu
-from raceway.plugins.gmsh import Gmsh
-from raceway.plugins.mesh_files import File
 from raceway.points import axes as design
 from raceway.points.axes import design_file
 from raceway.storage import number_table
-from raceway.storage.files import memory_for, told
+from raceway.storage.files import memory_for, size_words
 from raceway.storage.number_table import read_numbers
-from raceway.studies.fit.signals import signals_of
 from raceway.testing import b7206c
 from validation.cubes import block
 
@@ -175,4 +175,4 @@ def test_memory_is_limited_while_a_file_is_read_only():
 
 
 def test_sizes_are_told_with_their_unit():
-    assert [told(x) for x in (7, 2048, 3 * 2**20, 5.5 * 2**30)] == ["7 bytes", "2 KiB", "3 MiB", "5.5 GiB"]
+    assert [size_words(x) for x in (7, 2048, 3 * 2**20, 5.5 * 2**30)] == ["7 bytes", "2 KiB", "3 MiB", "5.5 GiB"]

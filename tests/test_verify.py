@@ -7,14 +7,14 @@ from typing import ClassVar
 
 import attrs
 import pytest
+from raceway_checks.verify import study as module
+from raceway_checks.verify.reference import reference_cases
+from raceway_checks.verify.study import COMPUTED, _Verification, verify
 
 from raceway import hookimpl
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import Registry
 from raceway.integrators.methods import Newmark
-from raceway.studies.verify import study as module
-from raceway.studies.verify.reference import reference_cases
-from raceway.studies.verify.study import COMPUTED, _Verification, verify
 
 
 def test_every_case_to_be_checked_is_computed_and_no_other():

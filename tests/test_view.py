@@ -7,15 +7,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from raceway_meshing.formats import Vtu
+from raceway_view.bodies import Bearing, _contact_patch
+from raceway_view.bodies import ball as solid_ball
+from raceway_view.pictures import LETTERS, _ball_labels, contacts
+from raceway_view.view import _at_peak, at_rest
 
 from raceway import scene_from_dict
 from raceway.core.mesh.ring_mesh import ring_shape
-from raceway.plugins.formats import Vtu
 from raceway.plugins.pictures import picture
-from raceway.studies.view.bodies import Bearing, _contact_patch
-from raceway.studies.view.bodies import ball as solid_ball
-from raceway.studies.view.pictures import LETTERS, _ball_labels, contacts
-from raceway.studies.view.view import _at_peak, at_rest
 from raceway.testing import b7206c, run
 from tests.test_commands import COARSE
 from validation.command_line import EXAMPLES, MINIMAL, invoke, python

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from raceway_article import elastic
+from raceway_article import study as driver
+from raceway_article.design import Curves, article_tables, design
+from raceway_article.elastic import ElasticArticle, _Run
+from raceway_article.study import RIG_LOADS, RIG_SPEEDS, Article
+
 from raceway.scene.inputs import read_toml
 from raceway.storage.tables import Tables
-from raceway.studies.article import elastic
-from raceway.studies.article import study as driver
-from raceway.studies.article.design import Curves, article_tables, design
-from raceway.studies.article.elastic import ElasticArticle, _Run
-from raceway.studies.article.study import RIG_LOADS, RIG_SPEEDS, Article
 
 SPEEDS, LOADS = "10980:15000:5", "400,1000,2000"
 

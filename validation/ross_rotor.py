@@ -254,7 +254,7 @@ def in_ross(name: str, *given: Any) -> list[Any]:
 
 
 if __name__ == "__main__":
-    from raceway.studies.rotor.ross_file import ross
+    from raceway_rotor.ross_file import ross
 
     given = json.loads(sys.argv[2]) if len(sys.argv) > 2 else []
     sys.stdout.write("\n" + json.dumps(globals()[sys.argv[1]](ross("this study"), *given)) + "\n")

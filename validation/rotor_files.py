@@ -1,6 +1,6 @@
 """Readers of exported coefficients, by the fields of their formats alone: bulk data, commands of APDL, CSV.
 
-They know nothing of the writers in raceway/studies/rotor/files.py: the tests and the report ``ross`` read the files with them.
+They know nothing of the writers in packages/raceway-rotor/raceway_rotor/files.py: the tests and the report ``ross`` read the files with them.
 """
 
 from __future__ import annotations

@@ -10,11 +10,11 @@ from typing import Any
 
 import attrs
 import numpy as np
+from raceway_rotor.rig_table import rig_of
+from raceway_rotor.ross_file import ross
+from raceway_rotor.shaft import _Beam, rotor, shaft
 
 from raceway import RacewayError, load_scene
-from raceway.scene.reading import rig_of
-from raceway.studies.rotor.ross_file import ross
-from raceway.studies.shaft import _Beam, rotor, shaft
 from validation.command_line import EXAMPLES
 
 AXIAL = 2000.0  # N

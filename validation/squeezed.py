@@ -6,8 +6,8 @@ import subprocess
 
 import attrs
 import numpy as np
+from raceway_meshing.abaqus import Abaqus
 
-from raceway.plugins.abaqus import Abaqus
 from validation.cubes import block
 
 YOUNG, POISSON, PRESSURE = 212e9, 0.29, 1e9

@@ -18,9 +18,9 @@ from typing import Any
 
 import attrs
 import numpy as np
+from raceway_checks.stability.catalogue import TINY
 
 from raceway.scene.schema import scene_schema
-from raceway.studies.stability.catalogue import TINY
 
 Tables = dict[str, Any]
 _EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -255,7 +255,7 @@ def fill(folder: Path) -> None:
     (folder / "good.csv").write_text("t,Fy,Fz\n" + rows)
     (folder / "words.csv").write_text("t,Fy\n1,two\n")
     (folder / "bytes.csv").write_bytes(bytes(range(256)) * 8)
-    (folder / "ring.inp").write_bytes(files("raceway").joinpath("data/meshes/ring.inp").read_bytes())
+    (folder / "ring.inp").write_bytes(files("raceway_meshing").joinpath("data/meshes/ring.inp").read_bytes())
     (folder / "include.inp").write_text("*INCLUDE, INPUT=/dev/zero\n")
     (folder / "cut.vtu").write_text("<VTKFile type='UnstructuredGrid'><Unstr")
     (folder / "part.geo").write_text(f'SystemCall "touch {folder}/PWNED";\n')

@@ -8,10 +8,11 @@ import tempfile
 import threading
 from pathlib import Path
 
+from raceway_app.session import Session
+from raceway_app.worker import Job, News, Worker
+
 from benchmarks.checks import Row, below
 from raceway.scene.inputs import as_given
-from raceway.studies.app.session import Session
-from raceway.studies.app.worker import Job, News, Worker
 from validation.browser.application import Application, Tab, hurry, proportional_memory
 from validation.browser.chromium import Browser
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from itertools import product
 
+from raceway_catalogue.infer import _sizes_of
+from raceway_catalogue.inferred import infer_printed
+from raceway_catalogue.printed import printed_by
+from raceway_catalogue.rating_conventions import CONFORMITY
+
 from benchmarks.checks import Row, below, near
 from raceway.core.contact.losses import _mean_slip
 from raceway.core.life import life_factor
 from raceway.core.rolling_friction import measured_factors
-from raceway.studies.catalogue.infer import _sizes_of
-from raceway.studies.catalogue.inferred import infer_printed
-from raceway.studies.catalogue.printed import printed_by
-from raceway.studies.catalogue.rating_conventions import CONFORMITY
 from validation import lives, rolling_friction, warm
 
 COMMAND = "python -m benchmarks.checks quantities"

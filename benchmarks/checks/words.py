@@ -53,7 +53,7 @@ def private_terms() -> list[str]:
         if not name.startswith("CHANGELOG"):
             lines = enumerate(text.splitlines(), 1)
             found += [f"{name}:{number} {match[0]}" for number, line in lines for match in PRIVATE.finditer(line)]
-    for path in sorted((ROOT / "raceway").rglob("*.py")):
+    for path in [*sorted((ROOT / "raceway").rglob("*.py")), *sorted(ROOT.glob("packages/*/raceway_*/**/*.py"))]:
         name = path.relative_to(ROOT).as_posix()
         found += [f"{name}:{number} {match[0]}" for number, text in _sentences(path) for match in PRIVATE.finditer(text)]
     return found

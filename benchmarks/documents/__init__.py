@@ -23,9 +23,10 @@ from typing import Any
 import attrs
 
 from raceway.framework.registry import Registry
+from raceway.framework.sources import named
 from raceway.scene.schema import keys
 from raceway.scene.structure import table_of_list
-from raceway.scene.tables import STUDY_TABLES, TABLES
+from raceway.scene.tables import TABLES
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENE = ROOT / "docs" / "scene.md"
@@ -121,8 +122,8 @@ def scene_page() -> str:
     for entry in (e for e in registry.all() if e.kind == "quantity" and attrs.fields(e.plugin)):
         path = f"quantities.{entry.name}"
         parts += [f"### [{path}]\n", *_tables(entry.plugin, path, f"[{path}]", shown)]
-    for name, cls in STUDY_TABLES.items():
-        parts += [f"## [{name}]\n", _NOTES[name] + "\n", *_tables(cls, name, f"[{name}]", shown)]
+    for name, place in registry.mapping("raceway_tables").items():
+        parts += [f"## [{name}]\n", _NOTES[name] + "\n", *_tables(named(place), name, f"[{name}]", shown)]
     return "\n".join(parts)
 
 

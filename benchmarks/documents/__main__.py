@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from benchmarks import documents
 from benchmarks import reports as files
-from benchmarks.documents import commands, drawing, promises, versions
+from benchmarks.documents import commands, drawing, packages, promises, versions
 
 
 def main() -> None:
+    for path, text in packages.declared().items():
+        path.write_text(text, encoding="utf-8")
     documents.SCENE.write_text(documents.scene_page(), encoding="utf-8")
     documents.COMMANDS.write_text(commands.page(), encoding="utf-8")
     text = documents.VERSIONS.read_text(encoding="utf-8")

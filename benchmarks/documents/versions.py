@@ -12,8 +12,13 @@ _REQUIREMENT = re.compile(r"([A-Za-z0-9_.-]+)(\[.*\])?(.*)")
 
 def with_versions(text: str, root: Path) -> str:
     """The page with its table made anew."""
-    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    return _BLOCK.sub(lambda match: match[1] + table(project) + match[3], text)
+    files = [root / "pyproject.toml", *sorted(root.glob("packages/*/pyproject.toml"))]
+    project, *packages = (tomllib.loads(file.read_text(encoding="utf-8"))["project"] for file in files)
+    needs = {
+        package["name"]: [text for text in package["dependencies"] if not text.startswith("raceway")] for package in packages
+    }
+    rows = "".join(f"| {name} | {_packages(needed)} |\n" for name, needed in needs.items() if needed)
+    return _BLOCK.sub(lambda match: match[1] + table(project) + rows + match[3], text)
 
 
 def table(project: dict[str, object]) -> str:
@@ -23,7 +28,7 @@ def table(project: dict[str, object]) -> str:
     pythons = [word.rpartition(" ")[2] for word in classifiers if re.search(r"Python :: 3\.\d+$", word)]
     rows = ["| part | what it needs |", "|---|---|", f"| Python | {', '.join(pythons)}, each tried |"]
     rows += [f"| installed always | {_packages(project['dependencies'])} |"]
-    rows += [f"| extra `{name}` | {_packages(needed)} |" for name, needed in extras.items()]
+    rows += [f"| extra `{name}` | {_packages(needed)} |" for name, needed in extras.items() if name != "dev"]
     return "\n".join(rows) + "\n"
 
 
@@ -35,7 +40,9 @@ def _packages(requirements: object) -> str:
         assert found is not None, requirement
         name, inner, bounds = found.groups()
         words.append(
-            f"the extras {inner[1:-1].replace(',', ', ')}" if name == "raceway" else f"{name} {_said(bounds)}".strip()
+            f"the extras {inner[1:-1].replace(',', ', ')}"
+            if name == "raceway" and inner
+            else f"{name} {_said(bounds)}".strip()
         )
     return ", ".join(words)
 

@@ -48,7 +48,9 @@ class Fault:
             self.put(path.read_text(encoding="utf-8") if path.is_file() else "")
         except ValueError as why:
             files = [
-                path for path in sorted((ROOT / "raceway").rglob("*.py")) if self.was in path.read_text(encoding="utf-8")
+                path
+                for path in [*sorted((ROOT / "raceway").rglob("*.py")), *sorted(ROOT.glob("packages/*/raceway_*/**/*.py"))]
+                if self.was in path.read_text(encoding="utf-8")
             ]
             return f"{why}; it stands in {', '.join(str(path.relative_to(ROOT)) for path in files) or 'no file'}"
         missing = [test for test in self.tests if not _exists(test)]

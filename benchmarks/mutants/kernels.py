@@ -41,7 +41,9 @@ def _module(path: Path) -> str:
 def _imported() -> dict[Path, set[str]]:
     """The modules, and names taken from modules, that each file of the sources imports."""
     found: dict[Path, set[str]] = {}
-    for path in [path for name in ("raceway", "tests", "benchmarks", "validation") for path in (ROOT / name).rglob("*.py")]:
+    for path in [
+        path for name in ("raceway", "packages", "tests", "benchmarks", "validation") for path in (ROOT / name).rglob("*.py")
+    ]:
         names = found.setdefault(path, set())
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):

@@ -20,18 +20,9 @@ from benchmarks.mutants.kernels import carry_over
 LIMIT_S = 600.0
 #: What the tests need of the sources.
 COPIED = (
-    "raceway",
-    "tests",
-    "benchmarks",
-    "validation",
-    "examples",
-    "docs",
-    "README.md",
-    "CHANGELOG.md",
-    "pyproject.toml",
-    "Makefile",
-    "conftest.py",
-)
+    "raceway", "packages", "tests", "benchmarks", "validation", "examples", "docs", "README.md", "CHANGELOG.md",
+    "pyproject.toml", "Makefile", "conftest.py",
+)  # fmt: skip
 #: What `make test` runs.
 QUICK = "not slow and not night and not release and not ross"
 _FAILED, _NONE_LEFT = 1, 5
@@ -87,7 +78,11 @@ class Copy:
 
     def environment(self, cache: Path) -> dict[str, str]:
         """What the tests run under: these sources, this cache."""
-        return {**os.environ, "PYTHONPATH": str(self.place), "RACEWAY_CACHE_DIR": str(cache)}
+        return {
+            **os.environ,
+            "PYTHONPATH": os.pathsep.join(map(str, (self.place, *sorted(self.place.glob("packages/*"))))),
+            "RACEWAY_CACHE_DIR": str(cache),
+        }
 
     def unharmed(self, faults: list[Fault], quick: bool = False) -> str:
         """What fails of the faults' tests without any fault; empty when all pass, as they must."""

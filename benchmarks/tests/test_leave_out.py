@@ -120,10 +120,8 @@ def test_a_run_imports_compiles_and_allocates_what_its_plan_says(name):
 ELASTIC = (
     "bodies.kind=elastic",
     'mesh={kind = "structured", element_size = 3.2e-3, nodes_per_semi_axis = 0, azimuth_cells = 24}',
-    "kinematics.spin_speed_rpm=0",
-    "integrator.turns=1",
-    "integrator.steps_per_turn=8",
-)
+    "kinematics.spin_speed_rpm=0", "integrator.turns=1", "integrator.steps_per_turn=8",
+)  # fmt: skip
 
 
 @pytest.mark.slow

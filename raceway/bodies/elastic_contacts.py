@@ -71,7 +71,7 @@ class ElasticBodies(Bearing):
 
     def at_rest(self, system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
         """All nodes at rest."""
-        return start.at_rest(_elastic(system), ramped)
+        return start.standstill(_elastic(system), ramped)
 
     def at_equilibrium(self, system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
         """All nodes in balance."""

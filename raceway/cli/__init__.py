@@ -5,5 +5,4 @@ commands   their table;  command: one made from a public function;  completion: 
 interrupt  Ctrl-C, SIGTERM, SIGHUP, and standard streams that are closed or know ASCII only;  verbose: what -v reports
 plan       raceway plan;  failure: files of a failed run
 sweep, study, cache, plugins, new_scene   commands that are more than a front: sweeps, studies, caches, plug-ins, a first scene
-app        raceway app
 """

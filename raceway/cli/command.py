@@ -10,7 +10,6 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable, Mapping
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -19,7 +18,7 @@ import click
 
 from raceway.cli.completion import OF_KEYS, scene_keys
 from raceway.cli.frame import (
-    PATH,
+    FILE,
     RESULTS,
     attempt,
     changed_tables,
@@ -35,6 +34,7 @@ from raceway.cli.frame import (
     tell_faults,
 )
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
+from raceway.framework.sources import named
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 Value = Any
 #: Types of options by annotation; of others, texts.
-_TYPES: dict[str, click.ParamType | type] = {"int": int, "float": float, "str": str, "str | Path": PATH}
+_TYPES: dict[str, click.ParamType | type] = {"int": int, "float": float, "str": str, "str | Path": FILE}
 #: Arguments that no option stands for.
 _SHARED = ("scene", "changes", "plugins", "progress", "kept", "out", "registry", "pictures")
 
@@ -83,7 +83,7 @@ class Command(NamedTuple):
     named_by : argument with the file whose name stands for the title
     unchecked : the scene is not read before the front has changed it
     pictures : whether they are drawn unless something else is said; None: there are none
-    remaining : the bar shows the time left: parts take about the same time each
+    remaining : the bar shows the time left: parts take about the same time each;  aliases : other names
 
     Examples
     --------
@@ -103,13 +103,11 @@ class Command(NamedTuple):
     unchecked: bool = False
     pictures: bool | None = True
     remaining: bool = False
+    aliases: tuple[str, ...] = ()
 
     def click(self) -> click.Command:
         """The command, with the module of its front imported."""
-        front = self.front
-        if isinstance(front, str):
-            module, _, name = front.partition(":")
-            front = getattr(import_module(module), name)
+        front = named(self.front) if isinstance(self.front, str) else self.front
         # Argument -> its words; several arguments of one line are parted by ``;  ``.
         lines = re.sub(r"\n\s+", " ", _sections(front)[1])
         entries = [entry for line in lines.splitlines() for entry in re.split(r";  (?=[\w, *]+ : )", line)]
@@ -142,9 +140,9 @@ class Command(NamedTuple):
             command = self._option(parameter, _kind(front, parameter), words.get(parameter.name, ""))(command)
         if "scene" in signature.parameters:
             required = signature.parameters["scene"].default is inspect.Parameter.empty
-            scene_input = click.argument("scene", type=PATH, required=required)
+            scene_input = click.argument("scene", type=FILE, required=required)
             if "scene" in self.options:
-                scene_input = click.option("--scene", type=PATH, metavar="SCENE", help=_option_help(words["scene"]))
+                scene_input = click.option("--scene", type=FILE, metavar="SCENE", help=_option_help(words["scene"]))
             command = set_keys(scene_input(command))
         for parameter in reversed(params):
             if self._about(parameter).positional:
@@ -206,7 +204,7 @@ def _kind(front: Callable[..., Value], parameter: inspect.Parameter) -> str:
 
 def _argument(parameter: inspect.Parameter, metavar: str | None) -> Callable[[Value], Value]:
     required = parameter.default is inspect.Parameter.empty
-    kind = PATH if "Path" in str(parameter.annotation) else None
+    kind = FILE if "Path" in str(parameter.annotation) else None
     default: dict[str, Any] = {} if required else {"default": parameter.default}
     return click.argument(parameter.name, type=kind, required=required, metavar=metavar, **default)
 

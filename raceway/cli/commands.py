@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from importlib import import_module
 from typing import NamedTuple
 
 import click
 
 from raceway.cli.command import Command, Option
+from raceway.framework.sources import named
 
 
 class Later(NamedTuple):
@@ -16,10 +16,10 @@ class Later(NamedTuple):
     name: str
     place: str
     summary: str
+    aliases: tuple[str, ...] = ()
 
     def click(self) -> click.Command:
-        module, _, name = self.place.partition(":")
-        command: click.Command = getattr(import_module(module), name)
+        command: click.Command = named(self.place)
         return command
 
 
@@ -43,6 +43,7 @@ ANSWERS: tuple[Command | Later, ...] = (
         "raceway plan examples/b7206.toml --set supports.tilt=free",
         folder=None,
         pictures=None,
+        aliases=("check",),
     ),
     Command(
         "compare",
@@ -121,118 +122,7 @@ ANSWERS: tuple[Command | Later, ...] = (
             "processes": Option(default=2),
         },
         folder="-band",
-    ),
-    Command(
-        "fit",
-        "raceway.studies.fit.fit:fit_texts",
-        "Fit scene parameters, or K and C of a rig's bearing, to measurements.",
-        "raceway fit measured-k.csv --scene examples/b7206.toml \\\n"
-        "    --free bearing.contact_angle_deg\n"
-        "raceway fit shaker.csv --free K,C,mass\n"
-        "raceway study rig examples/test_rig.toml --out rig\n"
-        "raceway identify rig/signals-13000rpm-400N.csv \\\n"
-        "    --scene examples/test_rig.toml --set load.axial=400 \\\n"
-        "    --slow-roll rig/slow-roll-13000rpm-400N.csv\n"
-        "raceway identify orbit.csv --scene examples/test_rig.toml \\\n"
-        '    --map "Ch 1=y_um" --map "Ch 2=z_um"',
-        {
-            "data": Option(positional=True),
-            "free": Option(metavar="A.B,C.D"),
-            "scene": Option("scene"),
-            "mass": Option(metavar="KG"),
-            "slow_roll": Option(metavar="FILE.csv"),
-            "run_out": Option(metavar="UM,DEG"),
-            "columns": Option("map", '"HEADER=NAME"'),
-        },
-        folder="-fitted",
-        named_by="data",
-    ),
-    Command(
-        "catalogue",
-        "raceway.studies.catalogue.catalogue:look_up",
-        "List, search and draw the bearings of the catalogue.",
-        'raceway catalogue "70*C"\nraceway catalogue 7014C --picture 7014C.png',
-        {"pattern": Option(positional=True), "picture": Option(metavar="FILE.png")},
-        folder=None,
-        pictures=None,
-    ),
-    Command(
-        "catalogue --infer",
-        "raceway.studies.catalogue.infer:infer_texts",
-        "Infer balls and grooves from printed dimensions and ratings.",
-        'raceway catalogue --infer --bore "70 mm" --outer-diameter "110 mm" \\\n'
-        '    --rating "15:47 kN:43 kN" --rating "25:44.5 kN:41 kN"\n'
-        "raceway catalogue --infer nsk --conformity 0.522",
-        {
-            "table": Option(positional=True),
-            "bore": Option(metavar="LENGTH"),
-            "outer_diameter": Option(metavar="LENGTH"),
-            "width": Option(metavar="LENGTH"),
-            "ratings": Option("rating", "ANGLE:C:C0"),
-            "pairs": Option("pair", "ANGLE:PRELOAD:STIFFNESS"),
-            "maker": Option(metavar="NAME"),
-            "conformity": Option(metavar="F"),
-        },
-        folder=None,
-        pictures=None,
-    ),
-    Command(
-        "view",
-        "raceway.studies.view.view:view",
-        "Draw a bearing: loads, contacts, mesh, orbit; PNG, HTML.",
-        "raceway view examples/b7206.toml --html",
-        {"page": Option("html")},
-        pictures=None,
-    ),
-    Command(
-        "view --mesh",
-        "raceway.studies.view.mesh:mesh",
-        "Mesh the bodies of a scene: counts, quality, files.",
-        "raceway view --mesh examples/b7206_article_mesh.toml --picture",
-        {"form": Option("format", "NAME")},
-        pictures=None,
-    ),
-    Later("app", "raceway.cli.app:app", "A page to look at a scene and change it, on this machine."),
-    Command(
-        "export",
-        "raceway.studies.rotor.command:export",
-        "Export coefficients of a sweep to rotor programs.",
-        "raceway export raceway-out/B7206C-sweep --ross bearing.toml \\\n"
-        "    --at load.axial=1000\n"
-        "raceway sweep examples/b7206.toml --set identifier.kind=tangent \\\n"
-        "    --grid kinematics.spin_speed_rpm=0:20000:21 --out raceway-out/from-rest\n"
-        "raceway export raceway-out/from-rest --from tangent --ross bearing.toml\n"
-        "raceway export raceway-out/from-rest --from tangent \\\n"
-        "    --nastran bearing.bdf --ansys bearing.inp --table bearing.csv",
-        {
-            "store": Option(positional=True),
-            "ross": Option(metavar="FILE"),
-            "nastran": Option(metavar="FILE"),
-            "ansys": Option(metavar="FILE"),
-            "table": Option(metavar="FILE"),
-            "at": Option(metavar="KEY=VALUE"),
-            "source": Option("from", choices=("rotating", "directions", "tangent")),
-            "damping": Option(metavar="C"),
-            "ross_version": Option(choices=("2", "3")),
-            "tag": Option(metavar="NAME"),
-        },
-        folder=None,
-        pictures=None,
-    ),
-    Command(
-        "export --fmu",
-        "raceway.studies.fmu.export:export_fmu",
-        "A bearing as an FMU (FMI 2.0, 3.0) for simulators: its map, or its force.",
-        "raceway export --fmu examples/b7206.toml --range load.axial=400:2000 \\\n"
-        "    --range excitation.speed_rpm=3000:15000\n"
-        "raceway export --fmu examples/minimal.toml --kind force",
-        {
-            "kind": Option(choices=("map", "force")),
-            "ranges": Option("range", "A.B=X:Y"),
-            "outputs": Option("output", "NAME"),
-        },
-        folder="-fmu",
-        pictures=None,
+        aliases=("sensitivities",),
     ),
 )
 TRUST = (
@@ -250,25 +140,6 @@ TRUST = (
         },
         folder="-precision",
         unchecked=True,
-    ),
-    Command(
-        "stability",
-        "raceway.studies.stability.study:stability",
-        "Test laws and integrators on stiff and extreme cases.",
-        "raceway stability --only chatter",
-        {"only": Option(metavar="WORDS"), "every": Option("all")},
-        folder="-stability",
-        unchecked=True,
-        pictures=None,
-    ),
-    Command(
-        "verify",
-        "raceway.studies.verify.study:verify",
-        "Compare with published reference cases.",
-        "raceway verify --only harris-table-6.1 --all",
-        {"only": Option(metavar="CASE"), "every": Option("all")},
-        folder=None,
-        pictures=None,
     ),
 )
 DEVELOPERS = (
@@ -303,5 +174,3 @@ SECTIONS: dict[str, tuple[Command | Later, ...]] = {
     "Studies": (Later("study", "raceway.cli.study:study", "Whole studies that end in a page, and others' studies."),),
     "Developers": (Later("dev", "raceway.cli.main:dev", "Plug-ins: templates, conformance, laws, schema, caches."),),
 }
-#: Another name of a command -> the command.
-ALIASES = {"check": "plan", "identify": "fit", "sensitivities": "band"}

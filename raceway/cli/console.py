@@ -60,14 +60,13 @@ class Commands(click.Group):
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
         names = [name for name in self.list_commands(ctx) if " " not in name]
         if args and self.get_command(ctx, args[0]) is None and not args[0].startswith("-"):
-            full_name = self.elsewhere().get(args[0])
-            hint = f" (it is `raceway {full_name}`)" if full_name else nearest(args[0], names)
+            hint = f" ({elsewhere})" if (elsewhere := self.elsewhere(args[0])) else nearest(args[0], names)
             raise click.UsageError(f"no command '{args[0]}'{hint}; commands: {', '.join(names)}", ctx)
         return super().resolve_command(ctx, args)
 
-    def elsewhere(self) -> dict[str, str]:
-        """Words that are no commands of this group -> the command or option that they are part of."""
-        return {}
+    def elsewhere(self, word: str) -> str:
+        """Where a word that is no command of this group is one, or an option."""
+        return ""
 
 
 def _guarded(command: Callable[[], object], words: list[str]) -> int:

@@ -28,7 +28,7 @@ F = TypeVar("F", bound=Callable[..., object])
 #: Where results go unless --out says otherwise.
 RESULTS = Path("raceway-out")
 #: A file or folder that need not be there yet: what reads it says what is wrong with it.
-PATH = click.Path(path_type=Path, readable=False)
+FILE = click.Path(path_type=Path, readable=False)
 set_keys = click.option(
     "--set", "changes", multiple=True, metavar="A.B=C", shell_complete=scene_keys,
     help="Change a key of the scene; repeat for more.",
@@ -37,7 +37,7 @@ set_keys = click.option(
 
 def out_option(default: str) -> Callable[[F], F]:
     """--out; ``default`` is only shown, the command chooses it."""
-    return click.option("--out", type=PATH, metavar="DIR", help=f"Folder [{default}].")
+    return click.option("--out", type=FILE, metavar="DIR", help=f"Folder [{default}].")
 
 
 plugin_files = click.option(

@@ -13,8 +13,10 @@ import click
 
 from raceway import __version__
 from raceway.cli.command import Command
-from raceway.cli.commands import ALIASES, DEVELOPERS, SECTIONS, Later
+from raceway.cli.commands import DEVELOPERS, SECTIONS, Later
 from raceway.cli.console import Commands
+from raceway.framework.packages import missing_package
+from raceway.framework.registry import installed
 
 
 class _CommandsByName(Commands):
@@ -22,8 +24,11 @@ class _CommandsByName(Commands):
 
     sections: ClassVar[dict[str, tuple[Command | Later, ...]]] = SECTIONS
 
+    def _sections(self) -> dict[str, tuple[Command | Later, ...]]:
+        return self.sections
+
     def _table(self) -> dict[str, Command | Later]:
-        return {about.name: about for commands in self.sections.values() for about in commands}
+        return {about.name: about for commands in self._sections().values() for about in commands}
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(self._table())
@@ -32,14 +37,17 @@ class _CommandsByName(Commands):
         # Matrices of some hundred rows: threads of the linear algebra only wait for each other, and halve the speed of a run
         # on busy cores.  Read when numpy is imported, which is later than this.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-        name = ALIASES.get(cmd_name, cmd_name)
-        about = self._table().get(name)
+        about = next((about for about in self._table().values() if cmd_name in (about.name, *about.aliases)), None)
+        name = cmd_name if about is None else about.name
         if isinstance(about, Command):
             about = about._replace(example=about.example.replace(f"raceway {name} ", f"raceway {cmd_name} "))
         return None if about is None else about.click()
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
         """Some commands are another one with a flag: ``catalogue --infer``."""
+        for arg in args[1:]:
+            if f"{args[0]} {arg}" not in self._table() and (missing := missing_package(f"{args[0]} {arg}", "commands")):
+                raise click.UsageError(f"`raceway {args[0]} {arg}` is {missing}", ctx)
         for name in self._table():
             word, _, flag = name.partition(" ")
             if flag and args[0] == word and flag in args:
@@ -47,7 +55,7 @@ class _CommandsByName(Commands):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        for heading, commands in self.sections.items():
+        for heading, commands in self._sections().items():
             with formatter.section(heading):
                 formatter.write_dl([(about.name, about.summary) for about in commands])
 
@@ -55,11 +63,19 @@ class _CommandsByName(Commands):
 class _AllCommands(_CommandsByName):
     """``raceway``."""
 
-    def elsewhere(self) -> dict[str, str]:
+    def _sections(self) -> dict[str, tuple[Command | Later, ...]]:
+        further = installed().mapping("raceway_commands")
+        by_name = {heading: sorted(commands, key=lambda about: about.name) for heading, commands in further.items()}
+        return {heading: (*own, *by_name.get(heading, ())) for heading, own in self.sections.items()}
+
+    def elsewhere(self, word: str) -> str:
+        if missing := missing_package(word, "commands"):
+            return missing
         commands = [about for about in self._table().values() if isinstance(about, Command)]
         flags = {o.flag: f"{about.name} --{o.flag}" for about in commands for o in about.options.values() if o and o.flag}
         parts = {name.partition(" --")[2]: name for name in self._table() if " " in name}
-        return flags | parts | {about.name: f"dev {about.name}" for about in DEVELOPERS}
+        full_name = (flags | parts | {about.name: f"dev {about.name}" for about in DEVELOPERS}).get(word)
+        return full_name and f"it is `raceway {full_name}`" or ""
 
 
 class _DeveloperCommands(_CommandsByName):

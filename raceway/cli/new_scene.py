@@ -11,7 +11,7 @@ from typing import Any
 import attrs
 import click
 
-from raceway.cli.frame import PATH, common, show
+from raceway.cli.frame import FILE, common, show
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry, default_registry
 from raceway.scene.reading import options_class
@@ -50,7 +50,7 @@ _HEAD = """# A scene of Raceway: SI units, or text with a unit such as "1 kN".  
 
 @click.command("new-scene", short_help="Write a scene to start from.")
 @click.argument("preset", default="B7206C")
-@click.option("--out", type=PATH, metavar="FILE", help="File [PRESET.toml here].")
+@click.option("--out", type=FILE, metavar="FILE", help="File [PRESET.toml here].")
 @common
 def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
     """Write a scene with comments: a bearing of the catalogue under load and unbalance.

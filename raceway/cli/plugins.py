@@ -18,7 +18,7 @@ from raceway.cli.frame import common, faults, plugin_files, show, show_progress
 from raceway.errors import RacewayError
 from raceway.framework.contracts import KINDS, plural
 from raceway.framework.registry import default_registry, registry_with
-from raceway.out.table import written
+from raceway.out.table import file_lines
 from raceway.out.wrapping import Words
 from raceway.storage.tables import ReadTables, Tables
 
@@ -110,7 +110,7 @@ def new_plugin(kind: str, name: str, out: Path, as_json: bool) -> int:
     folder = write(kind, name, out, default_registry())
     files = sorted(str(path) for path in folder.rglob("*") if path.is_file())
     steps = Text(f"next: pip install -e {folder} && python -m pytest {folder}", no_wrap=True, overflow="ignore")
-    show({"folder": str(folder), "files": files}, as_json, None, lambda: Group(*written([str(folder), *files]), steps))
+    show({"folder": str(folder), "files": files}, as_json, None, lambda: Group(*file_lines([str(folder), *files]), steps))
     return 0
 
 

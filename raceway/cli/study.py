@@ -8,12 +8,16 @@ import click
 
 from raceway.cli.console import Commands
 from raceway.errors import PluginError, RacewayError
+from raceway.framework.packages import missing_package
 from raceway.framework.registry import default_registry, registry_with
 from raceway.framework.sources import foreign_words
 
 
 class Studies(Commands):
     """Sub-commands by name, each imported when it is asked for."""
+
+    def elsewhere(self, word: str) -> str:
+        return missing_package(f"study:{word}", "plugins")
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return default_registry().names("study")

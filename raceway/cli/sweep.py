@@ -19,7 +19,7 @@ from raceway.framework.shown import Fact
 from raceway.out.answer import Answer, Interrupted, Part
 from raceway.out.progress import ShowProgress, telling
 from raceway.out.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, Z_REAL, K
-from raceway.out.table import micro, written
+from raceway.out.table import file_lines, micro
 from raceway.out.wrapping import Words
 from raceway.points.axes import Design, design_file, grid, point_words, sampled, shown
 from raceway.points.dataset import NOT_CHECKED, TABLE, all_failed, blank, open_store, points_of, write_csv, write_netcdf
@@ -95,7 +95,7 @@ class _Swept(Answer):
         for count, text, where in warned.values():
             words = "points warn" if count > 1 else "point warns"
             yield f"{count} {words}: {micro(text)} (first at {point_words(points.design.point(where))})"
-        yield from written(self.files)
+        yield from file_lines(self.files)
 
 
 def _row(row: ReadTables) -> dict[str, str]:
@@ -133,7 +133,7 @@ class _Drawn(Answer):
         yield f"{content['value']} over {', '.join(axes)} ({content['kind']})"
         if content["unfinished"]:
             yield "without result: " + ", ".join(f"{count} {state}" for state, count in content["unfinished"].items())
-        yield from written(content["files"])
+        yield from file_lines(content["files"])
 
 
 class _Choice(NamedTuple):

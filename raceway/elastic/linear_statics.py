@@ -466,5 +466,5 @@ def _pyamg() -> ModuleType:
     try:
         import pyamg
     except ImportError:
-        raise RacewayError("large elastic bodies need pyamg: pip install '.[mesh]' in a checkout of Raceway") from None
+        raise RacewayError("large elastic bodies need pyamg: pip install '.[elastic]' in a checkout of Raceway") from None
     return pyamg

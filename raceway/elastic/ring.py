@@ -233,7 +233,7 @@ def from_orbit(ring: ElasticRing, orbit: Orbit) -> Motion:
     return _motion(ring, now, v, a)
 
 
-def at_rest(ring: ElasticRing, ramped: bool) -> Motion:
+def standstill(ring: ElasticRing, ramped: bool) -> Motion:
     """At rest in the static equilibrium; without a ramp the excitation acts at once."""
     y = ring.equilibrium
     outer, still = np.zeros_like(y), np.zeros_like(y)

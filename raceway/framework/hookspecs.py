@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import pluggy
 
 if TYPE_CHECKING:
+    from raceway.cli.command import Command
+    from raceway.cli.commands import Later
     from raceway.pipeline.result import Result
     from raceway.planning.plan import ScenePlan
 
@@ -63,6 +65,21 @@ def raceway_executors() -> list[type]:  # type: ignore[empty-body]
 @hookspec
 def raceway_studies() -> list[type]:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.Study``."""
+
+
+@hookspec
+def raceway_commands() -> dict[str, tuple[Command | Later, ...]]:  # type: ignore[empty-body]
+    """Commands beside ``raceway run``, by their heading in ``raceway --help``."""
+
+
+@hookspec
+def raceway_names() -> dict[str, str]:  # type: ignore[empty-body]
+    """Public names of ``import raceway``, and "ross.NAME" of ``raceway.ross`` -> the modules that define them."""
+
+
+@hookspec
+def raceway_tables() -> dict[str, str]:  # type: ignore[empty-body]
+    """Tables of the scene file that a study reads -> attrs classes of ``raceway.option`` as "module:Class"; the scene keeps them in ``source``."""
 
 
 @hookspec

@@ -26,12 +26,13 @@ from raceway.framework import hookspecs
 from raceway.framework.contracts import KINDS, broken_duties
 from raceway.framework.doors import reader
 from raceway.framework.options import nearest
+from raceway.framework.packages import missing_package
 from raceway.framework.sources import chosen_entry_points, foreign_words, import_file, is_foreign_fault, owner
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-_BUILT_IN = ("raceway.bodies", "raceway.contact_laws", "raceway.integrators", "raceway.plugins", "raceway.studies")
+_BUILT_IN = ("raceway.bodies", "raceway.contact_laws", "raceway.integrators", "raceway.plugins")
 
 
 @attrs.frozen
@@ -65,10 +66,11 @@ class Registry:
 
     Parameters
     ----------
-    third_party : whether to load what is installed under the entry point group "raceway"
+    third_party : whether to load what others have installed under the entry point group "raceway"
+    classes : whether to ask for classes; without, only for commands, names and tables, which built-in plug-ins have none of
     """
 
-    def __init__(self, third_party: bool = True) -> None:
+    def __init__(self, third_party: bool = True, classes: bool = True) -> None:
         self.manager = pluggy.PluginManager("raceway")
         self.manager.add_hookspecs(hookspecs)
         if os.environ.get("RACEWAY_TRACE"):
@@ -78,13 +80,13 @@ class Registry:
         self.faults: list[Fault] = []
         from raceway import __version__
 
-        for module in _BUILT_IN:
+        self._kinds = KINDS if classes else {}
+        for module in _BUILT_IN if classes else ():
             self._register(import_module(module), module, "raceway", __version__)
-        if third_party:
-            points, missing = chosen_entry_points()
-            self.faults += [Fault(name, "named in RACEWAY_PLUGINS, but not installed") for name in missing]
-            for point in points:
-                self._load(point)
+        points, missing = chosen_entry_points(third_party)
+        self.faults += [Fault(name, "named in RACEWAY_PLUGINS, but not installed") for name in missing]
+        for point in points:
+            self._load(point)
 
     @property
     def hook(self) -> Any:
@@ -157,6 +159,24 @@ class Registry:
                     "Name it in RACEWAY_DISABLE to run without it."
                 ) from why
 
+    def mapping(self, hook: str) -> dict[str, Any]:
+        """What all plug-ins answer to a hook of mappings; tuples of one key follow each other.  A plug-in that raises has a fault."""
+        merged: dict[str, Any] = {}
+        for implementation in getattr(self.manager.hook, hook).get_hookimpls():
+            try:
+                with foreign_words():
+                    answer = dict(implementation.function())
+            except BaseException as why:  # a third party's own code
+                if not is_foreign_fault(why):
+                    raise
+                fault = Fault(implementation.plugin_name, f"`{hook}` raises {type(why).__name__}: {why}")
+                self.faults += [] if fault in self.faults else [fault]
+                continue
+            merged |= {
+                key: merged.get(key, ()) + value if isinstance(value, tuple) else value for key, value in answer.items()
+            }
+        return merged
+
     def find_any(self, text: str) -> Entry:
         """The plug-in that ``[KIND:]NAME`` means.
 
@@ -201,6 +221,8 @@ class Registry:
                 "remove one: leave its --plugin file out, or name its distribution in RACEWAY_DISABLE."
             )
         names = self.names(kind)
+        if missing := missing_package(f"{kind}:{name}", "plugins"):
+            raise PluginError(f"{kind.replace('_', ' ')} '{name}' is {missing}")
         message = (
             f"no {kind.replace('_', ' ')} named '{name}'{nearest(name, names)}; installed: {', '.join(names) or 'none'}"
         )
@@ -276,7 +298,7 @@ class Registry:
             reason = str(why) if by_contract else f"looking at it raises {type(why).__name__}: {why}"
             self.faults.append(Fault(label, f"does not fit the hooks: {reason}"))
             return
-        for kind, (hook_name, _) in KINDS.items():
+        for kind, (hook_name, _) in self._kinds.items():
             earlier = [p for p in self.manager.get_plugins() if p is not plugin]
             try:
                 with foreign_words():
@@ -329,6 +351,12 @@ def _shown(thing: object) -> str:
 def default_registry() -> Registry:
     """The plug-ins of this process: built-ins and whatever is installed."""
     return Registry()
+
+
+@cache
+def installed() -> Registry:
+    """What is installed beside ``raceway``, without its own plug-ins: for commands and public names, which need none of them."""
+    return Registry(classes=False)
 
 
 def registry_with(files: Iterable[str | Path]) -> Registry:

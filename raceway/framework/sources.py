@@ -9,6 +9,7 @@ import threading
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
+from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -17,22 +18,25 @@ from typing import Any
 
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.options import nearest
+from raceway.framework.packages import packages
 from raceway.storage.files import size_of
 
 #: Bytes of a plug-in file at most.
 _LONGEST = 2**24
 
 
-def chosen_entry_points() -> tuple[list[EntryPoint], list[str]]:
-    """The entry points to load, and the names in RACEWAY_PLUGINS that nothing installed has."""
+def chosen_entry_points(third_party: bool = True) -> tuple[list[EntryPoint], list[str]]:
+    """The entry points to load, and the names in RACEWAY_PLUGINS that nothing installed has; those of this project's packages always."""
     points = sorted(entry_points(group="raceway"), key=lambda p: (p.name, owner(p)[0]))
+    if not third_party:
+        points = [p for p in points if owner(p)[0] in packages()]
     missing: list[str] = []
     every = {name for p in points for name in _called(p)}
     exact = os.environ.get("RACEWAY_PLUGINS")
-    if exact is not None:
+    if exact is not None and third_party:
         names = _names(exact)
         missing = sorted(names - every)
-        points = [p for p in points if names & _called(p)]
+        points = [p for p in points if owner(p)[0] in packages() or names & _called(p)]
     blocked = _names(os.environ.get("RACEWAY_DISABLE", ""))
     labels = sorted(every)
     for name in sorted(blocked - set(labels)):
@@ -58,6 +62,12 @@ def owner(point: EntryPoint) -> tuple[str, str]:
         folder = getattr(point.dist, "_path", None)
         name = Path(str(folder)).name.partition("-")[0] if folder is not None else point.name
     return name, version
+
+
+def named(place: str) -> Any:
+    """What "module:name" says, imported."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)
 
 
 def is_foreign_fault(why: BaseException) -> bool:

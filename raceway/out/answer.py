@@ -120,7 +120,7 @@ class Answer(Shown):
         """The report on a terminal, the written files below it."""
         from rich.console import Group
 
-        from raceway.out.table import rows_table, written
+        from raceway.out.table import file_lines, rows_table
         from raceway.out.wrapping import Words
 
         def shown(part: Part) -> RenderableType:
@@ -128,7 +128,7 @@ class Answer(Shown):
                 return Words(part)
             return rows_table(part) if isinstance(part, list) else part
 
-        return Group(*map(shown, self.report()), *written(list(files)))
+        return Group(*map(shown, self.report()), *file_lines(list(files)))
 
 
 class Interrupted(KeyboardInterrupt):

@@ -64,7 +64,7 @@ def micro(text: str) -> str:
     return re.sub(r"\bum\b", "µm", text)
 
 
-def written(files: Sequence[str]) -> list[RenderableType]:
+def file_lines(files: Sequence[str]) -> list[RenderableType]:
     """The files' names, each unbroken on its line, so that it can be copied."""
     return [Text(f"written: {name}", no_wrap=True, overflow="ignore") for name in files]
 

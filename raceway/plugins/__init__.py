@@ -2,8 +2,7 @@
 
 excitations, measured_force      forces
 identifiers, order_tracking      dynamic stiffness from motion
-structured_mesh, gmsh, mesh_files  hexahedra of the bodies
-formats, abaqus                  mesh files
+structured_mesh                  hexahedra of the bodies
 ball_pass, film, friction, life  quantities: ball-pass frequencies; film parameters; friction torque by source; reference and modified life
 heat                             quantities: temperatures, and the thermal network
 processes, dask                  executors
@@ -14,19 +13,15 @@ system_libraries                 system libraries that packages for meshes and p
 from __future__ import annotations
 
 from raceway.framework.hookspecs import hookimpl
-from raceway.plugins.abaqus import Abaqus
 from raceway.plugins.ball_pass import BallPass
 from raceway.plugins.dask import Dask
 from raceway.plugins.excitations import Bidirectional, RunUp, Unidirectional
 from raceway.plugins.film import FilmParameter, FilmThickness
-from raceway.plugins.formats import Msh, Vtu
 from raceway.plugins.friction import Friction
-from raceway.plugins.gmsh import Gmsh
 from raceway.plugins.heat import Temperatures
 from raceway.plugins.identifiers import Fft1x, ImpedanceFit, SineFit, Tangent
 from raceway.plugins.life import Life
 from raceway.plugins.measured_force import Measured
-from raceway.plugins.mesh_files import File
 from raceway.plugins.order_tracking import OrderTracking
 from raceway.plugins.pictures import Pictures
 from raceway.plugins.processes import Processes, Serial
@@ -45,12 +40,12 @@ def raceway_identifiers() -> list[type]:
 
 @hookimpl
 def raceway_meshers() -> list[type]:
-    return [Structured, File, Gmsh]
+    return [Structured]
 
 
 @hookimpl
 def raceway_formats() -> list[type]:
-    return [Vtu, Abaqus, Msh, Pictures]
+    return [Pictures]
 
 
 @hookimpl

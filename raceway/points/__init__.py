@@ -11,6 +11,5 @@ workload    size and cost of points before any is computed
 function    ``raceway.function``: quantities as a function of arrays;  column_quantities: what it computes;  derivatives: by its keys
 follow, parameter, branch, attractor    ``raceway.follow``: the branch of steady orbits over a continuous key
 law         ``raceway.law``: one contact of a bearing with any installed contact law, beside Hertz'
-chebyshev   series of quantities over a box of inputs, with their error;  rigid_force: of a rigid bearing, as numbers for C
 compare_picture, precision_picture, follow_picture    what they draw
 """

@@ -21,7 +21,7 @@ from raceway.planning.plan import make_plan
 from raceway.points.function import BLOCK, Function
 from raceway.points.store import Store, connected, exists
 from raceway.scene.reading import scene_from_dict
-from raceway.storage.files import told
+from raceway.storage.files import size_words
 from raceway.storage.tables import ReadTables, Tables
 
 #: Least time of a run, an equilibrium with what is stated beside it, and time to store a number [s].
@@ -77,8 +77,8 @@ class Workload(Answer):
             ("Size and cost, predicted", "", ""),
             (self.noun, f"{most}{self.points}", ""),
             ("wall time", f"{most}{duration(self.seconds)}", "with compiled kernels in the cache"),
-            *([("memory", told(self.bytes), "at the peak")] if self.bytes else []),
-            *([("on the disk", told(self.disk_bytes), "without pictures")] if self.disk_bytes else []),
+            *([("memory", size_words(self.bytes), "at the peak")] if self.bytes else []),
+            *([("on the disk", size_words(self.disk_bytes), "without pictures")] if self.disk_bytes else []),
             ("How they are computed", "", ""),
         ]
         ways = {"compiled loop": self.looped, "runs": self.runs, "refused": self.refused, "stored": self.stored}

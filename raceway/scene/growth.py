@@ -71,7 +71,17 @@ def _growth(b: Bearing, depth: Number) -> Number:
     if not has_columns(b):
         return RingSection.of(b, depth).growth(young, poisson)
     # Of all columns it depends on these; points often share them.
-    numbers = b.bore, b.width, b.pitch_diameter, b.ball_diameter, b.conformity_inner, b.contact_angle, depth, young, poisson
+    numbers: tuple[Number, ...] = (
+        b.bore,
+        b.width,
+        b.pitch_diameter,
+        b.ball_diameter,
+        b.conformity_inner,
+        b.contact_angle,
+        depth,
+        young,
+        poisson,
+    )
     columns = np.stack(np.broadcast_arrays(*numbers, np.zeros(length(b))))
     _, points, index = np.unique(columns, axis=1, return_index=True, return_inverse=True)
     rows = [at_row(b, point) for point in points]

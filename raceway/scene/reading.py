@@ -15,22 +15,14 @@ from raceway.errors import Mistake, PluginError, SceneError
 from raceway.framework.doors import door, reader
 from raceway.framework.options import nearest
 from raceway.framework.registry import REGISTRY, Registry, default_registry
+from raceway.framework.sources import named
 from raceway.scene.catalogue import preset, preset_of, with_material
 from raceway.scene.inputs import Given
 from raceway.scene.lubricant import lubricant_mistakes
 from raceway.scene.scene import Scene
 from raceway.scene.sets import GEOMETRY
 from raceway.scene.structure import structure, table_without_units
-from raceway.scene.tables import (
-    OPTIONAL_TABLES,
-    PLUGIN_TABLES,
-    STUDY_TABLES,
-    SWAPPED_TABLES,
-    TABLES,
-    AutoIntegrator,
-    Rig,
-    quantities_table,
-)
+from raceway.scene.tables import OPTIONAL_TABLES, PLUGIN_TABLES, SWAPPED_TABLES, TABLES, AutoIntegrator, quantities_table
 from raceway.scene.tolerance import check_tolerances
 from raceway.storage.tables import ReadTables, Tables
 
@@ -240,9 +232,9 @@ def scene_from_dict(
         parts[name] = None
         if name in plain or name not in OPTIONAL_TABLES:
             parts[name] = _plugin_table(name, kind, default, plain.get(name, {}), registry, mistakes)
-    for name, cls in STUDY_TABLES.items():
+    for name, place in registry.mapping("raceway_tables").items():
         if name in plain:
-            structure(plain[name], cls, name, mistakes)
+            structure(plain[name], named(place), name, mistakes)
     parts["quantities"] = structure(plain.get("quantities", {}), quantities_table(registry), "quantities", mistakes)
     if not mistakes:
         mistakes += lubricant_mistakes(parts["contact"].law, parts["lubricant"])
@@ -286,7 +278,14 @@ def _of_inlet(mistake: Mistake) -> Mistake:
 
 def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:
     """Title, and a copy of the known tables."""
-    names = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *STUDY_TABLES, "quantities", "tolerances", "requires", "title"]
+    names = [
+        *dict.fromkeys((*TABLES, *PLUGIN_TABLES)),
+        *registry.mapping("raceway_tables"),
+        "quantities",
+        "tolerances",
+        "requires",
+        "title",
+    ]
     for name in tables:
         if name not in names:
             mistakes.append(Mistake(name, None, f"unknown table{nearest(name, names)}; known: {', '.join(names)}"))
@@ -357,25 +356,6 @@ def options_class(kind: str, word: str, registry: Registry) -> type:
     return AutoIntegrator if (kind, word) == ("integrator", AutoIntegrator.name) else registry.find(kind, word).plugin
 
 
-def rig_of(scene: Scene) -> Rig:
-    """The table ``[rig]`` of a scene.
-
-    Raises
-    ------
-    SceneError
-        There is none.
-    """
-    if "rig" not in scene.source:
-        raise SceneError.at(
-            "rig", None, "is required: a table [rig] with shaft, disc and sensor (see examples/test_rig.toml)"
-        )
-    mistakes: list[Mistake] = []
-    rig = structure(scene.source["rig"], Rig, "rig", mistakes)
-    if rig is None:
-        raise SceneError(mistakes)
-    return rig
-
-
 def with_paths(tables: ReadTables, folder: Path, registry: Registry) -> Tables:
     """A copy of the tables in which the plug-ins' options that name files start at the scene file's folder."""
     result = copy.deepcopy(dict(tables))
@@ -394,8 +374,9 @@ def numbers_only(tables: ReadTables, registry: Registry) -> Tables:
     for name, table in tables.items():
         if isinstance(table, dict):
             quantities = quantities_table(registry) if name == "quantities" else None
-            classes = (TABLES.get(name), STUDY_TABLES.get(name), quantities, _plugin(name, tables, registry))
-            for cls in (plugin for plugin in classes if plugin is not None):
+            place = registry.mapping("raceway_tables").get(name)
+            classes = (TABLES.get(name), place and named(place), quantities, _plugin(name, tables, registry))
+            for cls in filter(None, classes):
                 result[name] = table_without_units(result[name], cls)
     return result
 

@@ -12,10 +12,11 @@ from typing import Any, Union, get_args, get_origin
 import attrs
 
 from raceway.framework.registry import Registry, default_registry
+from raceway.framework.sources import named
 from raceway.scene.catalogue import catalogue, materials
 from raceway.scene.structure import table_of_list
 from raceway.scene.tables import PLUGIN_TABLES as PLUGIN_TABLES
-from raceway.scene.tables import STUDY_TABLES, TABLES, AutoIntegrator, quantities_table
+from raceway.scene.tables import TABLES, AutoIntegrator, quantities_table
 from raceway.scene.units import PATTERN
 from raceway.storage.tables import Tables
 
@@ -38,8 +39,8 @@ def scene_schema(registry: Registry | None = None) -> Tables:
         bearing["properties"][part]["properties"]["material"]["enum"] = list(materials())
     for name, (kind, default) in PLUGIN_TABLES.items():
         tables[name] = _plugin_table(name, kind, default, registry)
-    for name, cls in STUDY_TABLES.items():
-        tables[name] = _table(cls)
+    for name, place in registry.mapping("raceway_tables").items():
+        tables[name] = _table(named(place))
     tables["quantities"] = _table(quantities_table(registry))
     words = 'by how much numbers may differ: "load.axial" = "±10 %", class = "P4" (ISO 492, ABEC), balls = "G5" (ISO 3290)'
     tables["tolerances"] = {"type": "object", "description": words}

@@ -2,7 +2,7 @@
 
 files          files that are whole or absent; refusal of files without end or beyond the memory
 memory         memory that is available;  tables: types of what TOML and JSON files hold
-number_table   tables of numbers from CSV files;  headings: column headers and clocks below preambles of instruments;  labview: .tdms files
+number_table   tables of numbers from CSV files;  headings: column headers and clocks below preambles of instruments
 array_cache    arrays that are expensive to make
 kernel_cache   folder of the compiled kernels and their digests
 """

@@ -102,11 +102,11 @@ def size_of(path: str | Path, most: int) -> int:
     if not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode):
         raise ValueError("is not a regular file: pipes and devices are not read")
     if status.st_size > most:
-        raise ValueError(f"has {told(status.st_size)}; at most {told(most)} are read")
+        raise ValueError(f"has {size_words(status.st_size)}; at most {size_words(most)} are read")
     return status.st_size
 
 
-def told(size: float) -> str:
+def size_words(size: float) -> str:
     """A number of bytes with three digits."""
     for unit in ("bytes", "KiB", "MiB"):
         if size < 1024.0:

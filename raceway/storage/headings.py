@@ -167,7 +167,7 @@ def _names(
         if 2 * sum(map(_is_unit, here)) > max(sum(map(bool, here)), 1):
             units = words if k == above[-1] else units
             continue
-        numbers = [word for word in here if is_number(word) or not re.search(r"[^\W\d_]", word)]
+        numbers = [word for word in here if is_numeral(word) or not re.search(r"[^\W\d_]", word)]
         counted = units and lines[k].strip()[0] not in _MARKS and all(word.isdigit() for word in numbers)
         if (not numbers or counted) and here[0] not in numbers:
             return words, units, k
@@ -222,10 +222,10 @@ def _with_clock(heading: Heading, preamble: str, begin: Sequence[float]) -> Head
 
 def _numbers(words: Sequence[str], sign: str) -> tuple[int, ...]:
     """Indices of the words that are numbers; a comma is a decimal sign where none stands between columns."""
-    return tuple(k for k, word in enumerate(words) if is_number(word if sign == "," else word.replace(",", ".")))
+    return tuple(k for k, word in enumerate(words) if is_numeral(word if sign == "," else word.replace(",", ".")))
 
 
-def is_number(word: str) -> bool:
+def is_numeral(word: str) -> bool:
     """Whether Python reads a number in a word."""
     try:
         float(word)

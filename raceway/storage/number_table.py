@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TextIO
 import attrs
 
 from raceway.storage.files import size_of
-from raceway.storage.headings import Heading, heading_of, is_number
+from raceway.storage.headings import Heading, heading_of, is_numeral
 
 if TYPE_CHECKING:
     import numpy as np
@@ -176,7 +176,7 @@ def _values(rows: list[str], numbers: np.ndarray, width: int, sign: str) -> np.n
     table = []
     for text, number in zip(rows, numbers, strict=True):
         words, shown = next(csv.reader([text], delimiter=sign)), text.strip()[:_SHOWN]
-        if len(words) != width or not all(map(is_number, words)):
+        if len(words) != width or not all(map(is_numeral, words)):
             raise ValueError(f"line {number}: {width} numbers are needed, found {shown!r}")
         table.append([float(word) for word in words])
         if not all(abs(value) < NONE for value in table[-1]):

@@ -13,12 +13,12 @@ import time
 from pathlib import Path
 
 import pytest
+from raceway_app.form import groups
+from raceway_app.session import Session
+from raceway_app.worker import Job, News, Worker
 
 import raceway as rw
 from raceway.scene.inputs import as_given
-from raceway.studies.app.form import groups
-from raceway.studies.app.session import Session
-from raceway.studies.app.worker import Job, News, Worker
 from validation.browser.application import Application, Tab, proportional_memory
 from validation.browser.chromium import Browser
 from validation.command_line import EXAMPLES, PATIENCE_S

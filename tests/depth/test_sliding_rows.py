@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from raceway_rotor.node_bearing import node_bearing
 
 import raceway as rw
 from raceway import ConvergenceError
 from raceway.core.ring.kernels.layout import SHIFT
 from raceway.pipeline.run_parts import _mounted
-from raceway.studies.rotor.node_bearing import node_bearing
 from raceway.testing import b7206c
 from validation.reference.mounted import approach, axial, row
 

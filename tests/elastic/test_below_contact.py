@@ -109,8 +109,7 @@ def test_cells_near_a_place_have_a_node_there():
 @pytest.mark.needs("pyvista")
 def test_the_picture_and_the_file_of_the_elements_near_the_contacts(result, tmp_path):
     import pyvista
-
-    from raceway.studies.view.stress import _Fields, contact_stress_files
+    from raceway_view.stress import _Fields, contact_stress_files
 
     files = contact_stress_files(result)
     assert list(files) == ["contact.vtu", "stress_contact.png"]

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from raceway_view.stress import _Fields, contacts_left_out, field_files
 
 from raceway import scene_from_dict
 from raceway.scene.inputs import read_toml
 from raceway.storage.files import write_whole
-from raceway.studies.view.stress import _Fields, contacts_left_out, field_files
 from raceway.testing import run
 from validation.command_line import EXAMPLES
 

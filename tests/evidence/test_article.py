@@ -16,11 +16,7 @@ from typing import Any
 
 import attrs
 import pytest
-
-from raceway.framework.registry import default_registry
-from raceway.pipeline.run import run
-from raceway.scene.reading import scene_from_dict
-from raceway.studies.article.design import (
+from raceway_article.design import (
     FRICTION_ERROR,
     FRICTION_STEPS,
     FRICTION_TURNS,
@@ -30,6 +26,10 @@ from raceway.studies.article.design import (
     article_tables,
     design,
 )
+
+from raceway.framework.registry import default_registry
+from raceway.pipeline.run import run
+from raceway.scene.reading import scene_from_dict
 from validation.command_line import EXAMPLES
 
 pytestmark = pytest.mark.release

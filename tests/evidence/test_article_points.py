@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from raceway_article.design import Setting, article_tables, design
+from raceway_article.study import _curve
 
 from raceway.framework.registry import default_registry
-from raceway.studies.article.design import Setting, article_tables, design
-from raceway.studies.article.study import _curve
 
 pytestmark = pytest.mark.release
 

@@ -9,12 +9,12 @@ from functools import cache
 
 import numpy as np
 import pytest
+from raceway_catalogue.inferred import STIFFNESS_95
+from raceway_catalogue.printed import printed_by
+from raceway_catalogue.rating_conventions import stiffnesses
 
 import raceway as rw
 from raceway.core.jit import working_process_time
-from raceway.studies.catalogue.inferred import STIFFNESS_95
-from raceway.studies.catalogue.printed import printed_by
-from raceway.studies.catalogue.rating_conventions import stiffnesses
 from validation.command_line import invoke
 
 NSK = "NSK, super-precision bearings, series 70, 72, 79"

@@ -16,12 +16,12 @@ from math import log2
 import attrs
 import numpy as np
 import pytest
+from raceway_meshing.formats import Vtu
 
 from raceway import load_scene
 from raceway.bodies.condensed import Condensed
 from raceway.bodies.mesh import mesh_bodies
 from raceway.planning.resolve import resolve
-from raceway.plugins.formats import Vtu
 from raceway.scene.growth import ring_inertia
 from raceway.scene.reading import scene_from_dict
 from raceway.testing import run, settled

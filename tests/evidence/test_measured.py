@@ -13,6 +13,14 @@ from pathlib import Path
 import attrs
 import numpy as np
 import pytest
+from raceway_measure.fit.fit import fit
+from raceway_measure.fit.identify import _coefficients, identify, identify_recording
+from raceway_measure.fit.signals import write_recording
+from raceway_measure.fit.synchronous import slow_roll
+from raceway_measure.rig.signals import _silent, record, response, slow_roll_record, white_noise
+from raceway_measure.rig.study import rig as rig_study
+from raceway_rotor.rig_table import Rig, rig_of
+from raceway_rotor.shaft import _beam, balance, bearing, rotor, shaft
 
 from raceway import RacewayError, load_scene
 from raceway.core.jit import working_process_time
@@ -20,15 +28,6 @@ from raceway.pipeline.front import run
 from raceway.scene.catalogue import catalogue
 from raceway.scene.changes import with_number
 from raceway.scene.inputs import evolve
-from raceway.scene.reading import rig_of
-from raceway.scene.tables import Rig
-from raceway.studies.fit.fit import fit
-from raceway.studies.fit.identify import _coefficients, identify, identify_recording
-from raceway.studies.fit.signals import write_recording
-from raceway.studies.fit.synchronous import slow_roll
-from raceway.studies.rig.signals import _silent, record, response, slow_roll_record, white_noise
-from raceway.studies.rig.study import rig as rig_study
-from raceway.studies.shaft import _beam, balance, bearing, rotor, shaft
 from raceway.testing import b7206c, default_registry
 from validation.shaker import hammer_record
 from validation.shaker import record as record_of_shaker

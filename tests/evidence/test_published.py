@@ -1,6 +1,6 @@
 """Published numbers and closed forms.
 
-Frames and normalisations stand with each case in raceway/data/cases.json, how each is computed in raceway/studies/verify.
+Frames and normalisations stand with each case in packages/raceway-checks/raceway_checks/data/cases.json, how each is computed in raceway/studies/verify.
 """
 
 from __future__ import annotations
@@ -8,8 +8,7 @@ from __future__ import annotations
 from functools import cache
 
 import pytest
-
-from raceway.studies.verify.study import COMPUTED, verify
+from raceway_checks.verify.study import COMPUTED, verify
 
 
 @cache

@@ -11,11 +11,11 @@ from itertools import product
 
 import numpy as np
 import pytest
+from raceway_article.study import SOLVER_SPEEDS, TRENDS
 
 from raceway import RacewayError
 from raceway.core.ring.energy import energy_balance, friction_energy
 from raceway.core.signals import phasors
-from raceway.studies.article.study import SOLVER_SPEEDS, TRENDS
 from raceway.testing import b7206c, model_of, settled, simulate, solve_equilibrium
 from validation.ball_pass import passing_hz, passing_scene, static_amplitude
 from validation.equilibria import EXTREME_RESIDUAL, RESIDUAL, families, part, random_scenes, solve
@@ -25,7 +25,7 @@ from validation.scenes import random_tables
 from validation.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
 
 SOLVER = "another rigid-ring solver (validation/expected_values.py)"
-TURNING = "another rigid-ring solver (raceway/studies/article/study.py)"
+TURNING = "another rigid-ring solver (packages/raceway-article/raceway_article/study.py)"
 #: Printed digits, largest relative error of rounding.
 ROUNDING = {3: 0.005, 4: 0.0005}
 CONVEX = "the potential of loaded rings is convex: there is an equilibrium"
@@ -250,7 +250,7 @@ def test_extreme_scenes(claim):
 
 
 def test_a_pair_is_two_rows(claim):
-    from raceway.studies.verify.study import verify
+    from raceway_checks.verify.study import verify
 
     rows = verify(only=["nsk-7206C-stiffness", "nsk-7206A-stiffness"]).rows
     single, pair = ([row.computed for row in rows if ("as pair" in row.quantity) == wanted] for wanted in (False, True))

@@ -8,11 +8,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from raceway_checks.stability.catalogue import catalogue
+from raceway_checks.stability.study import PROCESSES, measured, stability
 
 from raceway.framework.registry import registry_with
 from raceway.points.store import written
-from raceway.studies.stability.catalogue import catalogue
-from raceway.studies.stability.study import PROCESSES, measured, stability
 
 pytestmark = pytest.mark.night
 #: Finished cases are kept here and beside it, as the command keeps them.

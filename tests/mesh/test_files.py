@@ -1,20 +1,19 @@
 """Meshes from files and from Gmsh: sets, other solids, and files that are not what they should be."""
 
 import re
-import sys
 
 import attrs
 import meshio
 import numpy as np
 import pytest
+from raceway_meshing.abaqus import Abaqus
+from raceway_meshing.formats import Msh, Vtu
+from raceway_meshing.gmsh import Gmsh
+from raceway_meshing.mesh_files import File
 
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.bodies.mesh import check_sets, mesh_bodies
 from raceway.planning.resolve import resolve
-from raceway.plugins.abaqus import Abaqus
-from raceway.plugins.formats import Msh, Vtu
-from raceway.plugins.gmsh import Gmsh
-from raceway.plugins.mesh_files import File
 from raceway.scene.tables import Supports
 from tests.mesh.solids import write, write_msh
 from validation.command_line import EXAMPLES
@@ -44,19 +43,6 @@ def test_a_format_keeps_a_mesh_and_names_files_of_no_use(form, tmp_path):
         with pytest.raises(MeshError, match=path.name) as told:
             form.read(path)
         assert not str(told.value).endswith(": ")
-
-
-@pytest.mark.needs("gmsh")
-def test_without_its_package_a_mesh_names_the_extra(tmp_path, monkeypatch):
-    box = write(tmp_path / "box.step", "box")
-    for package, extra, call in (
-        ("meshio", "mesh", lambda: Vtu().write(tmp_path / "x.vtu", block())),
-        ("gmsh", "gmsh", lambda: Gmsh(inner_ring=box).mesh(BEARING)),
-    ):
-        with monkeypatch.context() as without:
-            without.setitem(sys.modules, package, None)
-            with pytest.raises(MeshError, match=rf"pip install '.\[{extra}\]'"):
-                call()
 
 
 @pytest.mark.needs("ccx")

@@ -7,12 +7,12 @@ from typing import ClassVar
 
 import attrs
 import pytest
+from raceway_meshing.abaqus import Abaqus
+from raceway_meshing.gmsh import Gmsh
 
 from raceway import MeshError, PluginError, SceneError, load_scene, make_plan, scene_from_dict
 from raceway.bodies.mesh import mesh_bodies, predicted_mesh
 from raceway.planning.resolve import resolve
-from raceway.plugins.abaqus import Abaqus
-from raceway.plugins.gmsh import Gmsh
 from raceway.plugins.structured_mesh import Structured
 from tests.mesh import solids
 from validation.command_line import EXAMPLES, invoke

@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import pi
 
 import pytest
+from raceway_rotor.rig_table import Rig
+from raceway_rotor.shaft import balance, bearing, rotor
 
 from raceway import load_scene
-from raceway.scene.tables import Rig
-from raceway.studies.shaft import balance, bearing, rotor
 from raceway.testing import default_registry
 from validation.command_line import EXAMPLES
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import attrs
 import numpy as np
 import pytest
+from raceway_measure.fit.identify import _coefficients, _standard_errors
+from raceway_measure.fit.rig import invert, with_moment, with_tilt_of
+from raceway_rotor.shaft import _whirling_load, bearing, find_root, rotor, shaft
 
 from raceway import ConvergenceError, SceneError, load_scene
-from raceway.studies.fit.identify import _coefficients, _standard_errors
-from raceway.studies.fit.rig import invert, with_moment, with_tilt_of
-from raceway.studies.shaft import _whirling_load, bearing, find_root, rotor, shaft
 from raceway.testing import default_registry
 from tests.rig.conftest import SPEED
 from validation.command_line import EXAMPLES

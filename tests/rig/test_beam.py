@@ -6,10 +6,10 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from raceway_measure.rig.signals import critical_speed, readings
+from raceway_rotor.rig_table import Rig
+from raceway_rotor.shaft import _beam, shaft
 
-from raceway.scene.tables import Rig
-from raceway.studies.rig.signals import critical_speed, readings
-from raceway.studies.shaft import _beam, shaft
 from tests.rig.conftest import SPEED
 
 E, NU, RHO, D = 212e9, 0.29, 7810.0, 0.03

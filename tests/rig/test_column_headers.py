@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from raceway_measure.fit.column_headers import columns_of
+from raceway_measure.fit.signals import recording_of, signals_of
 
 import raceway as rw
 from raceway import SceneError
-from raceway.studies.fit.column_headers import columns_of
-from raceway.studies.fit.signals import recording_of, signals_of
 from validation.command_line import EXAMPLES, invoke
 
 SCENE = EXAMPLES / "test_rig.toml"

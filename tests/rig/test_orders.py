@@ -8,12 +8,12 @@ from math import pi
 import attrs
 import numpy as np
 import pytest
+from raceway_measure.fit.shaft_angle import _pulses_of, rotation_of
+from raceway_measure.fit.signals import Recording
+from raceway_measure.fit.synchronous import Synchronous, _without_response, synchronous
+from raceway_rotor.shaft import rotor
 
 from raceway import RacewayError
-from raceway.studies.fit.shaft_angle import _pulses_of, rotation_of
-from raceway.studies.fit.signals import Recording
-from raceway.studies.fit.synchronous import Synchronous, _without_response, synchronous
-from raceway.studies.shaft import rotor
 
 LINE = 3e-6 * np.exp(0.7j)
 HZ = 183.3

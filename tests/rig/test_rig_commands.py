@@ -8,14 +8,14 @@ import re
 import attrs
 import numpy as np
 import pytest
+from raceway_measure.fit.identify import identify_recording
+from raceway_measure.fit.signals import recording_of, signals_of, write_recording
+from raceway_measure.rig.signals import _silent, record, response
+from raceway_rotor.rig_table import Signals
+from raceway_rotor.shaft import balance, bearing, rotor
 
 from raceway import ConvergenceError, RacewayError, load_scene
 from raceway.points.store import written
-from raceway.scene.tables import Signals
-from raceway.studies.fit.identify import identify_recording
-from raceway.studies.fit.signals import recording_of, signals_of, write_recording
-from raceway.studies.rig.signals import _silent, record, response
-from raceway.studies.shaft import balance, bearing, rotor
 from raceway.testing import default_registry
 from tests.rig.conftest import SPEED
 from validation.command_line import EXAMPLES, invoke
@@ -228,7 +228,7 @@ def test_signals_that_no_such_bearing_gives(tmp_path, rig, held, state):
 
 @pytest.mark.slow
 def test_a_point_without_a_motion_is_shown_as_failed(tmp_path, monkeypatch):
-    from raceway.studies.rig import study as module
+    from raceway_measure.rig import study as module
 
     def fails(line, held):
         if line.speed > 1500.0:
@@ -246,7 +246,7 @@ def test_a_point_without_a_motion_is_shown_as_failed(tmp_path, monkeypatch):
 
 @pytest.mark.slow
 def test_finished_points_are_kept_and_give_the_same_numbers_without_a_run(tmp_path, monkeypatch):
-    from raceway.studies import shaft as module
+    from raceway_rotor import shaft as module
 
     changed = ["rig.speeds_rpm=[11000.0, 13000.0]", "rig.axial_loads=[2000.0]", "rig.signals.duration=0.1"]
     words = ["study", "rig", SCENE, *(w for change in changed for w in ("--set", change)), "--out", tmp_path]

@@ -13,7 +13,7 @@ from raceway.core.record import Schedule
 from raceway.core.threads import ThreadPool
 from raceway.core.time.schemes import integrate
 from raceway.elastic.assembly import _fitting_threads
-from raceway.elastic.ring import at_rest
+from raceway.elastic.ring import standstill
 from raceway.integrators.methods import CentralDifference
 from raceway.testing import settled
 from tests.test_elastic_scene import EXCITED, TINY
@@ -44,7 +44,7 @@ def moved(case: str, threads: int, steps: int = STEPS, step: float = STEP, on_ch
     assembly = model.bearing.bearing.system.assembly
     kept, assembly.threads = assembly.threads, ThreadPool(threads)
     try:
-        start = at_rest(model.system, False)
+        start = standstill(model.system, False)
         return integrate(CentralDifference(), model.system, start, Schedule(step, steps, 1), on_chunk)
     finally:
         assembly.threads = kept

@@ -8,7 +8,7 @@ import pytest
 from raceway.core.record import Schedule
 from raceway.core.time.schemes import integrate
 from raceway.elastic.iterative_solver import LinearSolver
-from raceway.elastic.ring import at_rest
+from raceway.elastic.ring import standstill
 from raceway.elastic.superelement import Closed
 from raceway.integrators.methods import GeneralizedAlpha, Newmark
 from raceway.testing import solve_equilibrium
@@ -46,7 +46,7 @@ def on_the_way(**tables):
     model, system = stepped(True, **tables)
     ring, rng = model.system, np.random.default_rng(4)
     y = ring.equilibrium
-    start = at_rest(ring, ramped=False)
+    start = standstill(ring, ramped=False)
     ring.stepped().begin(start)
     v = 1e-3 * rng.standard_normal(system.size) * system.assembly.unknown
     v[3:5] *= 100.0
@@ -135,7 +135,7 @@ def test_steps_with_friction_are_those_of_the_unreduced_system(method, tables):
     for reduced in (True, False):
         model, system = stepped(reduced, **tables)
         ring = model.system
-        start = at_rest(ring, ramped=False)
+        start = standstill(ring, ramped=False)
         record = integrate(method, ring.stepped(), start, Schedule(STEP, 4, 1))
         found.append((record, start, system.contact.friction))
     (new, start, friction), (old, _, _) = found

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from raceway_checks.verify.reference import reference_cases
+from raceway_checks.verify.study import _impact_of, _measure, transient_integrators
 
 from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.ring.kernels.layout import DAMPING
 from raceway.core.time.schemes import integrate
 from raceway.framework.registry import default_registry
-from raceway.studies.verify.reference import reference_cases
-from raceway.studies.verify.study import _impact_of, _measure, transient_integrators
 
 CASES = ("chung-ooi-1-glass", "chung-ooi-3-alumina")
 INTEGRATORS = [entry.name for entry in transient_integrators(default_registry())]

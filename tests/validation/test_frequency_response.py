@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from raceway_measure.fit.linear import fit_record
+from raceway_measure.fit.response import FrequencyResponse, response_of
 
 import raceway as rw
 from raceway import SceneError
-from raceway.studies.fit.linear import fit_record
-from raceway.studies.fit.response import FrequencyResponse, response_of
 from tests.validation.instrument_files import DAMPING, MASS, NEWTONS_PER_VOLT, STIFFNESS, record, write
 
 pyuff = pytest.importorskip("pyuff")

@@ -6,12 +6,12 @@ import json
 
 import numpy as np
 import pytest
+from raceway_measure.fit.column_headers import columns_of
+from raceway_measure.fit.signals import signals_of
 
 import raceway as rw
 from raceway import SceneError
 from raceway.storage.number_table import read_numbers
-from raceway.studies.fit.column_headers import columns_of
-from raceway.studies.fit.signals import signals_of
 from tests.validation.instrument_files import DAMPING, FORMS, MASS, STIFFNESS, WORDS, write
 from validation.command_line import invoke
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from raceway_measure.fit.linear import fit_record
+from raceway_measure.fit.response import FrequencyResponse
 
 import raceway as rw
-from raceway.studies.fit.linear import fit_record
-from raceway.studies.fit.response import FrequencyResponse
 
 pytest.importorskip("pyuff")
 from examples import substructuring as example  # noqa: E402  pyuff is needed

@@ -21,8 +21,9 @@ def _command(file: str, *words: Any) -> Callable[[Path], Path]:
 
 def _article(folder: Path) -> Path:
     """The page of the article's study around invented curves, which costs no run; its figures are all there."""
-    from raceway.studies.article.figures import drawings
-    from raceway.studies.article.page import page
+    from raceway_article.figures import drawings
+    from raceway_article.page import page
+
     from validation.article_study import curves, study
 
     found = study(curves(lambda setting, load, w: 1e8 * (1.0 + 0.3 * w**2) * (load / 1000.0) ** 0.3, ("rigid", "condensed")))
@@ -31,7 +32,8 @@ def _article(folder: Path) -> Path:
 
 def _article_elastic(folder: Path) -> Path:
     """The page of elastic bodies around invented rows."""
-    from raceway.studies.article.elastic_page import drawings, page
+    from raceway_article.elastic_page import drawings, page
+
     from validation.article_study import elastic_study
 
     content = elastic_study().to_dict()

@@ -1,0 +1,24 @@
+"""What this package adds to ``raceway``: a page of a scene on this machine."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from raceway import hookimpl
+
+if TYPE_CHECKING:
+    from raceway.extend import Later
+
+
+@hookimpl
+def raceway_commands() -> dict[str, tuple[Later, ...]]:
+    from raceway.extend import Later
+
+    return {
+        "Answers": (Later("app", "raceway_app.command:app", "A page to look at a scene and change it, on this machine."),)
+    }
+
+
+@hookimpl
+def raceway_names() -> dict[str, str]:
+    return {"app": "raceway_app.server"}

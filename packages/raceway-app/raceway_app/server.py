@@ -1,0 +1,312 @@
+"""``raceway app``: the page of one or two scenes, served on this machine alone."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import secrets
+import sys
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from raceway import RacewayError, SceneError
+from raceway.extend import Given, SceneSource, Tables, as_given, csv_text, writable, write_whole
+from raceway_app.form import groups, texts
+from raceway_app.guard import guard
+from raceway_app.session import Session
+from raceway_app.worker import Job, News, Worker
+
+#: What is opened without a scene: the two excitation models under identical settings.
+_EXAMPLE: Tables = {
+    "title": "B7206C under 1 kN and the rig's unbalance",
+    "bearing": {"preset": "B7206C"}, "supports": {"tilt": "locked"}, "rotor": {"mass": 2.0}, "load": {"axial": 1000.0},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 6.39e-4, "load_share": 0.5},
+    "contact": {"kind": "hertz", "damping": 0.001},
+}  # fmt: skip
+_NAMES = ("A", "B")
+#: What the worker reports within so long [s] is shown at once.
+_TOGETHER_S = 1e-3
+
+
+class Page:
+    """State of the page, and what its buttons do; the state is shared by all tabs."""
+
+    def __init__(self, session: Session, plugins: Iterable[Path]) -> None:
+        from trame_server import Server
+
+        self.session = session
+        self.ranges: dict[str, tuple[float, float]] = {}
+        self.server = Server("raceway", client_type="vue3")
+        self.state: Any = self.server.state
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._job = -1  # the last that computes pictures
+        self._numbers: dict[int, int] = {}  # panel -> number of the change that its picture belongs to
+        self._curves: dict[int, list[Tables]] = {}
+        self._reports: deque[News] = deque()
+        self.worker = Worker(list(plugins), self._from_worker)
+        self.state.update({f"{name}_{k}": None for k in (0, 1) for name in ("screen", "rings", "bodies")})
+        self.state.update(
+            {"charts": [], "forms": [], "note": "", "ranges": {}, "folder": str(session.folder), "done": -1, "busy": {}}
+        )
+        self.state.trame__title = "Raceway"
+        self._show([0, 1])
+        for name in ("change", "compare", "undo", "redo", "range", "stop", "write"):
+            self.server.controller.trigger(name)(getattr(self, f"on_{name}"))
+        data, view = (Path(str(files(name).joinpath("data"))) for name in ("raceway_app", "raceway_view"))
+        self.server.enable_module(
+            {
+                "serve": {"raceway": str(data), "raceway_view": str(view)}, "vue_use": ["raceway_app"],
+                "scripts": ["raceway_view/view.js", "raceway/app.js"], "styles": ["raceway/app.css"],
+            }
+        )  # fmt: skip
+        self.state.trame__template_main = (data / "app.html").read_text(encoding="utf-8")
+
+    def on_change(self, panels: list[int], key: str, text: str, merge: bool = False) -> None:
+        """A field was changed; ``merge``: by the same slider as before, which is undone at once."""
+        self._after(lambda: self.session.change([int(k) for k in panels], str(key), str(text), bool(merge)))
+
+    def on_compare(self, on: bool) -> None:
+        """A second scene is put beside the first, or taken away."""
+        self._after(lambda: self.session.compare(bool(on)))
+
+    def on_undo(self) -> None:
+        """Back by one change."""
+        self._after(lambda: self.session.undo())
+
+    def on_redo(self) -> None:
+        """Forward again."""
+        self._after(lambda: self.session.undo(back=False))
+
+    def on_range(self, axis: str, low: float, high: float) -> None:
+        """The ends of an axis of the curves."""
+        if isinstance(low, int | float) and isinstance(high, int | float) and 0.0 <= low < high < 1e9:
+            self.ranges = {**self.ranges, str(axis): (float(low), float(high))}
+            self.session.number += 1
+            self._show(list(range(len(self.session.scenes))))
+        else:
+            self.state.note = f"an axis goes from 0 or more up to a larger number below 1e9, not from {low} to {high}"
+
+    def on_stop(self) -> None:
+        """What runs is not wanted."""
+        self.worker.stop()
+
+    def on_write(self, kind: str, panel: int) -> None:
+        """A file: of the scene ("scene"), the curves ("csv"), pictures ("png"), coefficients ("ross")."""
+        session = self.session
+        panel = int(panel == 1 and len(session.scenes) == 2)
+        try:
+            if kind == "scene":
+                self.state.note = f"written: {session.save(panel)}"
+            elif kind == "csv":
+                text = csv_text(list(_curve_rows(self._curves)))
+                self.state.note = f"written: {write_whole(text.encode(), session.file('curves', '.csv'))}"
+            elif kind in ("png", "ross"):
+                path = session.file(*{"png": ("pictures", ""), "ross": ("bearing", ".toml")}[kind], panel)
+                self.worker.submit(
+                    Job(session.number, {panel: (session.number, session.scenes[panel])}, file=kind, path=path)
+                )
+                self.state.note = "writing"
+        except RacewayError as error:
+            self.state.note = str(error)
+
+    def _after(self, act: Callable[[], list[int]]) -> None:
+        """Do something to the session, then show what has changed."""
+        self.state.note = ""
+        try:
+            self._show(act())
+        except (SceneError, TypeError, ValueError) as error:
+            self.state.note = str(error)
+
+    def _show(self, changed: list[int]) -> None:
+        """The form, and new pictures of panels that have changed; their old numbers are marked as such until then."""
+        session = self.session
+        scenes: dict[int, tuple[int, Given]] = {}
+        panels: list[Tables] = []
+        for k, tables in enumerate(session.scenes):
+            scene, mistakes = session.checked(k)
+            typed, valid = texts(tables, scene)
+            panels.append({
+                "name": _NAMES[k], "said": typed, "holds": valid, "mistakes": mistakes, "title": tables.merged().get("title", ""),
+                "command": session.command(k), "python": session.python(k) if scene is not None else "",
+            })  # fmt: skip
+            if k in changed:
+                self._numbers[k] = session.number
+                if scene is None:
+                    self._forget(k)
+                else:
+                    scenes[k] = session.number, tables
+        if len(panels) == 1 and self._numbers.pop(1, None) is not None:  # what is computed of it still is dropped
+            self._forget(1)
+        busy = {k: words for k, words in (self.state.busy or {}).items() if int(k) not in changed and int(k) < len(panels)}
+        busy |= {str(k): "computing" for k in scenes}
+        undo, redo = session.can_undo
+        self.state.update({
+            "panels": panels, "can_undo": undo, "can_redo": redo, "number": session.number,
+            "busy": busy, "ranges": dict(self.ranges),
+        })  # fmt: skip
+        if (forms := [groups(tables) for tables in session.scenes]) != self.state.forms:  # the largest part, of kinds alone
+            self.state.forms = forms
+        if scenes:
+            self._job = session.number
+            self.worker.submit(Job(session.number, scenes, dict(self.ranges)))
+        elif not busy:
+            self.state.done = session.number
+
+    def _forget(self, panel: int) -> None:
+        """A scene that is refused, or is no more, has no numbers."""
+        self.state.update({f"screen_{panel}": None, f"bodies_{panel}": None})
+        self._curves.pop(panel, None)
+        self.state.charts = _charts(self._curves)
+
+    def _from_worker(self, news: News) -> None:
+        """In the worker's thread: a picture and the end of its job go to the page together, which is drawn once."""
+        self._reports.append(news)
+        if self._loop is not None:
+            self._loop.call_soon_threadsafe(self._loop.call_later, _TOGETHER_S, self._take)
+
+    def _take(self) -> None:
+        with self.state:
+            while self._reports:
+                self._news(self._reports.popleft())
+
+    def _news(self, news: News) -> None:
+        """What the worker reports, unless the scene has changed meanwhile."""
+        panel, state = news.panel, self.state
+        if news.kind == "file":
+            state.note = f"written: {', '.join(news.content)}"
+        elif news.kind == "failed file":
+            state.note = f"not written: {'; '.join(sentence for _, sentence in news.content)}"
+        elif news.kind == "done":
+            if news.number == self._job:
+                state.update({"busy": {}, "done": self.session.number})
+        elif self._numbers.get(panel) != news.number:
+            return
+        elif news.kind == "progress":
+            part, steps, total = news.content
+            state.busy = {**state.busy, str(panel): f"{part} {100 * steps // total} %" if total else part}
+        elif news.kind == "refused":
+            self._forget(panel)
+            panels = [dict(panel_state) for panel_state in state.panels]
+            panels[panel]["mistakes"] = news.content
+            state.panels = panels
+        elif news.kind == "picture":
+            if "screen" in news.content:
+                state[f"screen_{panel}"] = {**news.content["screen"], "number": news.number}
+                state[f"bodies_{panel}"] = {name: news.content[name] for name in ("bodies", "why")}
+            if "rings" in news.content:
+                state[f"rings_{panel}"] = {"rings": news.content["rings"], "number": news.number}
+            if "curves" in news.content:
+                self._curves[panel] = news.content["curves"]
+                for curve in news.content["curves"]:  # axes stay while a key is changed
+                    if curve["lines"]:
+                        self.ranges.setdefault(curve["axis"], (curve["x"][0], curve["x"][-1]))
+                state.charts = _charts(self._curves)
+
+    def serve(self, port: int, token: str, ready: Callable[[str], None]) -> None:
+        """Until Ctrl-C."""
+        server = self.server
+
+        async def session(request: Any) -> Any:  # a page of trame asks a launcher of processes first
+            from aiohttp.web import json_response
+
+            return json_response({"sessionURL": f"ws://{request.headers['Host']}/ws", "secret": "wslink-secret"})
+
+        def bind(app: Any) -> None:
+            app.app.middlewares.append(guard(token))
+            app.app.router.add_post("/paraview/", session)
+
+        def begin(**_: object) -> None:
+            self._loop = asyncio.get_running_loop()
+            self._take()
+            ready(f"http://127.0.0.1:{server.port}/index.html?token={token}")
+
+        server.controller.on_server_bind.add(bind)
+        server.controller.on_server_ready.add(begin)
+        logging.getLogger("aiohttp").setLevel(logging.CRITICAL)  # requests that are none
+        os.environ["WSLINK_WS_COMPRESS"] = "0"  # nothing is far
+        arguments, sys.argv = sys.argv, sys.argv[:1]
+        try:
+            server.start(
+                port=port, host="127.0.0.1", open_browser=False, show_connection_info=False, timeout=0, disable_logging=True
+            )
+        finally:
+            sys.argv = arguments
+            self.worker.close()
+
+
+def _charts(curves: Mapping[int, list[Tables]]) -> list[Tables]:
+    """Panels of all scenes, curves of the same quantity in one."""
+    charts: dict[tuple[str, str], Tables] = {}
+    for panel, panels in sorted(curves.items()):
+        for content in panels:
+            key = (content["axis"], content["panel"])
+            chart = charts.setdefault(
+                key, {k: content.get(k) for k in ("axis", "panel", "label", "unit")} | {"series": [], "notes": []}
+            )
+            chart["series"] += [
+                {"panel": panel, "label": line["label"], "x": content["x"], "y": line["y"], "present": content["present"]}
+                for line in content["lines"]
+            ]
+            if content["why"] or content.get("missing"):
+                missing = content.get("missing")
+                points = f"{missing} points without an answer of the fast loop; " if missing else ""
+                chart["notes"].append(f"{_NAMES[panel]}: {points}{content['why'] or 'a run may have one'}")
+    return [chart | {"id": k} for k, chart in enumerate(charts.values())]
+
+
+def _curve_rows(curves: Mapping[int, list[Tables]]) -> Iterable[Tables]:
+    """A row for each point of each curve."""
+    for panel, panels in sorted(curves.items()):
+        for content in panels:
+            for line in content["lines"]:
+                for x, y in zip(content["x"], line["y"], strict=True):
+                    yield {
+                        "scene": _NAMES[panel], "axis": content["label"], "x": x, "quantity": line["name"], "unit": content["unit"],
+                        "value": "" if y is None else y,
+                    }  # fmt: skip
+
+
+def app(
+    scene: SceneSource | None = None,
+    *,
+    out: str | Path | None = None,
+    port: int = 0,
+    ready: Callable[[str], None] = print,
+    plugins: Iterable[str | Path] = (),
+) -> None:
+    """Look at a scene in a browser and change it: bearing, ball loads, curves over speed and load; served to this machine alone, until Ctrl-C.
+
+    Parameters
+    ----------
+    scene : Scene, path, TOML text or dict of tables; None: the two excitation models of an example side by side
+    out : folder in which the page's buttons write, and nowhere else; None: raceway-out/app
+    port : of the server on 127.0.0.1; 0: any that is free
+    ready : called with the address, which carries a token, once the page can be opened
+    plugins : files of one-off plug-ins that scenes may use
+
+    Raises
+    ------
+    SceneError
+        A source that is no scene.
+    RacewayError
+        trame is missing, or the port is taken.
+
+    Examples
+    --------
+    >>> import raceway as rw
+    >>> rw.app("examples/b7206.toml", ready=lambda address: print(address[:17]))  # doctest: +SKIP
+    http://127.0.0.1:
+    """
+    from raceway.extend import registry_with
+
+    paths = [Path(path) for path in plugins]
+    registry_with(paths)
+    tables = as_given(_EXAMPLE if scene is None else scene)
+    session = Session((tables,), writable(Path(out) if out is not None else Path("raceway-out") / "app"))
+    if scene is None:
+        session.compare(True)
+    Page(session, paths).serve(port, secrets.token_urlsafe(24), ready)

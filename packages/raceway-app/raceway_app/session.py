@@ -1,0 +1,159 @@
+"""One or two scenes that are looked at: their changes, undone and redone, and what states them outside of the page."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+
+import attrs
+
+from raceway import RacewayError, Scene, SceneError
+from raceway.extend import Given, default_registry, leaves, slug, told, writable, write_whole
+from raceway_app.form import groups, value_of
+
+#: Changes that can be undone.
+_HISTORY = 200
+#: The excitation that a comparison begins with.
+_OTHER = {"bidirectional": "unidirectional", "unidirectional": "bidirectional"}
+
+
+@attrs.define
+class Session:
+    """The scenes of a page, and how they came about.
+
+    Attributes
+    ----------
+    scenes : one, or two that are compared
+    folder : where files are written, and nowhere else
+    number : of changes so far
+    """
+
+    scenes: tuple[Given, ...]
+    folder: Path
+    number: int = 0
+    _past: list[tuple[Given, ...]] = attrs.field(factory=list)
+    _future: list[tuple[Given, ...]] = attrs.field(factory=list)
+
+    def change(self, panels: Sequence[int], key: str, text: str, merge: bool = False) -> list[int]:
+        """Set a key of some panels; an empty text takes it out; ``merge``: undone together with the change before.
+
+        Returns
+        -------
+        list of int : panels that have changed
+
+        Raises
+        ------
+        SceneError
+            A key that no scene can have.
+        """
+        value = value_of(text)
+        changed = {panel: self.scenes[panel].changed({key: value}) for panel in panels if 0 <= panel < len(self.scenes)}
+        if key.endswith(".kind"):
+            changed = {panel: _fitting(scene, key.partition(".")[0]) for panel, scene in changed.items()}
+        changed = {panel: scene for panel, scene in changed.items() if scene.merged() != self.scenes[panel].merged()}
+        if changed:
+            self._become(tuple(_short(changed.get(k, scene)) for k, scene in enumerate(self.scenes)), merge)
+        return list(changed)
+
+    def compare(self, on: bool) -> list[int]:
+        """Put a second scene beside the first, the other excitation model under the same settings; or take it away."""
+        if on == (len(self.scenes) == 2):
+            return []
+        first = self.scenes[0]
+        kind = (first.merged().get("excitation") or {}).get("kind")
+        second = first.changed({"excitation.kind": _OTHER[kind]}) if kind in _OTHER else first
+        self._become((first, second) if on else (first,))
+        return [1] if on else []
+
+    def undo(self, back: bool = True) -> list[int]:
+        """To the scenes before the last change, or forward again.
+
+        Returns
+        -------
+        list of int : panels that have changed
+        """
+        old, new = (self._past, self._future) if back else (self._future, self._past)
+        if not old:
+            return []
+        before, now = self.scenes, old.pop()
+        new.append(before)
+        self.scenes = now
+        self.number += 1
+        return [k for k, scene in enumerate(now) if k >= len(before) or scene.merged() != before[k].merged()]
+
+    @property
+    def can_undo(self) -> tuple[bool, bool]:
+        """Whether there is something to undo, and to redo."""
+        return bool(self._past), bool(self._future)
+
+    def _become(self, scenes: tuple[Given, ...], merge: bool = False) -> None:
+        if not (merge and self._past):
+            self._past = [*self._past, self.scenes][-_HISTORY:]
+        self._future = []
+        self.scenes = scenes
+        self.number += 1
+
+    def checked(self, panel: int) -> tuple[Scene | None, list[tuple[str, str]]]:
+        """The scene, or its mistakes: path and sentence."""
+        try:
+            return self.scenes[panel].scene(default_registry()), []
+        except SceneError as error:
+            return None, [(mistake.path, str(mistake)) for mistake in error.mistakes]
+        except RacewayError as error:
+            return None, [("", str(error))]
+
+    def command(self, panel: int) -> str:
+        """The command line that computes the scene; empty where --set cannot say it: no file, a key taken out, tables in a list."""
+        scene = self.scenes[panel]
+        old, new = dict(leaves(scene.tables)), dict(leaves(scene.merged()))
+        changes = {key: new.get(key) for key in dict.fromkeys((*old, *new)) if old.get(key) != new.get(key)}
+        if scene.folder is None or any(value is None or "{" in told(value) for value in changes.values()):
+            return ""
+        settings = [f"--set {shlex.quote(f'{key}={told(value)}')}" for key, value in changes.items()]
+        return " ".join(["raceway run", shlex.quote(str(scene.folder / f"{scene.name}.toml")), *settings])
+
+    def python(self, panel: int) -> str:
+        """Python that computes the scene, from its tables alone."""
+        return f"import raceway as rw\n\nresult = rw.run({self.scenes[panel].plain(default_registry())!r})\nprint(result)"
+
+    def file(self, stem: str, suffix: str, panel: int | None = None) -> Path:
+        """A path in the folder that is not there yet, with the name of one of two scenes.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        name = stem if panel is None or len(self.scenes) == 1 else f"{stem}-{'AB'[panel]}"
+        paths = (writable(self.folder) / f"{name}{count}{suffix}" for count in ("", *(f"-{k}" for k in range(2, 1000))))
+        return next(path for path in paths if not path.exists())
+
+    def save(self, panel: int) -> Path:
+        """Write the scene as a TOML file into the folder.
+
+        Raises
+        ------
+        RacewayError
+            A folder that cannot be written.
+        """
+        import tomli_w
+
+        tables = self.scenes[panel].plain(default_registry())
+        return write_whole(tomli_w.dumps(tables).encode(), self.file(slug(str(tables["title"])), ".toml", panel))
+
+
+def _fitting(scene: Given, table: str) -> Given:
+    """Without the keys of a table that its new kind does not have."""
+    fields = {field["path"] for group in groups(scene) if group["name"] == table for field in group["fields"]}
+    beside = [f"{table}.{path}" for path, _ in leaves(scene.merged().get(table) or {}) if f"{table}.{path}" not in fields]
+    return scene.changed(dict.fromkeys(beside)) if beside else scene
+
+
+def _short(scene: Given) -> Given:
+    """The same scene, whose changes do not grow with each edit: the last of a key holds."""
+    changes: dict[str, object] = {}
+    for key, value in scene.changes:
+        changes.pop(key, None)
+        changes[key] = value
+    return attrs.evolve(scene, changes=tuple(changes.items()))

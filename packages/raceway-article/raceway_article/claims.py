@@ -1,0 +1,480 @@
+"""The article's claims, each with its rule, what was computed and the verdict that follows.
+
+No claim is fitted: a verdict is what its rule states of the numbers.  Claims 4 to 6 are judged for K and for |Z|, of which the
+article does not say which one its stiffness is.
+
+A rule is a function of arrays, which returns None where numbers are missing.  A number that is missing is nan.  Where ``failed`` is
+True a run failed or was refused: nothing is judged over such a gap.  The other numbers that are missing belong to unstable motions:
+those between two numbers are bridged, those at an end leave no judgement.
+
+Notes
+-----
+For each exponent p a power law is linear in its other numbers.  The interval of p holds every exponent whose sum of squared
+residuals stays below S (1 + t^2 / (n - m)) + 3.84 e^2: S is the least sum, e the root mean square of the runs' errors, n numbers,
+m parameters, t Student's and 3.84 chi squared at 95 %.
+
+References
+----------
+Seber, Wild, Nonlinear Regression (1989), section 5.4 (intervals from the sum of squares).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import attrs
+import numpy as np
+from scipy.special import stdtrit
+
+from raceway.extend import ReadTables, Tables, trend
+from raceway_article.design import FRICTION_WORDS, MEASURES, ONE_WAY, ROTATING, TILT_WORDS, Curves
+from raceway_article.rules import BRIDGED, FAILED, HOLDS, LEVEL, NOT, PARTLY, UNTESTED, Finding, Verdict
+
+#: What the text of the article states: deviations of peak pressures; effects of the axial load in two zones of w*.
+_LARGEST_DEVIATION, _HEAVIEST_DEVIATION = 0.0242, 0.0033
+_LOW_ZONE, _HIGH_ZONE = (0.0, 0.25), (0.75, 1.0)
+_LOW_EFFECT, _HIGH_EFFECT = 0.08, 0.34
+#: Readings of claim 5: number -> effect, rule.
+_READINGS = {
+    "5a": ("effect of speed inside each zone", "rise of k at one axial load: k(0.25)/k(0) − 1 and k(1)/k(0.75) − 1"),
+    "5b": ("effect of speed up to the end of each zone", "rise at one axial load: k*(0.25) − 1 and k*(1) − 1"),
+    "5c": ("effect of the axial load on k", "largest k over smallest, of all axial loads, where that is largest in the zone"),
+    "5d": ("effect of the axial load on k*", "largest k* over smallest, of all axial loads, where that is largest in the zone"),
+}  # fmt: skip
+
+#: Number, claim, rule, what was computed, outcomes of the rule.
+_Row = tuple[str, str, str, str, list[Finding]]
+
+
+#: "about" a percentage: within this share of it.
+ABOUT = 0.25
+
+
+def _course(values: np.ndarray, errors: np.ndarray, failed: np.ndarray) -> str | None:
+    """ "rises" or "falls" at every step, "level", "not monotonic"; None with a failed run, without both ends, or with
+    fewer than three numbers.
+
+    values : (n,);  errors : (n,) relative; a step within its ends' errors is no step;  failed : (n,) bool
+    """
+    finite = np.isfinite(values)
+    if failed.any() or not (finite[0] and finite[-1] and finite.sum() >= 3):
+        return None
+    y = values[finite]
+    if np.ptp(y) < LEVEL * abs(y[0]):
+        return "level"
+    steps = trend(y, errors[finite])
+    return steps if steps == "not monotonic" or abs(y[-1] / y[0] - 1.0) >= LEVEL else "level"
+
+
+def _about(value: float, target: float) -> bool:
+    return abs(value - target) <= ABOUT * target
+
+
+def _change_within(w: np.ndarray, values: np.ndarray, failed: np.ndarray, first: float, last: float) -> float | None:
+    """k(last) / k(first) - 1 over the relative speed w (n,); None with a failed run or without numbers around both ends."""
+    ends = None if failed.any() else _between(w, values, np.array([first, last]))
+    return None if ends is None else float(ends[1] / ends[0] - 1.0)
+
+
+def _spread(w: np.ndarray, surface: np.ndarray, failed: np.ndarray, first: float, last: float) -> float | None:
+    """Largest of max/min - 1 over the loads at the ends of a zone and the speeds in it; None as in ``_change_within``.
+
+    surface : (loads, speeds), positive;  failed : (loads, speeds) bool
+    """
+    zone = np.array([first, *w[(w > first) & (w < last)], last])
+    rows = [None if failed.any() else _between(w, values, zone) for values in surface]
+    complete = [row for row in rows if row is not None]
+    if len(complete) < len(rows):
+        return None
+    return float((np.max(complete, axis=0) / np.min(complete, axis=0) - 1.0).max())
+
+
+def _between(w: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray | None:
+    """Values at ascending points, between neighbours by straight lines; None where they do not reach both ends."""
+    finite = np.isfinite(values)
+    w, values = w[finite], values[finite]
+    return None if len(w) < 2 or at[0] < w[0] or at[-1] > w[-1] else np.interp(at, w, values)
+
+
+def _rises_with_load(surface: np.ndarray, errors: np.ndarray, failed: np.ndarray) -> list[bool | None]:
+    """At each speed: whether k rises at every step of the axial load; (loads, speeds) each."""
+    courses = [_course(*column) for column in zip(surface.T, errors.T, failed.T, strict=True)]
+    return [None if outcome is None else outcome == "rises" for outcome in courses]
+
+
+def _influence(surface: np.ndarray) -> np.ndarray:
+    """(loads,) |k*(1) - 1|, the size of the speed's influence."""
+    return np.asarray(np.abs(surface[:, -1] / surface[:, 0] - 1.0))
+
+
+def _influence_grows(surface: np.ndarray, failed: np.ndarray) -> bool | None:
+    """Whether the size of the speed's influence rises at every step of the axial load; (loads, speeds) each."""
+    size = _influence(surface)
+    if failed.any() or not np.isfinite(size).all():
+        return None
+    return bool((np.diff(size) > 0.0).all())
+
+
+_EXPONENTS = np.linspace(0.05, 30.0, 2996)
+_CHANCE, _CHI_SQUARED = 0.975, 3.84
+#: Nearer to 2 than to 1 or 3 is roughly quadratic; a straight line has 1.
+NEAREST, _STRAIGHT = (1.5, 2.5), 1.0
+
+
+@attrs.frozen
+class _Exponent:
+    """Of a power law; ``low`` and ``high`` end its 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+
+    @property
+    def roughly_quadratic(self) -> bool:
+        """Nearer to 2 than to any other whole number, and no straight line."""
+        return NEAREST[0] <= self.value <= NEAREST[1] and not self.low <= _STRAIGHT <= self.high
+
+
+def _exponent(x: np.ndarray, y: np.ndarray, errors: np.ndarray, constant: bool) -> _Exponent | None:
+    """p of y = c x^p, or of y = a + c x^p with a ``constant``; None where the numbers are too few for an interval.
+
+    x : (n,) positive;  y : (n,), nan where a number is missing;  errors : (n,) absolute
+    """
+    finite = np.isfinite(y)
+    x, y, errors = x[finite], y[finite], errors[finite]
+    free = len(y) - 2 - constant
+    if free < 1:
+        return None
+    sums = _residuals(x[None, :] ** _EXPONENTS[:, None], y, constant)
+    best = int(np.argmin(sums))
+    limit = sums[best] * (1.0 + stdtrit(free, _CHANCE) ** 2 / free) + _CHI_SQUARED * float((errors**2).mean())
+    inside = _EXPONENTS[sums <= limit]
+    # No interval is narrower than the step of the grid.
+    value, step = _EXPONENTS[best], _EXPONENTS[1] - _EXPONENTS[0]
+    low, high = min(inside.min(initial=np.inf), value - step), max(inside.max(initial=0.0), value + step)
+    return _Exponent(float(value), float(low), float(high))
+
+
+def _residuals(powers: np.ndarray, y: np.ndarray, constant: bool) -> np.ndarray:
+    """Sums of squares (k,) that y (n,) leaves beside the best multiple of each power (k, n), about the means with a constant."""
+    if constant:
+        powers, y = powers - powers.mean(axis=1, keepdims=True), y - y.mean()
+    factor = powers @ y / (powers**2).sum(axis=1)
+    return np.asarray(((y - factor[:, None] * powers) ** 2).sum(axis=1))
+
+
+_ORDER = ("friction", "tilt", "inertia", "bodies", "speed", "load")
+
+
+def _where(findings: Sequence[Finding], holds: bool | None) -> str:
+    """The region with one outcome; "everywhere", "nowhere", or phrases between semicolons."""
+    keys = [key for key in _ORDER if any(key in finding.at for finding in findings)]
+    phrases = _phrases([(dict(finding.at), finding.holds is holds) for finding in findings], keys)
+    if phrases is None:
+        return "nowhere"
+    return "; ".join(phrases) if phrases != [""] else "everywhere"
+
+
+def _phrases(items: list[tuple[Tables, bool]], keys: list[str]) -> list[str] | None:
+    """[""] for all of the items, None for none, else a phrase for each part."""
+    if all(inside for _, inside in items):
+        return [""]
+    if not any(inside for _, inside in items) or not keys:
+        return None
+    key, *remaining = keys
+    values = list(dict.fromkeys(at.get(key) for at, _ in items))
+    below = {value: _phrases([item for item in items if item[0].get(key) == value], remaining) for value in values}
+    if len({str(part) for part in below.values()}) == 1:
+        return below[values[0]]
+    phrases: list[str] = []
+    for text in dict.fromkeys(str(part) for part in below.values() if part is not None):
+        same = [value for value in values if str(below[value]) == text]
+        name = _named(key, same, values)
+        phrases += [f"{name}, {phrase}" if phrase else name for phrase in below[same[0]] or []]
+    return phrases
+
+
+def _named(key: str, values: Sequence[Any], every: Sequence[Any]) -> str:
+    """Some of all values of a key, in words."""
+    if key == "tilt":
+        return "tilt " + " or ".join(TILT_WORDS[value].removeprefix("tilt ") for value in values)
+    if key == "friction":
+        return " or ".join(FRICTION_WORDS[value] for value in values)
+    if key == "inertia":
+        return "with ball inertia" if values[0] else "weightless balls"
+    if key == "bodies":
+        return f"{' or '.join(values)} bodies"
+    return _ranges(values, every, "N" if key == "load" else "r/min")
+
+
+def _ranges(values: Sequence[float], every: Sequence[float], unit: str) -> str:
+    """Neighbours as one range."""
+    runs: list[list[float]] = [[]]
+    for value in every:
+        if value in values:
+            runs[-1].append(value)
+        elif runs[-1]:
+            runs.append([])
+    words = [f"{run[0]:g}" if len(run) == 1 else f"{run[0]:g} to {run[-1]:g}" for run in runs if run]
+    return f"{' and '.join(words)} {unit}"
+
+
+def _by_tilt(findings: Sequence[Finding], scale: float = 1.0, unit: str = "", form: str = ".3f") -> str:
+    """The range of the values at each tilt boundary, for each kind of friction."""
+    texts = {}
+    for friction in dict.fromkeys(finding.at.get("friction") for finding in findings):
+        with_friction = [finding for finding in findings if finding.at.get("friction") == friction]
+        parts = []
+        for tilt in dict.fromkeys(finding.at["tilt"] for finding in with_friction):
+            values = [scale * f.value for f in with_friction if f.at["tilt"] == tilt and f.value is not None]
+            ends = dict.fromkeys(f"{value:{form}}" for value in (min(values), max(values))) if values else {}
+            parts.append(f"{TILT_WORDS[tilt]}: {' to '.join(ends)}{unit}" if ends else f"{TILT_WORDS[tilt]}: no number")
+        texts[str(friction)] = "; ".join(parts)
+    if len(texts) < 2:
+        return "".join(texts.values())
+    return ". ".join(f"{FRICTION_WORDS[friction].capitalize()}: {text}" for friction, text in texts.items())
+
+
+def _judge(number: str, claim: str, rule: str, computed: str, findings: Sequence[Finding]) -> Verdict:
+    """The verdict that follows from the outcomes of a rule.
+
+    Failed places never count as holding: with one of them a claim that holds everywhere else holds only for the remaining ones.
+    """
+    judged = [finding.holds for finding in findings if finding.holds is not None]
+    failed = region = ""
+    if len(judged) < len(findings):
+        reason = next(finding.why for finding in findings if finding.holds is None)
+        failed = f"{_where(findings, None)} (the first reason: {reason or 'a run is missing'})"
+    if not judged:
+        kind = FAILED
+    elif not any(judged):
+        kind = NOT
+    elif all(finding.holds for finding in findings):
+        kind = HOLDS
+    else:
+        kind, region = PARTLY, _where(findings, True)
+    return Verdict(number, claim, rule, computed, kind, region, failed, tuple(findings))
+
+
+def verdicts(curves: Curves, static: Sequence[ReadTables]) -> list[Verdict]:
+    """Every claim.
+
+    Parameters
+    ----------
+    static : rows of the static verification, as ``raceway verify`` computes them
+    """
+    out = [*_not_testable(static), *(_judge(*row) for row in _unidirectional(curves))]
+    for measure in MEASURES:
+        rows = [*_hardening(curves, measure), *_axial(curves, measure), *_combined(curves, measure)]
+        mark, ending = ("", "") if measure == "K" else (f" {measure}", f" k = {measure}.")
+        for number, claim, rule, computed, findings in rows:
+            out.append(_judge(f"{number}{mark}", f"{claim}{ending}", rule, computed, findings))
+    # Each claim for K, and at once for |Z|.
+    return sorted(out, key=lambda verdict: verdict.number[0])
+
+
+def _not_testable(static: Sequence[ReadTables]) -> list[Verdict]:
+    """Claims 1 and 2: load cases and measured stiffnesses are lost, so that there are only our numbers to report."""
+    pressures = [row for row in static if not row["quantity"].startswith("mesh independence")]
+    heaviest = [row for row in pressures if "inner" in row["quantity"] and "2000 N axial" in row["quantity"]]
+    rule = "none: the load cases are not in the text that is left of the article, so that no case can be computed again"
+    out = []
+    for number, claim, rows, deviation in (
+        ("1a", f"Static peak pressures are within {_LARGEST_DEVIATION:.2%} of exact Hertz in four load cases.", pressures,
+         "largest deviation of the peak pressures in four load cases of our own"),
+        ("1b", f"In the heaviest case the inner race's is within {_HEAVIEST_DEVIATION:.2%}.", heaviest,
+         "deviation of the inner race's peak pressure at 2000 N axial, the heaviest of ours"),
+    ):  # fmt: skip
+        errors = [row["error"] for row in rows if row["error"] is not None]
+        computed = f"{deviation}: {max(errors):.2%}" if errors else "no number"
+        failed = next((row["note"] for row in rows if row["error"] is None), "")
+        out.append(Verdict(number, claim, rule, computed, UNTESTED if errors or not rows else FAILED, failed=failed))
+    rule = "none: the table of measured stiffnesses is not in the text that is left of the article"
+    computed = "K at the rig's speeds and loads is reported in a table of its own"
+    return [*out, Verdict("2", "Stiffness is within 9.12 % of the rig's.", rule, computed, UNTESTED)]
+
+
+def _unidirectional(curves: Curves) -> list[_Row]:
+    """Claim 3: under a force along one line the stiffness falls with speed."""
+    rule = (
+        f"unidirectional force, constant amplitude: falls at every step of the speed, and by at least {LEVEL:.1%} over the range; "
+        f"{BRIDGED}"
+    )
+    rows = []
+    for number, measure, words in (
+        ("3a", "K", "K = Re Z + m w²"),
+        ("3b", "|Z|", "|Z|, which holds the inertia of the mass"),
+    ):
+        findings = []
+        for model, surface in curves.surfaces(ONE_WAY):
+            for curve in surface.curves:
+                values = curve.values(measure)
+                falls = _is("falls", _course(values, curve.errors, curve.failed))
+                why = curve.missing if falls is None else ""
+                findings.append(Finding({**model, "load": curve.load}, falls, _ratio(values), why))
+        claim = f"Unidirectional: the radial stiffness falls with speed; k = {words}."
+        rows.append((number, claim, rule, f"k*(w* = 1): {_by_tilt(findings)}", findings))
+    return rows
+
+
+def _is(word: str, outcome: str | None) -> bool | None:
+    return None if outcome is None else outcome == word
+
+
+def _ratio(values: np.ndarray) -> float | None:
+    """The last of the values over the first; None where a number is missing."""
+    ratio = values[-1] / values[0]
+    return float(ratio) if np.isfinite(ratio) else None
+
+
+#: Exponent of K over the speed, from relative and absolute speeds, values and relative errors (n,).
+_Fit = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], _Exponent | None]
+
+
+def _in_speed(_w: np.ndarray, speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> _Exponent | None:
+    return _exponent(speeds / speeds[-1], values / values[0], errors * values / values[0], constant=True)
+
+
+def _above_lowest(w: np.ndarray, _speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> _Exponent | None:
+    star = values / values[0]
+    return _exponent(w[1:], star[1:] - 1.0, (errors * star)[1:], constant=False)
+
+
+def _hardening(curves: Curves, measure: str) -> list[_Row]:
+    """Claim 4, "approximately quadratic", in two readings, and in either."""
+    claim = "Bidirectional: rises roughly quadratically with speed"
+    rows: list[_Row] = []
+    for number, words, law, fit in (
+        ("4a", "in the speed", f"{measure} = a + c w^p", _in_speed),
+        ("4b", "in the speed above the lowest", "k* − 1 = c w*^p", _above_lowest),
+    ):
+        rule = (
+            f"rotating force m e w²: {measure} rises at every step of the speed, by at least {LEVEL:.1%}, and by least squares {law} "
+            f"has p from {NEAREST[0]:g} to {NEAREST[1]:g} and a 95 % interval without 1, the straight line; {BRIDGED}"
+        )
+        findings, powers = _powers(curves, measure, fit)
+        rows.append((number, f"{claim}; read as {words}.", rule, f"k*(w* = 1): {_by_tilt(findings)}{powers}", findings))
+    either = [
+        Finding(a.at, None if a.holds is None and not b.holds else bool(a.holds or b.holds), a.value, a.why or b.why)
+        for a, b in zip(rows[0][-1], rows[1][-1], strict=True)
+    ]
+    return [("4", f"{claim}.", "4a or 4b", "see 4a and 4b", either), *rows]
+
+
+def _powers(curves: Curves, measure: str, fit: _Fit) -> tuple[list[Finding], str]:
+    """Outcomes for every model and load, and the exponents where k rises, in words."""
+    findings: list[Finding] = []
+    rising: dict[str, list[_Exponent]] = {}
+    for model, surface in curves.surfaces(ROTATING):
+        speeds, w = np.array(surface.speeds), np.array(curves.design.relative(surface.speeds))
+        for curve in surface.curves:
+            values, errors = curve.values(measure), curve.errors
+            rises = _is("rises", _course(values, errors, curve.failed))
+            power = fit(w, speeds, values, errors) if rises else None
+            quadratic = rises if not rises else None if power is None else power.roughly_quadratic
+            why = "" if quadratic is not None else curve.missing or "too few speeds for an exponent's interval"
+            findings.append(Finding({**model, "load": curve.load}, quadratic, _ratio(values), why))
+            if power is not None:
+                region = f"{FRICTION_WORDS[model['friction']]}, {TILT_WORDS[model['tilt']]}"
+                rising.setdefault(region, []).append(power)
+    words = [
+        f"{region} p = {min(p.value for p in powers):.2f} to {max(p.value for p in powers):.2f}, "
+        f"intervals from {min(p.low for p in powers):.2f} to {max(p.high for p in powers):.2f}"
+        for region, powers in rising.items()
+    ]
+    return findings, f". Where it rises: {'; '.join(words)}" if words else ""
+
+
+class _Effect(NamedTuple):
+    """An effect in the low and in the high zone of the speed, a fall with its sign; None where a number is missing."""
+
+    at: Tables
+    low: float | None
+    high: float | None
+    why: str
+
+
+def _effects(curves: Curves, measure: str) -> dict[str, list[_Effect]]:
+    """The two effects in every reading, wherever it can be taken."""
+    effects: dict[str, list[_Effect]] = {number: [] for number in _READINGS}
+    for model, surface in curves.surfaces(ROTATING):
+        w, values, failed, why = (
+            np.array(curves.design.relative(surface.speeds)),
+            surface.values(measure),
+            surface.failed,
+            surface.missing,
+        )
+        for load, k, lost in zip(surface.loads, values, failed, strict=True):
+            low = _change_within(w, k, lost, *_LOW_ZONE)
+            for number, begin in (("5a", _HIGH_ZONE[0]), ("5b", 0.0)):
+                high = _change_within(w, k, lost, begin, _HIGH_ZONE[1])
+                effects[number].append(_Effect({**model, "load": load}, low, high, why))
+        for number, k in (("5c", values), ("5d", values / values[:, :1])):
+            low, high = (_spread(w, k, failed, *zone) for zone in (_LOW_ZONE, _HIGH_ZONE))
+            effects[number].append(_Effect(model, low, high, why))
+    return effects
+
+
+def _axial(curves: Curves, measure: str) -> list[_Row]:
+    """Claim 5: about 8 % at low speeds and 34 % at high ones in every reading, and whether the effect grows."""
+    effects, rows = _effects(curves, measure), list[_Row]()
+    expected = f"about {_LOW_EFFECT:.0%} and about {_HIGH_EFFECT:.0%} (each within {ABOUT:.0%} of the number); {BRIDGED}"
+    claim = "Axial load: about 8 % effect for w* from 0 to 0.25, about 34 % from 0.75 to 1"
+    for number, (effect, words) in _READINGS.items():
+        zones = []
+        for zone in ("low", "high"):
+            zones.append([Finding(e.at, _as_claimed(e), getattr(e, zone), e.why) for e in effects[number]])
+        low, high = (_by_tilt(findings, 100.0, " %", ".1f") for findings in zones)
+        computed = f"low zone: {low}. High zone: {high}"
+        rows.append((number, f"{claim}; read as {effect}.", f"{words}: {expected}", computed, zones[1]))
+    grows = []
+    for at, low_effect, high_effect, why in effects["5c"]:
+        growth = None if low_effect is None or high_effect is None else high_effect - low_effect
+        grows.append(Finding(at, None if growth is None else growth > 0.0, growth, why))
+    computed = (
+        f"change of that effect from the low to the high zone, in points of percent: {_by_tilt(grows, 100.0, '', '+.1f')}"
+    )
+    rule = f"the effect of 5c is larger in the high zone than in the low one; {BRIDGED}"
+    return [*rows, ("5e", "The influence of the axial load grows with speed.", rule, computed, grows)]
+
+
+def _as_claimed(effect: _Effect) -> bool | None:
+    if effect.low is None or effect.high is None:
+        return None
+    return _about(effect.low, _LOW_EFFECT) and _about(effect.high, _HIGH_EFFECT)
+
+
+def _combined(curves: Curves, measure: str) -> list[_Row]:
+    """Claim 6: k rises with axial load, with speed, the speed's influence with axial load, and all of this."""
+    with_load, with_speed, grows, together = [], [], [], []
+    for model, surface in curves.surfaces(ROTATING):
+        values, errors, failed, why = surface.values(measure), surface.errors, surface.failed, surface.missing
+        rising = _rises_with_load(values, errors, failed)
+        with_load += [
+            Finding({**model, "speed": speed}, rises, _ratio(column), why)
+            for speed, rises, column in zip(surface.speeds, rising, values.T, strict=True)
+        ]
+        courses = [_is("rises", _course(*curve)) for curve in zip(values, errors, failed, strict=True)]
+        with_speed += [
+            Finding({**model, "load": load}, rises, _ratio(k), why)
+            for load, rises, k in zip(surface.loads, courses, values, strict=True)
+        ]
+        more, change = _influence_grows(values, failed), _influence(values)
+        growth = float(change[-1] - change[0]) if np.isfinite(change[[0, -1]]).all() else None
+        grows.append(Finding(model, more, growth, why))
+        parts = [*rising, *courses, more]
+        together.append(Finding(model, None if None in parts else False not in parts, None, why))
+    first, last = curves.design.loads[0], curves.design.loads[-1]
+    step = f"rotating force m e w²: {measure} rises at every step of the"
+    return [
+        ("6a", "The stiffness rises with axial load.", f"{step} axial load, at each speed; {BRIDGED}",
+         f"{measure} at {last:g} N over {measure} at {first:g} N: {_by_tilt(with_load)}", with_load),
+        ("6b", "The stiffness rises with speed.", f"{step} speed, at each axial load, by at least {LEVEL:.1%}; {BRIDGED}",
+         f"k*(w* = 1): {_by_tilt(with_speed)}", with_speed),
+        ("6c", "The speed's influence grows with axial load.",
+         "the size of the change with speed, |k*(1) - 1|, rises at every step of the axial load; a failed run at any speed or "
+         "an unstable motion at either end leaves no judgement",
+         f"from {first:g} to {last:g} N that size changes by, in points of percent: {_by_tilt(grows, 100.0, '', '+.1f')}", grows),
+        ("6", "All of this together.", "6a, 6b and 6c, at all speeds and axial loads", "see 6a, 6b and 6c", together),
+    ]  # fmt: skip

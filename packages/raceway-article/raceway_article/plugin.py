@@ -1,0 +1,44 @@
+"""What this package adds to ``raceway``: the article's study: its figures and a verdict on each of its claims."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import attrs
+
+from raceway import hookimpl
+
+if TYPE_CHECKING:
+    import click
+
+
+@attrs.frozen
+class Article:
+    """``raceway study article``."""
+
+    name: ClassVar[str] = "article"
+    help: ClassVar[str] = "The article's figures 9 to 12 and a verdict on each of its claims."
+
+    def command(self) -> click.Command:
+        from raceway import Command, Option
+
+        example = (
+            "raceway study article --bodies rigid --friction 0\n"
+            "raceway study article examples/b7206.toml \\\n"
+            "    --set rotor.mass=1.5 --axial 400,1000,2000\n"
+            "raceway study article --bodies elastic --set mesh.element_size=2e-3"
+        )
+        options = {
+            "bodies": Option(choices=("rigid", "condensed", "both", "elastic")),
+            "speeds": Option(metavar="LIST"),
+            "axial": Option(metavar="LIST"),
+            "shaft": Option(metavar="N·M/RAD"),
+            "friction": Option(metavar="MU"),
+            "turns": Option(metavar="N"),
+        }
+        return Command("article", "raceway_article.front:article", self.help, example, options, folder="-article").click()
+
+
+@hookimpl
+def raceway_studies() -> list[type]:
+    return [Article]

@@ -1,0 +1,71 @@
+"""Outcome of a claim's rule, and the verdict that follows."""
+
+from __future__ import annotations
+
+import attrs
+
+from raceway.extend import ReadTables, Tables
+
+#: A change below this over the whole range neither rises nor falls.
+LEVEL = 0.005
+
+
+@attrs.frozen
+class Finding:
+    """Outcome of a rule for one model, load or speed.
+
+    Attributes
+    ----------
+    at : which friction, tilt, inertia, bodies, load [N] and speed [r/min]
+    holds : None where it could not be judged, with the reason in ``why``
+    value : the number that the rule looks at
+    """
+
+    at: ReadTables
+    holds: bool | None
+    value: float | None = None
+    why: str = ""
+
+
+HOLDS, PARTLY, NOT, FAILED, UNTESTED = "holds", "holds only for", "does not hold", "failed", "cannot be tested"
+#: Kind of a verdict -> tone of its cell on a page, and words after a count.
+KINDS = {
+    HOLDS: ("good", "hold"),
+    PARTLY: ("partly", "hold only in a region"),
+    NOT: ("bad", "do not hold"),
+    FAILED: ("failed", "failed"),
+    UNTESTED: ("partly", "cannot be tested"),
+}
+#: How every rule treats numbers that are missing; the rules do it, this tells the reader.
+BRIDGED = "unstable motions between the ends are left out, a failed run leaves no judgement"
+
+
+@attrs.frozen
+class Verdict:
+    """A claim, or one reading of it.
+
+    Attributes
+    ----------
+    number : of the claim, with a letter where it has several parts or readings, and "|Z|" where that is taken for the stiffness
+    claim, rule, computed : in words
+    kind : one of HOLDS, PARTLY, NOT, FAILED, UNTESTED
+    region : where it holds, of PARTLY
+    failed : where runs failed or their motion is unstable, with the first reason; "" where none
+    """
+
+    number: str
+    claim: str
+    rule: str
+    computed: str
+    kind: str
+    region: str = ""
+    failed: str = ""
+    findings: tuple[Finding, ...] = ()
+
+    def row(self) -> Tables:
+        """As a row of a flat table."""
+        words = f"{self.kind} {self.region}" if self.region else self.kind
+        return {**attrs.asdict(self, filter=lambda field, _: field.name != "findings"), "verdict": words}
+
+    def to_dict(self) -> Tables:
+        return {**self.row(), "findings": [attrs.asdict(finding) for finding in self.findings]}

@@ -1,0 +1,86 @@
+"""Reference cases: what sources state and give, and how a computed number compares with theirs."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from importlib.resources import files
+from math import isfinite
+from typing import Any
+
+import attrs
+
+from raceway.extend import Tables
+
+#: Where the numbers of a case come from: what a document tells numbers of a source from.
+BASES = {"published": "published numbers", "closed form": "numbers of closed forms", "own": "internal comparisons"}
+
+
+@attrs.frozen
+class Row:
+    """One computed number beside that of a case, in the unit of the source.
+
+    Attributes
+    ----------
+    error : |computed / reference - 1|;  tolerance : largest error allowed;  ok : whether it is met
+    note : why there is no computed number (then computed and error are None, and ok is False), or ""
+    """
+
+    case: str
+    quantity: str
+    reference: float | None
+    computed: float | None
+    error: float | None
+    tolerance: float | None
+    ok: bool
+    source: str
+    basis: str
+    note: str = ""
+
+
+@attrs.frozen
+class Case:
+    """One case, in the units of its source (they are part of each key: ``Dw_mm``).
+
+    Attributes
+    ----------
+    basis : where ``outputs`` come from, a key of ``BASES``
+    inputs, outputs : what the source states and what it gives
+    rel_tol : relative agreement asked for, one number or one for each group of outputs
+    conventions : frame, signs and normalisation of the source, in words
+    source : where it was published
+    role : "check...", or "information..." for what this program need not compute
+    """
+
+    id: str
+    kind: str
+    basis: str
+    title: str
+    inputs: Tables
+    outputs: Tables
+    rel_tol: Any
+    conventions: str
+    source: str
+    role: str
+
+    @property
+    def checked(self) -> bool:
+        """Whether ``raceway verify`` computes it."""
+        return self.role.startswith("check")
+
+    def row(
+        self, quantity: str, reference: float | None, computed: float | None, tolerance: float | None, note: str = ""
+    ) -> Row:
+        """A number beside the case's own; ``note``: why there is none."""
+        if computed is not None and not isfinite(computed):
+            computed, note = None, f"computed {computed}: not a finite number"
+        error = None if computed is None or reference is None else abs(computed - reference) / abs(reference)
+        ok = error is not None and tolerance is not None and error <= tolerance
+        return Row(self.id, quantity, reference, computed, error, tolerance, ok, self.source, self.basis, note)
+
+
+@cache
+def reference_cases() -> dict[str, Case]:
+    """All cases by id, in the file's order."""
+    text = files("raceway_checks").joinpath("data/cases.json").read_text(encoding="utf-8")
+    return {case["id"]: Case(**case) for case in json.loads(text)["cases"]}

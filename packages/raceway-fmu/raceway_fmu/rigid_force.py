@@ -1,0 +1,161 @@
+"""The force of a bearing with rigid rings and balls: numbers of the rings' kernels, for C.
+
+Notes
+-----
+Numbers of geometry and balls are a + b W^2 in the speed W: centrifugal forces, gyroscopic moments, growth of the rings.  They are read from
+models at two speeds; a third speed shows whether that holds.
+"""
+
+from __future__ import annotations
+
+import math
+
+import attrs
+import numpy as np
+
+from raceway import Scene, SceneError, build_model
+from raceway.extend import CAGE, SCALARS, Model, System, compiled, renews, resolve, with_numbers
+from raceway_fmu.chebyshev import Interval, fit
+
+#: What to do instead.
+_MAP = "export the map instead (--kind map)"
+Numbers = dict[str, np.ndarray | float]
+SPIN, _RPM = "kinematics.spin_speed_rpm", np.pi / 30.0
+#: Speed times pitch diameter [r/min mm] of the highest speed, where that is not set and the scene is slower: a usual limit.
+_DN = 1.0e6
+#: Relative deviation from a + b W^2, and from a power law, that is rounding.
+_ROUNDING, _EXACT = 1e-11, 1e-12
+#: Twice the exponents of power laws that have C code of their own.
+_POWERS = (3, 4)
+#: Of a law's table: least over largest approach, relative error, most terms;  largest approach over Hertz's at the static limit.
+_SHALLOWEST, _TABLE_ERROR, _MOST_TERMS, _DEEPEST = 1e-4, 1e-9, 200, 1.5
+#: Relative error from which on a table is refused.
+_COARSEST = 1e-5
+#: Of difference quotients of outputs by the inputs.
+_STEPS = np.array([1e-9, 1e-9, 1e-9, 1e-7, 1e-7, 1e-2, 1e-5])
+
+
+@attrs.frozen(eq=False)
+class RigidForce:
+    """The force of a bearing with rigid rings and balls, as ``packages/raceway-fmu/raceway_fmu/data/force.c`` computes it.
+
+    Attributes
+    ----------
+    numbers : by their names in C: constants, arrays;  balls : their count
+    speed, highest : of the scene, and up to which the force is made for [rad/s]
+    limits : ball loads inside and outside up to which it is made for [N]: those of the static pressure of ISO 76
+    error : of the law, relative
+    """
+
+    numbers: Numbers
+    balls: int
+    speed: float
+    highest: float
+    limits: tuple[float, float]
+    error: float
+
+
+def rigid_force(scene: Scene, highest_rpm: float | None = None) -> RigidForce:
+    """Numbers of a scene.
+
+    Parameters
+    ----------
+    highest_rpm : speed that it is made for [r/min]; None: a quarter above the scene's, or the usual limit of such bearings
+
+    Raises
+    ------
+    SceneError
+        A scene whose force is no function of displacement and speed, or not of rigid bodies.
+    """
+    now = float(resolve(scene).spin_speed)
+    rpm = highest_rpm or max(1.25 * now / _RPM, _DN / (1e3 * scene.bearing.pitch_diameter))
+    model, highest = _model(scene, rpm), rpm * _RPM
+    races, ring = (model.bearing.basis.inner, model.bearing.basis.outer), _system(model)
+    loads = [float(np.min((model.bearing.static_pressure / race.peak_pressure(1.0)) ** 3)) for race in races]
+    depth = _DEEPEST * max(float(np.max(race.approach(load))) for race, load in zip(races, loads, strict=True))
+    law, largest, error = _law(ring, depth)
+    inner, outer = (min(load, largest) for load in loads)
+    numbers: Numbers = {
+        "BALLS": ring.ball_count,
+        "MOMENTS": int(not ring.conservative),
+        "CAGE_RATIO": float(model.bearing.basis.geometry.cage_speed(1.0)),
+        "HIGHEST_SPEED": highest,
+        "LIMIT_INNER": inner,
+        "LIMIT_OUTER": outer,
+        "steps": _STEPS,
+    }
+    # (Z, n) entries of ``table`` and ``scalars`` of each ball at rest, and what they grow by over the square of the speed.
+    rings = [_system(_model(scene, rpm * math.sqrt(part))) for part in (0.25, 0.5, 1.0)]
+    quarter, half, full = (np.hstack([r.table, np.broadcast_to(r.scalars, (r.ball_count, SCALARS))]) for r in rings)
+    growth = (full - quarter) / 0.75
+    if np.max(np.abs(full - 0.5 * growth - half)) > _ROUNDING * np.max(np.abs(full)):
+        raise SceneError.at(SPIN, rpm, f"changes geometry or preload otherwise than by its square: {_MAP}")
+    numbers |= {"at_rest": full - growth, "by_square": growth / (rpm * _RPM) ** 2} | law
+    return RigidForce(numbers, ring.ball_count, now, highest, (inner, outer), error)
+
+
+def _model(scene: Scene, rpm: float) -> Model:
+    """At a speed; what its force also depends on is refused."""
+    model = build_model(with_numbers(attrs.evolve(scene, excitation=None), {SPIN: rpm}))
+    faults = {
+        "bodies.kind": not model.traits.contacts_alone and "are not rigid, or roll on lines",
+        "contact.kind": renews(scene.contact.law) and "follows the running loads",
+        "contact.friction": scene.contact.friction > 0.0 and "has a memory of slips: set it to 0, or",
+        "bearing.preload_kind": model.system.sliding is not None and "lets rows slide on a spring",
+    }
+    for key, why in faults.items():
+        if why:
+            raise SceneError.at(key, None, f"{why}: {_MAP}")
+    return model
+
+
+def _system(model: Model) -> System:
+    system = compiled(model.system)
+    assert system is not None, "rigid bodies have compiled forces"
+    return system.without(CAGE)  # an input
+
+
+def _law(system: System, depth: float) -> tuple[Numbers, float, float]:
+    """From forces at approaches up to ``depth`` [m]: a power law or a table in C, its largest force [N], its relative error.
+
+    Raises
+    ------
+    SceneError
+        A law whose table has too many terms.
+    """
+    params, kinds = np.unique(system.law_params, axis=0, return_inverse=True)
+
+    def forces(approach: np.ndarray) -> np.ndarray:
+        n, memory, each = len(params), system.law_state.shape[1], list[np.ndarray]()
+        for one in approach:
+            state, out = np.zeros((n, memory)), np.zeros((3, n))
+            system.law(np.full(n, -one), np.zeros(n), np.ascontiguousarray(params), state, state.copy(), 1.0, *out)
+            each.append(out[0])
+        return np.stack(each, axis=1)
+
+    kinds, approach = kinds.ravel(), depth * np.geomspace(_SHALLOWEST, 1.0, 25)
+    values, outer = forces(approach), slice(system.ball_count, None)
+    for power in _POWERS:
+        factors = values / approach ** (0.5 * power)
+        if np.all(np.ptp(factors, axis=1) <= _EXACT * factors.max(axis=1)):
+            factor = factors[:, -1][kinds]
+            return {"LAW": power, "SEAT_POWER": 2.0 / power, "factors": factor, "seats": factor[outer]}, np.inf, 0.0
+
+    def ratios(columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        approach = depth * np.exp(columns[0])
+        ratio = forces(approach) / approach**1.5
+        return ratio, np.abs(ratio)
+
+    series = fit(ratios, [Interval(math.log(_SHALLOWEST), 0.0)], _TABLE_ERROR, _MOST_TERMS)
+    error = float(2.0 * series.error.max())
+    if not error < _COARSEST:
+        raise SceneError.at("contact.kind", None, f"has a force that {_MOST_TERMS} terms give to {error:.1e} only: {_MAP}")
+    terms, seats = series.terms, (values[:, -1] / depth**1.5)[kinds][outer]
+    table = {
+        "TABLE_LOW": _SHALLOWEST * depth,
+        "TABLE_HIGH": depth,
+        "TABLE_TERMS": terms.shape[1],
+        "tables": terms,
+        "kinds": kinds,
+    }
+    return {"LAW": 0, "SEAT_POWER": 2.0 / 3.0, "seats": seats, **table}, float(values[:, -1].min()), error

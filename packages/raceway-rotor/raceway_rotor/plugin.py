@@ -1,0 +1,65 @@
+"""What this package adds to ``raceway``: coefficients for rotor programs, the bearing inside ROSS."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from raceway import hookimpl
+
+if TYPE_CHECKING:
+    from raceway import Command
+
+
+@hookimpl
+def raceway_commands() -> dict[str, tuple[Command, ...]]:
+    from raceway import Command, Option
+
+    return {
+        "Answers": (
+            Command(
+                "export",
+                "raceway_rotor.command:export",
+                "Export coefficients of a sweep to rotor programs.",
+                "raceway export raceway-out/B7206C-sweep --ross bearing.toml \\\n"
+                "    --at load.axial=1000\n"
+                "raceway sweep examples/b7206.toml --set identifier.kind=tangent \\\n"
+                "    --grid kinematics.spin_speed_rpm=0:20000:21 --out raceway-out/from-rest\n"
+                "raceway export raceway-out/from-rest --from tangent --ross bearing.toml\n"
+                "raceway export raceway-out/from-rest --from tangent \\\n"
+                "    --nastran bearing.bdf --ansys bearing.inp --table bearing.csv",
+                {
+                    "store": Option(positional=True),
+                    "ross": Option(metavar="FILE"),
+                    "nastran": Option(metavar="FILE"),
+                    "ansys": Option(metavar="FILE"),
+                    "table": Option(metavar="FILE"),
+                    "at": Option(metavar="KEY=VALUE"),
+                    "source": Option("from", choices=("rotating", "directions", "tangent")),
+                    "damping": Option(metavar="C"),
+                    "ross_version": Option(choices=("2", "3")),
+                    "tag": Option(metavar="NAME"),
+                },
+                folder=None,
+                pictures=None,
+            ),
+        )
+    }
+
+
+@hookimpl
+def raceway_names() -> dict[str, str]:
+    return {
+        "CoefficientFile": "raceway_rotor.export",
+        "RossTable": "raceway_rotor.export",
+        "export_coefficients": "raceway_rotor.export",
+        "export_ross": "raceway_rotor.export",
+        "ross.RollingBearing": "raceway_rotor.bearing",
+        "ross.UnbalanceResponse": "raceway_rotor.responses",
+        "ross.run_time_response": "raceway_rotor.responses",
+        "ross.run_unbalance_response": "raceway_rotor.responses",
+    }
+
+
+@hookimpl
+def raceway_tables() -> dict[str, str]:
+    return {"rig": "raceway_rotor.rig_table:Rig"}

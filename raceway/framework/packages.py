@@ -1,0 +1,55 @@
+"""This project's packages beside ``raceway``: what each adds, from data/packages.json, which they are made into.
+
+Nothing is imported until a name is used, so that ``import raceway`` and ``dir(raceway)`` stay light.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from importlib import import_module
+from importlib.resources import files
+from importlib.util import find_spec
+from typing import Any
+
+
+@cache
+def packages() -> dict[str, dict[str, dict[str, str]]]:
+    """Distribution -> its "names" with their modules, its "commands", its "plugins" as "kind:name"."""
+    text = files("raceway").joinpath("data/packages.json").read_text(encoding="utf-8")
+    content: dict[str, dict[str, dict[str, str]]] = json.loads(text)
+    return content
+
+
+def missing_package(word: str, part: str) -> str:
+    """Which of the packages has a word in a part, and how to install it; "" where none has."""
+    from raceway.errors import extra
+
+    package = next((package for package, has in packages().items() if word in has[part]), "")
+    return package and f"in {package}: {extra(package)}"
+
+
+def public_names() -> list[str]:
+    """Names that installed packages add to ``import raceway``."""
+    there = [has for package, has in packages().items() if find_spec(package.replace("-", "_"))]
+    return [name for has in there for name in has["names"] if "." not in name]
+
+
+def further_name(name: str) -> Any:
+    """What an installed package, of this project or a third party's, offers under a public name.
+
+    Raises
+    ------
+    AttributeError
+        None does; of a name of this project's packages: how to install it.
+    """
+    for package, has in packages().items():
+        if name in has["names"]:
+            if find_spec(package.replace("-", "_")) is None:
+                raise AttributeError(f"raceway.{name} is {missing_package(name, 'names')}")
+            return getattr(import_module(has["names"][name]), name.rpartition(".")[2])
+    from raceway.framework.registry import installed
+
+    if (module := installed().mapping("raceway_names").get(name)) is None:
+        raise AttributeError(f"module 'raceway' has no attribute '{name}'")
+    return getattr(import_module(module), name)
