@@ -9,6 +9,7 @@ from math import pi
 from pathlib import Path
 
 import attrs
+import raceway_catalogue
 from raceway_catalogue.deep_groove import GROOVES
 from raceway_catalogue.infer import _sizes_of
 from raceway_catalogue.inferred import Inferred, infer_printed
@@ -211,7 +212,9 @@ def _roller_kind(series: str) -> _Kind:
 def _roller_texts() -> dict[str, str]:
     lines = [
         line
-        for line in (FOLDER.parent / "printed" / "nsk_cylindrical.csv").read_text("utf-8").splitlines()
+        for line in (Path(raceway_catalogue.__file__).parent / "data" / "printed" / "nsk_cylindrical.csv")
+        .read_text("utf-8")
+        .splitlines()
         if line[0] != "#"
     ]
     rows = {cells["name"]: _rollers(cells) for cells in csv.DictReader(lines)}

@@ -14,7 +14,7 @@ import pytest
 
 import raceway
 from raceway import scene_from_dict
-from raceway.scene.tables import STUDY_TABLES, TABLES
+from raceway.scene.tables import TABLES
 from tests.snippets import PAGES, ROOT, Listing, anchors, links, listings
 
 _ENVIRONMENT = "makes a virtual environment"
@@ -112,7 +112,7 @@ def elsewhere(listing: Listing) -> bool:
 def read(listing: Listing) -> None:
     """Part of a scene: its keys and values are right; of another file: it is TOML."""
     tables = tomllib.loads(listing.text)
-    if set(tables) <= {*TABLES, *STUDY_TABLES, "title"}:
+    if set(tables) <= {*TABLES, "rig", "title"}:
         whole = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
         scene_from_dict({**whole, **tables})
 

@@ -370,7 +370,7 @@ def test_what_an_object_has_is_documented(name):
 
 def test_names_are_found_lazily_and_listed():
     assert rw.__all__ == dir(rw)
-    with pytest.raises(AttributeError, match="No raceway attribute rnu"):
+    with pytest.raises(AttributeError, match="module 'raceway' has no attribute 'rnu'"):
         _ = rw.rnu
 
 

@@ -183,7 +183,7 @@ def test_the_notes_say_what_tilt_was_and_that_a_dry_bearing_does_not_damp(turnin
 
 def test_an_element_without_ross_says_what_is_missing(turning, monkeypatch):
     monkeypatch.setitem(sys.modules, "ross", None)
-    with pytest.raises(RacewayError, match=r"an element needs ROSS: pip install '.\[ross\]'"):
+    with pytest.raises(RacewayError, match=r"an element needs ROSS: pip install './packages/raceway-rotor\[ross\]'"):
         rw.export_ross(turning, at={"load.axial": 1000}).element()
 
 

@@ -12,6 +12,7 @@ import zlib
 import numpy as np
 import pytest
 from raceway_measure.fit.signals import signals_of
+from raceway_meshing import formats
 from raceway_meshing.abaqus import Abaqus
 from raceway_meshing.formats import Msh, Vtu
 from raceway_meshing.gmsh import Gmsh
@@ -20,7 +21,6 @@ from raceway_meshing.mesh_files import File
 from raceway import MeshError, RacewayError, SceneError, scene_from_dict
 from raceway.framework import sources as plugin_sources
 from raceway.framework.sources import import_file
-from raceway.plugins import formats
 from raceway.points import axes as design
 from raceway.points.axes import design_file
 from raceway.storage import number_table

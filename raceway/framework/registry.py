@@ -23,7 +23,6 @@ import pluggy
 
 from raceway.errors import PluginError, RacewayError
 from raceway.framework import hookspecs
-from raceway.framework.contracts import KINDS, broken_duties
 from raceway.framework.doors import reader
 from raceway.framework.options import nearest
 from raceway.framework.packages import missing_package
@@ -80,7 +79,11 @@ class Registry:
         self.faults: list[Fault] = []
         from raceway import __version__
 
-        self._kinds = KINDS if classes else {}
+        self._kinds: dict[str, tuple[str, tuple[str, ...]]] = {}
+        if classes:
+            from raceway.framework.contracts import KINDS
+
+            self._kinds = KINDS
         for module in _BUILT_IN if classes else ():
             self._register(import_module(module), module, "raceway", __version__)
         points, missing = chosen_entry_points(third_party)
@@ -188,10 +191,10 @@ class Registry:
         kind, colon, name = text.rpartition(":")
         if colon:
             kind = kind.strip().replace("-", "_").replace(" ", "_")
-            if kind not in KINDS:
-                raise PluginError(f"no kind of plug-in named '{kind}'{nearest(kind, KINDS)}; kinds: {', '.join(KINDS)}")
+            if kind not in self._kinds:
+                raise PluginError(f"no kind of plug-in named '{kind}'{nearest(kind, self._kinds)}; kinds: {', '.join(self._kinds)}")
             return self.find(kind, name.strip())
-        kinds = [k for k in KINDS if (k, name) in self.entries]
+        kinds = [k for k in self._kinds if (k, name) in self.entries]
         if len(kinds) == 1:
             return self.find(kinds[0], name)
         if kinds:
@@ -318,6 +321,8 @@ class Registry:
                     self._add(kind, plugin_class, label, distribution, version, source)
 
     def _add(self, kind: str, plugin: Any, label: str, distribution: str, version: str, source: str) -> None:
+        from raceway.framework.contracts import broken_duties
+
         try:
             faults = broken_duties(kind, plugin)
             entry = Entry(kind, str(getattr(plugin, "name", "?")), plugin, distribution, version, source)
