@@ -153,6 +153,7 @@ from .pipeline.run_parts import quantity_rows as quantity_rows
 from .pipeline.run_screen import screen as screen
 from .pipeline.simulate import OnProgress as OnProgress
 from .pipeline.simulate import simulate as simulate
+from .pipeline.uncertainty import stated as stated
 from .planning.resolve import SAFETY as SAFETY
 from .planning.resolve import resolve as resolve
 from .planning.resolve import series_factor as series_factor

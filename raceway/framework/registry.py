@@ -192,7 +192,9 @@ class Registry:
         if colon:
             kind = kind.strip().replace("-", "_").replace(" ", "_")
             if kind not in self._kinds:
-                raise PluginError(f"no kind of plug-in named '{kind}'{nearest(kind, self._kinds)}; kinds: {', '.join(self._kinds)}")
+                raise PluginError(
+                    f"no kind of plug-in named '{kind}'{nearest(kind, self._kinds)}; kinds: {', '.join(self._kinds)}"
+                )
             return self.find(kind, name.strip())
         kinds = [k for k in self._kinds if (k, name) in self.entries]
         if len(kinds) == 1:

@@ -166,10 +166,10 @@ def error_rows(result: ReadTables) -> list[Row]:
     """Intervals of loads, pressure, life and preload; the numerical error of K with the parts of that of Z."""
     error, identified = result["error"], result["identification"]
     entries = {one.symbol.replace("_", " "): result["uncertainty"][one.name] for one in HEADLINE if one not in STIFFNESSES}
-    told = [
-        f"{name} {interval(one).partition(':')[0]}" for name, one in entries.items() if one and one["parts"]["data"]["of"]
-    ]
-    rows: list[Row] = [("", "", f"within {', '.join(told)}")] if told else []
+    texts = {name: interval(one) for name, one in entries.items() if one and one["parts"]["data"]["low"] is not None}
+    told = ", ".join(f"{name.removeprefix('peak ')} {text.partition(' %:')[0]}" for name, text in texts.items())
+    makers = any("other makers" in text.partition("not estimated: ")[2] for text in texts.values())
+    rows: list[Row] = [("", "", f"{told} %{', for one maker' if makers else ''}")] if told else []
     # Laws other than Hertz's are no part of the total: they widen the intervals.
     names = ["time_step", "transient", "identification", "mesh", *(["contact"] if error["bodies"] else [])]
     parts = {name.replace("_", " "): error.get(name) for name in names}

@@ -100,16 +100,20 @@ def uncertainty_table(result: Result) -> Tables:
         # K changes as the radial stiffness does.
         static = (KYY if result.kyy_tilts_follow is None else FOLLOWS).name if quantity is K else name
         data = [*_geometry(result, quantity, scatters), *_tolerances(result, quantity)]
-        known = [{"part": word, **part} for word, part in data if part["low"] is not None]
+        each = [{"part": word, **part} for word, part in data]
+        known = [part for part in each if part["low"] is not None]
         how = "; ".join(f"{word}: {part['how']}" for word, part in data) or "the scene states its geometry"
         parts = {
             "numerical": _numerical(result, quantity),
             "hypotheses": _hypotheses(result, name, static),
-            "data": _part(_squares((part["low"], part["high"]) for part in known) if known else None, how, of=known),
+            "data": _part(_squares((part["low"], part["high"]) for part in known) if known else None, how, of=each),
             "contact": _contact(result, quantity, hertz.get(static)),
             "bodies": _bodies(elastic, KYY.name if quantity in (K, FOLLOWS) else name),
         }
         low, high = combined(parts)
+        if low == high or (quantity is PRELOAD and not known):
+            why[name] = f"not estimated: {', '.join(word for word, part in parts.items() if part['low'] is None)}"
+            continue
         low = low if quantity in STIFFNESSES else max(low, -1.0)
         table[name] = {
             "value": float(value), "unit": quantity.unit, "low": value + low * abs(value), "high": value + high * abs(value),
@@ -143,7 +147,7 @@ def interval(entry: ReadTables) -> str:
 def _percents(change: Range, even: str) -> str:
     """Both ends in percent without the sign; one number of an even interval or of a single side."""
     low, high = _with_zero(change)
-    if abs(low + high) < _SIDE * (high - low):
+    if abs(low + high) <= _SIDE * (high - low):
         return f"{even}{percents(high)[1:-2]}"
     return percents(*(end for end in (low, high) if abs(end) > _SIDE * (high - low)))[:-2]
 
@@ -204,6 +208,9 @@ def _geometry(result: Result, quantity: Quantity, scatters: Mapping[str, Range])
     geometry = result.geometry
     if geometry is not None and quantity not in STIFFNESSES:
         yield "inferred geometry", _part(scatters.get(quantity.name), "inferred numbers at the ends of their uncertainties")
+        for part in geometry["data"]:
+            if part["part"] != "inferred geometry":
+                yield part["part"], _part(None, "known of stiffnesses alone", remedy=part["remedy"])
     elif geometry is not None:
         for part in geometry["data"]:
             yield part["part"], _part(part["axial" if quantity is KXX else "radial"], part["why"], remedy=part["remedy"])

@@ -173,7 +173,7 @@ class Friction:
     def rows(table: ReadTables) -> list[Fact]:
         """Torque with its band, power, and the parts."""
         band, parts = table["band"], table["parts"]
-        rule = table["palmgren_nm"]
+        rule, power = table["palmgren_nm"], table["power_w"] / table["torque_nm"] if table["torque_nm"] else 0.0
         shares = ", ".join(f"{name.replace('_', ' ')} {part:.3g}" for name, part in parts.items() if part)
         return [
             ("Friction", "", ""),
@@ -181,7 +181,8 @@ class Friction:
             (
                 "power loss",
                 f"{table['power_w']:.4g} W",
-                f"inner {table['heat_w']['inner']:.3g}, outer {table['heat_w']['outer']:.3g}",
+                f"{power * band['low']:.3g} to {power * band['high']:.3g}, inner {table['heat_w']['inner']:.3g}, outer "
+                f"{table['heat_w']['outer']:.3g}",
             ),
             ("torque by source", "N m", shares),
             (

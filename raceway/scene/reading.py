@@ -114,7 +114,8 @@ def _unmet(
 
 def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
     table = _with_rows(table, mistakes)
-    name = table.get("preset")
+    if type(name := table.get("preset")) is int:  # 6205 without quotes
+        name, table = str(name), {**table, "preset": str(name)}
     if name is None:
         return _with_materials(table, {}, mistakes)
     try:

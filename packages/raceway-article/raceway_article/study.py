@@ -21,9 +21,9 @@ from raceway_checks.verify.reference import reference_cases
 
 from raceway import Answer, ConvergenceError, RacewayError, function, scene_from_dict
 from raceway.extend import (
-    ERROR, FAILED, FORCE_AMPLITUDE, OF_ORBITS, Attractor, Fact, Item, K, OnProgress, Part, ReadTables, Registry,
-    Status, Tables, Words, Workload, Z, attractor_beside_run, attractor_from_rest, lasting, local, processor_time,
-    program_key, run, run_times, stored_rows, tables_key, with_value, without_mesh, without_nan, work_through, written,
+    ERROR, FAILED, FORCE_AMPLITUDE, OF_ORBITS, Attractor, Fact, Item, K, OnProgress, Part, ReadTables, Registry, Status,
+    Tables, Words, Workload, Z, attractor_beside_run, attractor_from_rest, lasting, local, processor_time, program_key, run,
+    run_times, stored_rows, tables_key, with_value, without_mesh, without_nan, work_through, written,
 )  # fmt: skip
 from raceway_article.claims import verdicts
 from raceway_article.design import (

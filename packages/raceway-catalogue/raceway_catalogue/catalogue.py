@@ -12,8 +12,8 @@ import numpy as np
 
 from raceway import Answer, MeshError, Preset, SceneError, door, scene_from_dict
 from raceway.extend import (
-    Bearing, Fact, Part, Registry, Row, Tables, Words, ball_pass, file_lines, found_by, geometry_of, materials,
-    new_figure, no_preset, number, ring_shape, save_figure, sections,
+    Bearing, Fact, Part, Registry, Row, Tables, Words, ball_pass, file_lines, found_by, geometry_of, materials, new_figure,
+    no_preset, number, ring_shape, save_figure, sections,
 )  # fmt: skip
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ import numpy as np
 
 from raceway import RacewayError, SceneError, at_least, door
 from raceway.extend import (
-    KEY_VALUES, PATH, TEXTS, Fact, Shown, Tables, default_registry, given_axes, head, labelled_dataset, member,
-    numbers_at, open_store, parse_at, parse_value, select, slug, tidy, write_whole,
+    KEY_VALUES, PATH, TEXTS, Fact, Shown, Tables, default_registry, given_axes, head, labelled_dataset, member, numbers_at,
+    open_store, parse_at, parse_value, select, slug, tidy, write_whole,
 )  # fmt: skip
 from raceway_rotor.coefficients import LEAST_POINTS, Coefficients, coefficients, largest, unit
 from raceway_rotor.files import PROGRAMS

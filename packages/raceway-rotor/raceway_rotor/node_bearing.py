@@ -13,8 +13,8 @@ import numpy as np
 
 from raceway import ConvergenceError, Scene, SceneError, build_model
 from raceway.extend import (
-    Identifying, Integration, Rotor, SceneSource, as_scene, default_registry, evaluate_following, harmonic_load,
-    simulate, solve_equilibrium,
+    Identifying, Integration, Rotor, SceneSource, as_scene, default_registry, evaluate_following, harmonic_load, simulate,
+    solve_equilibrium,
 )  # fmt: skip
 
 if TYPE_CHECKING:

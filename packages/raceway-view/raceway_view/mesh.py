@@ -13,8 +13,8 @@ import numpy as np
 
 from raceway import Answer, RacewayError, SceneError, door
 from raceway.extend import (
-    FACES, PATH, HexMesh, Part, Row, Tables, Words, blamed, boundary, grouped, number, of_results,
-    refuse_pictures, registry_with, sections, slug, write_whole,
+    FACES, PATH, HexMesh, Part, Row, Tables, Words, blamed, boundary, grouped, number, of_results, refuse_pictures,
+    registry_with, sections, slug, write_whole,
 )  # fmt: skip
 from raceway_view.pictures import INK, Plotter, look_from, rendered
 

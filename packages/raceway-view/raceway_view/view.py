@@ -13,8 +13,9 @@ import numpy as np
 
 from raceway import Answer, Result, SceneError, door
 from raceway.extend import (
-    PATH, PATHS, Fact, K, OnProgress, Part, ShowProgress, Tables, Words, X, as_scene, equilibrium_table, figure_png, given_axes, largest_contacts, largest_facts, mesh_bodies, picture, quantity_rows, race_words,
-    refuse_pictures, registry_with, run, sections, telling, wrapped, writable, write_whole,
+    PATH, PATHS, Fact, K, OnProgress, Part, ShowProgress, Tables, Words, X, as_scene, equilibrium_table, figure_png,
+    given_axes, largest_contacts, largest_facts, mesh_bodies, picture, quantity_rows, race_words, refuse_pictures,
+    registry_with, run, sections, stated, telling, wrapped, writable, write_whole,
 )  # fmt: skip
 from raceway_view.bodies import Bearing, State
 from raceway_view.mesh import mesh_picture
@@ -276,9 +277,10 @@ def _lead(result: Result, state: State) -> str:
     if any(load.radial):
         words.append(f"radial load {load.radial[0]:.4g}, {load.radial[1]:.4g} N along y, z")
     if identified is not None:
+        _, value, interval = stated(K, {"uncertainty": result.uncertainty})
         words.append(
             f"{result.model.excitation.name} force of {identified.force_amplitude:.4g} N at {60.0 * identified.frequency_hz:.6g} r/min, "
-            f"K = {K.text(K.of(result), 4)}"
+            f"K = {value} {interval.partition(':')[0]}".rstrip()
         )
     words.append(f"axial displacement {X.text(X.of(result), 4)}")
     words.append(_loads(state))

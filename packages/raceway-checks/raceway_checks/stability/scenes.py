@@ -21,9 +21,8 @@ import numpy as np
 
 from raceway import RacewayError, SceneError
 from raceway.extend import (
-    Equilibrium, Model, Motion, Record, Schedule, System, Tables, at_rest, drift, energy_balance, integrate,
-    law_params, make_basis, reach_of, renews, resolve, running_pairs, series_factor, solve_equilibrium, standstill,
-    surrogate,
+    Equilibrium, Model, Motion, Record, Schedule, System, Tables, at_rest, drift, energy_balance, integrate, law_params,
+    make_basis, reach_of, renews, resolve, running_pairs, series_factor, solve_equilibrium, standstill, surrogate,
 )  # fmt: skip
 from raceway_checks.stability.catalogue import COARSE, STATIC, transient
 from raceway_checks.stability.study import FAILED, Limit, Measured, Rows, short

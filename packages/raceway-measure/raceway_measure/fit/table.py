@@ -13,8 +13,8 @@ import numpy as np
 
 from raceway import Function, RacewayError, Scene, SceneError, build_model, evolve, function
 from raceway.extend import (
-    AMPLITUDE, DIFFERENTIABLE, C, K, Key, NumberTable, X, continuous_keys, default_registry, definitions, key_of,
-    nearest, number_in, quantity_of, read_in, resolved, solve_equilibrium, stated_columns, with_number,
+    AMPLITUDE, DIFFERENTIABLE, C, K, Key, NumberTable, X, continuous_keys, default_registry, definitions, key_of, nearest,
+    number_in, quantity_of, read_in, resolved, solve_equilibrium, stated_columns, with_number,
 )  # fmt: skip
 from raceway_measure.fit.column_headers import IGNORE
 from raceway_measure.fit.estimate import COVERAGE, Estimate, Free, estimate, free_keys, uncertain, with_free

@@ -16,9 +16,8 @@ from raceway_rotor.shaft import Bearing, State, balance, bearing, rotor
 
 from raceway import Answer, BeyondPlanError, ConvergenceError, RacewayError, Scene, __version__
 from raceway.extend import (
-    K_ERROR, C, Fact, Item, K, Page, Part, ReadTables, Registry, Tables, Words, Workload, label_axes, local,
-    new_figure, registry_with, row_key, rows_table, run_times, save_figure, stored_rows, without_nan, work_through,
-    written,
+    K_ERROR, C, Fact, Item, K, Page, Part, ReadTables, Registry, Tables, Words, Workload, label_axes, local, new_figure,
+    registry_with, row_key, rows_table, run_times, save_figure, stored_rows, without_nan, work_through, written,
 )  # fmt: skip
 from raceway_measure.fit.identify import Identified, identify_recording
 from raceway_measure.fit.picture import figures
