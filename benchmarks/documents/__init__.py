@@ -22,8 +22,8 @@ from typing import Any
 
 import attrs
 
+from raceway.framework.packages import named
 from raceway.framework.registry import Registry
-from raceway.framework.sources import named
 from raceway.scene.schema import keys
 from raceway.scene.structure import table_of_list
 from raceway.scene.tables import TABLES

@@ -24,10 +24,10 @@ def declared() -> dict[Path, str]:
             continue
         plugin = point.load()
         own, commands = (getattr(plugin, f"raceway_{hook}", dict)() for hook in ("names", "commands"))
-        lines = [about for several in commands.values() for about in several]
+        listed = {about.name: f"{heading}: {about.summary}" for heading, several in commands.items() for about in several}
+        listed |= {word: "" for several in commands.values() for about in several for word in about.aliases}
         plugins = [f"{kind}:{one.name}" for kind, (hook, _) in KINDS.items() for one in getattr(plugin, hook, list)()]
-        words = {word for about in lines for word in (about.name, *about.aliases)}
-        packages[distribution] = {"names": own, "commands": sorted(words), "plugins": sorted(plugins)}
+        packages[distribution] = {"names": own, "commands": listed, "plugins": sorted(plugins)}
         names |= {name: module for name, module in own.items() if "." not in name}
     own_names = (FOLDER / "names.pyi").read_text(encoding="utf-8").partition("\n")[2]
     further = "".join(f"from {module} import {name} as {name}\n" for name, module in sorted(names.items()))

@@ -34,7 +34,7 @@ from raceway.cli.frame import (
     tell_faults,
 )
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
-from raceway.framework.sources import named
+from raceway.framework.packages import named
 
 if TYPE_CHECKING:
     from raceway.framework.registry import Registry

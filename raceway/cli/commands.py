@@ -7,7 +7,7 @@ from typing import NamedTuple
 import click
 
 from raceway.cli.command import Command, Option
-from raceway.framework.sources import named
+from raceway.framework.packages import named
 
 
 class Later(NamedTuple):

@@ -15,8 +15,7 @@ from raceway import __version__
 from raceway.cli.command import Command
 from raceway.cli.commands import DEVELOPERS, SECTIONS, Later
 from raceway.cli.console import Commands
-from raceway.framework.packages import missing_package
-from raceway.framework.registry import installed
+from raceway.framework.packages import listed_commands, missing_package
 
 
 class _CommandsByName(Commands):
@@ -64,9 +63,22 @@ class _AllCommands(_CommandsByName):
     """``raceway``."""
 
     def _sections(self) -> dict[str, tuple[Command | Later, ...]]:
+        from raceway.framework.registry import installed
+
         further = installed().mapping("raceway_commands")
         by_name = {heading: sorted(commands, key=lambda about: about.name) for heading, commands in further.items()}
-        return {heading: (*own, *by_name.get(heading, ())) for heading, own in self.sections.items()}
+        return {
+            heading: (*self.sections.get(heading, ()), *by_name.get(heading, ())) for heading in {**self.sections, **by_name}
+        }
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """As packages list them: none is imported."""
+        lines = {heading: [(about.name, about.summary) for about in own] for heading, own in self.sections.items()}
+        for heading, name, summary in sorted(listed_commands()):
+            lines.setdefault(heading, []).append((name, summary))
+        for heading, commands in lines.items():
+            with formatter.section(heading):
+                formatter.write_dl(commands)
 
     def elsewhere(self, word: str) -> str:
         if missing := missing_package(word, "commands"):

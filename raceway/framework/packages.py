@@ -6,6 +6,7 @@ Nothing is imported until a name is used, so that ``import raceway`` and ``dir(r
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from functools import cache
 from importlib import import_module
 from importlib.resources import files
@@ -15,7 +16,7 @@ from typing import Any
 
 @cache
 def packages() -> dict[str, dict[str, dict[str, str]]]:
-    """Distribution -> its "names" with their modules, its "commands", its "plugins" as "kind:name"."""
+    """Distribution -> its "names" with their modules, its "commands" with heading and summary, its "plugins" as "kind:name"."""
     text = files("raceway").joinpath("data/packages.json").read_text(encoding="utf-8")
     content: dict[str, dict[str, dict[str, str]]] = json.loads(text)
     return content
@@ -27,6 +28,28 @@ def missing_package(word: str, part: str) -> str:
 
     package = next((package for package, has in packages().items() if word in has[part]), "")
     return package and f"in {package}: {extra(package)}"
+
+
+def named(place: str) -> Any:
+    """What "module:name" says, imported."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)
+
+
+def listed_commands() -> Iterator[tuple[str, str, str]]:
+    """Heading, name and summary of each command that is installed beside ``raceway``'s own; those of third parties alone are imported."""
+    for package, has in packages().items():
+        if find_spec(package.replace("-", "_")):
+            parted = ((name, text.partition(": ")) for name, text in has["commands"].items() if text)
+            yield from ((heading, name, summary) for name, (heading, _, summary) in parted)
+    from importlib.metadata import entry_points
+
+    if any(getattr(point.dist, "name", "") not in packages() for point in entry_points(group="raceway")):
+        from raceway.framework.registry import installed
+
+        own = {name for has in packages().values() for name in has["commands"]}
+        for heading, commands in installed().mapping("raceway_commands").items():
+            yield from ((heading, about.name, about.summary) for about in commands if about.name not in own)
 
 
 def public_names() -> list[str]:

@@ -9,7 +9,6 @@ import threading
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
-from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -62,12 +61,6 @@ def owner(point: EntryPoint) -> tuple[str, str]:
         folder = getattr(point.dist, "_path", None)
         name = Path(str(folder)).name.partition("-")[0] if folder is not None else point.name
     return name, version
-
-
-def named(place: str) -> Any:
-    """What "module:name" says, imported."""
-    module, _, name = place.partition(":")
-    return getattr(import_module(module), name)
 
 
 def is_foreign_fault(why: BaseException) -> bool:

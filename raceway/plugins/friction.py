@@ -17,6 +17,7 @@ import attrs
 
 from raceway.framework.duties import is_foundation
 from raceway.framework.options import at_least, between, option, word_or
+from raceway.framework.shown import number
 from raceway.out.quantities import Quantity
 
 if TYPE_CHECKING:
@@ -172,25 +173,23 @@ class Friction:
     @staticmethod
     def rows(table: ReadTables) -> list[Fact]:
         """Torque with its band, power, and the parts."""
-        band, parts = table["band"], table["parts"]
-        rule, power = table["palmgren_nm"], table["power_w"] / table["torque_nm"] if table["torque_nm"] else 0.0
+        ends, parts, rule = [table["band"][end] for end in ("low", "high")], table["parts"], table["palmgren_nm"]
+        torque, power, heat = table["torque_nm"], table["power_w"], table["heat_w"]
         shares = ", ".join(f"{name.replace('_', ' ')} {part:.3g}" for name, part in parts.items() if part)
+        lost = [power * end / torque if power and torque and end is not None else None for end in ends]
         return [
             ("Friction", "", ""),
-            ("torque", f"{table['torque_nm']:.4g} N m", f"{band['low']:.3g} to {band['high']:.3g}"),
+            ("torque", number(torque, "N m", 4), " to ".join(number(end, "", 3) for end in ends)),
             (
-                "power loss",
-                f"{table['power_w']:.4g} W",
-                f"{power * band['low']:.3g} to {power * band['high']:.3g}, inner {table['heat_w']['inner']:.3g}, outer "
-                f"{table['heat_w']['outer']:.3g}",
+                "power loss", number(power, "W", 4),
+                f"{number(lost[0], '', 3)} to {number(lost[1], '', 3)}, inner {number(heat['inner'], '', 3)}, outer {number(heat['outer'], '', 3)}",
             ),
             ("torque by source", "N m", shares),
             (
-                "Palmgren's rule",
-                f"{rule['oil_bath']:.3g} N m",
-                f"{rule['oil_and_air']:.3g} oil and air, {rule['oil_jet']:.3g} jet",
+                "Palmgren's rule", number(rule["oil_bath"], "N m", 3),
+                f"{number(rule['oil_and_air'], '', 3)} oil and air, {number(rule['oil_jet'], '', 3)} jet",
             ),
-        ]
+        ]  # fmt: skip
 
 
 def _by_source(lost: Losses, rows: slice = slice(None)) -> dict[str, np.ndarray]:

@@ -14,8 +14,8 @@ import attrs
 from raceway.errors import Mistake, PluginError, SceneError
 from raceway.framework.doors import door, reader
 from raceway.framework.options import nearest
+from raceway.framework.packages import named
 from raceway.framework.registry import REGISTRY, Registry, default_registry
-from raceway.framework.sources import named
 from raceway.scene.catalogue import preset, preset_of, with_material
 from raceway.scene.inputs import Given
 from raceway.scene.lubricant import lubricant_mistakes

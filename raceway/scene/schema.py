@@ -11,8 +11,8 @@ from typing import Any, Union, get_args, get_origin
 
 import attrs
 
+from raceway.framework.packages import named
 from raceway.framework.registry import Registry, default_registry
-from raceway.framework.sources import named
 from raceway.scene.catalogue import catalogue, materials
 from raceway.scene.structure import table_of_list
 from raceway.scene.tables import PLUGIN_TABLES as PLUGIN_TABLES
