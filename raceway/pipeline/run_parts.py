@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from raceway.errors import PluginError
 from raceway.framework.duties import quantity_screen
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import in_micro
@@ -154,7 +155,10 @@ def quantity_rows(result: ReadTables) -> list[Row]:
     rows: list[Row] = []
     for entry in default_registry().all():
         if entry.kind == "quantity" and result.get(entry.name):
-            rows += quantity_screen(entry.plugin, result)
+            try:
+                rows += quantity_screen(entry.plugin, result)
+            except PluginError as why:  # its numbers are in the result
+                rows.append((entry.name, "not shown", str(why)))
     return rows
 
 

@@ -193,15 +193,9 @@ def _contact(result: Result, quantity: Quantity, hertz: float | None) -> Tables:
 def _bodies(elastic: Mapping[str, float] | str, name: str) -> Tables:
     if not elastic:
         return _part((0.0, 0.0), "elastic as computed")
-    change = None if isinstance(elastic, str) else elastic.get(name)
-    how = (
-        elastic
-        if isinstance(elastic, str)
-        else "walls below the grooves, and balls"
-        if change
-        else "known of stiffnesses alone"
-    )
-    return _part(None if change is None else _with_zero([change]), how)
+    if isinstance(elastic, str) or name not in elastic:
+        return _part(None, elastic if isinstance(elastic, str) else "known of stiffnesses alone")
+    return _part(_with_zero([elastic[name]]), "walls below the grooves, and balls")
 
 
 def _geometry(result: Result, quantity: Quantity, scatters: Mapping[str, Range]) -> Iterator[tuple[str, Tables]]:

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
 
+from raceway.framework.shown import number
 from raceway.out.quantities import Quantity
 
 if TYPE_CHECKING:
@@ -108,11 +109,10 @@ class Temperatures:
         rows: list[Fact] = [("Temperatures", "", "steady; within the bands of friction and conductances")]
         for node, kelvin in table["temperatures_k"].items():
             ends = band.get("temperatures_k", {}).get(node)
-            rows.append((node, f"{kelvin - ZERO_C:.4g} °C", _within(ends, ZERO_C, "°C")))
-        ways = ", ".join(f"{value:.3g} W by the {way}" for way, value in table["flows_w"].items())
-        rows.append(
-            ("heat", f"{table['heat_w']:.4g} W", "; ".join(filter(None, (_within(band.get("heat_w"), 0.0, "W"), ways))))
-        )
+            rows.append((node, number(kelvin and kelvin - ZERO_C, "°C", 4), _within(ends, ZERO_C, "°C")))
+        ways = ", ".join(f"{number(value, 'W', 3)} by the {way}" for way, value in table["flows_w"].items())
+        within = "; ".join(filter(None, (_within(band.get("heat_w"), 0.0, "W"), ways)))
+        rows.append(("heat", number(table["heat_w"], "W", 4), within))
         for label, (name, unit, factor) in _BANDS.items():
             if name in band:
                 ends = [None if end is None else factor * end for end in band[name]]
