@@ -44,19 +44,24 @@ class _CommandsByName(Commands):
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
         """Some commands are another one with a flag: ``catalogue --infer``."""
+        table = self._table()
         for arg in args[1:]:
-            if f"{args[0]} {arg}" not in self._table() and (missing := missing_package(f"{args[0]} {arg}", "commands")):
+            if f"{args[0]} {arg}" not in table and (missing := missing_package(f"{args[0]} {arg}", "commands")):
                 raise click.UsageError(f"`raceway {args[0]} {arg}` is {missing}", ctx)
-        for name in self._table():
+        for name in table:
             word, _, flag = name.partition(" ")
             if flag and args[0] == word and flag in args:
                 return super().resolve_command(ctx, [name, *(arg for arg in args[1:] if arg != flag)])
         return super().resolve_command(ctx, args)
 
+    def _lines(self) -> dict[str, list[tuple[str, str]]]:
+        """Heading -> name and summary of each command, for the help."""
+        return {heading: [(about.name, about.summary) for about in own] for heading, own in self.sections.items()}
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        for heading, commands in self._sections().items():
+        for heading, commands in self._lines().items():
             with formatter.section(heading):
-                formatter.write_dl([(about.name, about.summary) for about in commands])
+                formatter.write_dl(commands)
 
 
 class _AllCommands(_CommandsByName):
@@ -71,14 +76,12 @@ class _AllCommands(_CommandsByName):
             heading: (*self.sections.get(heading, ()), *by_name.get(heading, ())) for heading in {**self.sections, **by_name}
         }
 
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """As packages list them: none is imported."""
-        lines = {heading: [(about.name, about.summary) for about in own] for heading, own in self.sections.items()}
+    def _lines(self) -> dict[str, list[tuple[str, str]]]:
+        """With those of packages, as these list them: none is imported."""
+        lines = super()._lines()
         for heading, name, summary in sorted(listed_commands()):
             lines.setdefault(heading, []).append((name, summary))
-        for heading, commands in lines.items():
-            with formatter.section(heading):
-                formatter.write_dl(commands)
+        return lines
 
     def elsewhere(self, word: str) -> str:
         if missing := missing_package(word, "commands"):

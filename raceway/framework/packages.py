@@ -70,9 +70,9 @@ def further_name(name: str) -> Any:
         if name in has["names"]:
             if find_spec(package.replace("-", "_")) is None:
                 raise AttributeError(f"raceway.{name} is {missing_package(name, 'names')}")
-            return getattr(import_module(has["names"][name]), name.rpartition(".")[2])
+            return named(f"{has['names'][name]}:{name.rpartition('.')[2]}")
     from raceway.framework.registry import installed
 
     if (module := installed().mapping("raceway_names").get(name)) is None:
         raise AttributeError(f"module 'raceway' has no attribute '{name}'")
-    return getattr(import_module(module), name)
+    return named(f"{module}:{name}")

@@ -371,13 +371,12 @@ def with_paths(tables: ReadTables, folder: Path, registry: Registry) -> Tables:
 
 def numbers_only(tables: ReadTables, registry: Registry) -> Tables:
     """A copy of the tables in which numbers that are text with a unit are numbers in the keys' own units."""
-    result = dict(tables)
+    result, places = dict(tables), registry.mapping("raceway_tables")
     for name, table in tables.items():
         if isinstance(table, dict):
             quantities = quantities_table(registry) if name == "quantities" else None
-            place = registry.mapping("raceway_tables").get(name)
-            classes = (TABLES.get(name), place and named(place), quantities, _plugin(name, tables, registry))
-            for cls in filter(None, classes):
+            study = named(places[name]) if name in places else None
+            for cls in filter(None, (TABLES.get(name), study, quantities, _plugin(name, tables, registry))):
                 result[name] = table_without_units(result[name], cls)
     return result
 
