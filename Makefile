@@ -47,10 +47,10 @@ wheel: $(VENV)/.all ## a wheel in dist, installed into an empty environment with
 	cd build/wheel && bin/raceway run $(CURDIR)/examples/minimal.toml --out out
 
 evidence: $(VENV)/.all ## the numbers that README and docs show, computed again at the commit that is checked out: hours
-	$(BIN)/python -m benchmarks.night
+	$(BIN)/python -m checks.night
 
 mutants: $(VENV)/.all ## deliberate faults of one line, and whether the tests catch them: an hour
-	$(BIN)/python -m benchmarks.mutants
+	$(BIN)/python -m checks.mutants
 
 # The package is installed in place, so only a change of pyproject.toml installs anything again.
 $(VENV)/.python:

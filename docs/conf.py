@@ -15,7 +15,7 @@ from typing import Any
 import nbformat
 
 _ROOT = Path(__file__).parents[1]
-sys.path.insert(0, str(_ROOT))  # for benchmarks.reports
+sys.path.insert(0, str(_ROOT))  # for checks.reports
 _PROJECT = tomllib.loads((_ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 project = "Raceway"
@@ -23,7 +23,7 @@ author = _PROJECT["authors"][0]["name"]
 release = version = _PROJECT["version"]
 
 extensions = [
-    "benchmarks.reports",
+    "checks.reports",
     "myst_nb",
     "numpydoc",
     "sphinx.ext.autodoc",

@@ -9,7 +9,7 @@ import nbclient
 import nbformat
 import pytest
 
-from validation.browser.chromium import Browser
+from checks.validation.browser.chromium import Browser
 
 SITE = Path(__file__).parent / "_build" / "html"
 PAGES = sorted(page for folder in ("tutorials", "gallery") for page in (SITE / folder).glob("*.html"))

@@ -3,18 +3,17 @@
 cli            the command line: ``raceway``
 ross           bearings inside rotors of the program ROSS
 points         one scene at many points: sweeps, comparisons, precision, bands, branches
-out            how an answer is shown: tables, pages, progress
+answers        how an answer is shown: tables, pages, progress
 extend         names for packages and plug-ins beside those below
 testing        conformance suites for plug-ins; the scaffold of a new one
 pipeline       one run: equilibrium, motion, identification, error, result
-bodies         rings and balls: rigid, condensed or elastic; from scene and plan to a model
-planning       what a scene needs, what is left out, what it will cost
 contact_laws, integrators   built-in plug-ins of these kinds
-plugins        built-in excitations, identifiers, meshers, formats, quantities and executors
+plugins        built-in excitations, identifiers, bodies, meshers, formats, quantities and executors
+bodies         the bearing as it is built and mounted, rigid rings and balls; from scene and plan to a model
+planning       what a scene needs, what is left out, what it will cost
 scene          the scene file: tables, catalogue of bearings, schema
 framework      kinds of plug-ins: contracts, hooks, options, registry
-elastic        finite elements in full: every node of rings and balls an unknown
-core           numerics: arrays in, arrays out
+core           numerics: arrays in, arrays out; core.fem the finite elements
 storage        files and caches on disk
 errors         exceptions, one class by who must act
 data           bearings and what makers print of them, materials, reference cases, meshes, templates of plug-ins

@@ -1,4 +1,4 @@
-"""Every public name, of ``raceway`` (names.pyi) and of its packages: made by ``python -m benchmarks.documents``."""
+"""Every public name, of ``raceway`` (names.pyi) and of its packages: made by ``python -m checks.documents``."""
 
 __version__: str
 
@@ -30,8 +30,8 @@ from .framework.options import optional as optional
 from .framework.options import positive as positive
 from .framework.options import word_or as word_or
 from .framework.options import worded as worded
-from .out.answer import Answer as Answer
-from .out.quantities import Quantity as Quantity
+from .answers.answer import Answer as Answer
+from .answers.quantities import Quantity as Quantity
 from .pipeline.front import run as run
 from .pipeline.result import Result as Result
 from .planning.plan import Check as Check

@@ -28,8 +28,8 @@ from .framework.options import optional as optional
 from .framework.options import positive as positive
 from .framework.options import word_or as word_or
 from .framework.options import worded as worded
-from .out.answer import Answer as Answer
-from .out.quantities import Quantity as Quantity
+from .answers.answer import Answer as Answer
+from .answers.quantities import Quantity as Quantity
 from .pipeline.front import run as run
 from .pipeline.result import Result as Result
 from .planning.plan import Check as Check

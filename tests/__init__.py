@@ -1,1 +1,1 @@
-"""Tests of Raceway; ``validation.reference`` holds independent implementations to test against."""
+"""Tests of Raceway; ``checks.validation.reference`` holds independent implementations to test against."""

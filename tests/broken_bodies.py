@@ -6,10 +6,10 @@ import attrs
 import numpy as np
 
 from raceway import ConvergenceError, Mistake, make_plan
-from raceway.bodies.rigid import Rigid
 from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.core.ring.system import System
 from raceway.framework.contracts import Cost, Traits
+from raceway.plugins.bodies.rigid import Rigid
 
 TIMES = count(1)
 

@@ -10,9 +10,9 @@ import warnings
 import numpy as np
 import pytest
 
+from checks.validation.command_line import PATIENCE_S, invoke, python
 from raceway.storage import array_cache
 from raceway.storage.array_cache import kept
-from validation.command_line import PATIENCE_S, invoke, python
 
 INPUTS = {"points": np.arange(6.0).reshape(3, 2), "count": 3, "seat": "clamped", "ratio": 0.29, "offsets": None}
 

@@ -13,13 +13,13 @@ from raceway_article.design import ARTICLE, FRICTIONS, ROTATING, Setting, _shaft
 from raceway_article.figures import Picture, drawings
 from raceway_article.page import page
 
+from checks.validation.article_study import curves, row, study
+from checks.validation.command_line import EXAMPLES, invoke
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import default_registry
 from raceway.points.attractor import FAILED, Attractor
 from raceway.scene.inputs import read_toml
 from tests.test_commands import SMALL
-from validation.article_study import curves, row, study
-from validation.command_line import EXAMPLES, invoke
 
 
 @pytest.fixture
@@ -93,7 +93,7 @@ def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
 @pytest.fixture
 def made_page(monkeypatch):
     """The page of invented numbers; its figures are drawn by ``test_figures``."""
-    monkeypatch.setattr("raceway.out.page.svg", lambda figure: b"<svg/>")
+    monkeypatch.setattr("raceway.answers.page.svg", lambda figure: b"<svg/>")
     monkeypatch.setattr(Picture, "figure", lambda self: None)
 
     def make(k, bodies=("rigid", "condensed"), **options) -> str:

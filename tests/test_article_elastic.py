@@ -14,12 +14,12 @@ from raceway_article.elastic import SCENE, _Design, _Run, design
 from raceway_article.elastic_page import drawings, page
 
 import raceway as rw
+from checks.validation.article_study import elastic_rows, elastic_study
+from checks.validation.command_line import EXAMPLES, invoke
 from raceway import ConvergenceError, SceneError
-from raceway.out.progress import RemainingTime
+from raceway.answers.progress import RemainingTime
 from raceway.scene.inputs import read_toml
 from raceway.testing import default_registry
-from validation.article_study import elastic_rows, elastic_study
-from validation.command_line import EXAMPLES, invoke
 
 #: Three balls under a penalty so soft that every load case has an equilibrium: every path, no accuracy.
 CHANGES = {
@@ -198,7 +198,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_
 
 
 def test_the_page_of_invented_numbers_opens_without_a_network(monkeypatch):
-    monkeypatch.setattr("raceway.out.page.svg", lambda figure: b"<svg/>")
+    monkeypatch.setattr("raceway.answers.page.svg", lambda figure: b"<svg/>")
     content = elastic_study().to_dict()
     text = page(content, drawings(content), None, "raceway study article --bodies elastic").html()
     images = re.findall(r'<img alt="([^"]+)"', text)
@@ -251,7 +251,7 @@ def test_a_missing_reference_leaves_differences_out():
 
 def test_progress_tells_the_run_and_when_all_of_them_end(monkeypatch):
     now, told = [0.0], []
-    monkeypatch.setattr("raceway.out.progress.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("raceway.answers.progress.time.monotonic", lambda: now[0])
     kinds = {1: "static", 3: "static", 4: "motion"}
     progress = RemainingTime({1: 120.0, 3: 120.0, 4: 480.0}, kinds, lambda *given: told.append(given))
     progress.begin(1, "elastic at rest", "400 N axial")

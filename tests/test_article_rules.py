@@ -8,7 +8,7 @@ from raceway_article import claims
 from raceway_article.claims import _exponent, _judge, _where, verdicts
 from raceway_article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding
 
-from validation.article_study import curves, static
+from checks.validation.article_study import curves, static
 
 W = np.linspace(0.0, 1.0, 9)
 SMALL = np.full(9, 1e-9)

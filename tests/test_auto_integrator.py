@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation.several import article
 from raceway.points.function import function
 from raceway.testing import b7206c
-from validation.several import article
 
 FORCE = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
 RUN_UP = {"kind": "run_up", "first_speed_rpm": 6000.0, "speed_rpm": 9000.0, "duration_s": 0.1, "unbalance": 3.2e-4}

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation.command_line import invoke
 from raceway import SceneError, scene_from_dict
 from raceway.framework.registry import default_registry
 from raceway.pipeline.gradient import limits
@@ -14,7 +15,6 @@ from raceway.points.band import design, indices
 from raceway.points.column_quantities import stated_columns
 from raceway.scene.tolerance import tolerances_of
 from raceway.testing import b7206c
-from validation.command_line import invoke
 
 LOADED = b7206c(load={"axial": 500.0})
 

@@ -2,13 +2,13 @@
 
 import pytest
 
-from validation.command_line import MINIMAL, raceway
+from checks.validation.command_line import MINIMAL, raceway
 
 KIND = '''
 import attrs
 
 from raceway import hookimpl
-from raceway.bodies.rigid import Rigid
+from raceway.plugins.bodies.rigid import Rigid
 
 
 @attrs.frozen

@@ -20,11 +20,11 @@ import pytest
 from rich.console import Console
 
 import raceway as rw
+from checks.validation.command_line import ARTICLE, EXAMPLES, LAW, MINIMAL, invoke, raceway
+from raceway.answers.progress import ProgressBar
 from raceway.cli import frame
 from raceway.cli.main import main
 from raceway.framework.contracts import KINDS
-from raceway.out.progress import ProgressBar
-from validation.command_line import ARTICLE, EXAMPLES, LAW, MINIMAL, invoke, raceway
 
 HERE = click.Context(main)
 LISTED = {name: main.get_command(HERE, name) for name in main.list_commands(HERE)}

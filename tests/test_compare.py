@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from raceway import Comparison, ConvergenceError, SceneError, scene_from_dict
-from raceway.out.answer import Interrupted
+from raceway.answers.answer import Interrupted
 from raceway.points import compare as study
 from raceway.points.axes import MOST_POINTS, parse_axes, points
 from raceway.points.compare import compare, tables_at

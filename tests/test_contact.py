@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from checks.validation.reference.hertz import contact
+from checks.validation.reference.ring import Ring
 from raceway import RacewayError, scene_from_dict
 from raceway.bodies.contacts import _approach_at
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus, ellipse, ellipticity
 from raceway.testing import run
-from validation.reference.hertz import contact
-from validation.reference.ring import Ring
 
 MODULUS = contact_modulus(212e9, 0.29, 212e9, 0.29)
 

@@ -9,12 +9,12 @@ import attrs
 import pytest
 
 import raceway
+from checks.validation.cluster import POINTS, START_S, Cluster, installed, prepared, rows
+from checks.validation.command_line import invoke
 from raceway import PluginError
-from raceway.plugins.dask import Dask
-from raceway.plugins.processes import Serial
+from raceway.plugins.executors.dask import Dask
+from raceway.plugins.executors.processes import Serial
 from raceway.points.sweep import fill_store
-from validation.cluster import POINTS, START_S, Cluster, installed, prepared, rows
-from validation.command_line import invoke
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -82,7 +82,7 @@ def test_a_scheduler_that_does_not_answer(tmp_path, listens):
         address = f"tcp://127.0.0.1:{door.getsockname()[1]}"
         if listens:
             door.listen()
-        # That the patience is kept in seconds is a row of ``python -m benchmarks.checks dask``.
+        # That the patience is kept in seconds is a row of ``python -m checks dask``.
         with pytest.raises(PluginError) as told:
             fill_store(prepared(tmp_path / "store"), Dask(scheduler=address, patience=1.0))
     assert f"no dask scheduler answers at `{address}` within 1 s" in str(told.value)

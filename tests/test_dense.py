@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from raceway.core.fem.elastic.linear_statics import BlockMatrix
 from raceway.core.ring.equilibrium import cholesky_solve, eliminate, solve
-from raceway.elastic.linear_statics import BlockMatrix
 
 
 @pytest.mark.parametrize("gauss", [eliminate, solve])

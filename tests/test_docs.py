@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from checks.validation.command_line import invoke
 from raceway import scene_from_dict
 from raceway.framework.contracts import KINDS
 from raceway.framework.registry import Registry
@@ -14,7 +15,6 @@ from raceway.pipeline.run import run
 from raceway.scene.inputs import read_toml
 from raceway.scene.schema import scene_schema
 from raceway.testing import check
-from validation.command_line import invoke
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "plugins.md"

@@ -39,7 +39,7 @@ NOT_RUN = {
     ".venv/bin/pip install . ./packages/*": _ENVIRONMENT,
     "python -m venv .venv-ross && .venv-ross/bin/pip install -e '.[sweep]' -e './packages/raceway-rotor[ross]'": _ENVIRONMENT,
     "RACEWAY_ROSS_PYTHON=.venv-ross/bin/python .venv/bin/python -m pytest --evidence tests/evidence/test_ross.py": "writes a report of this checkout",
-    ".venv/bin/python -m benchmarks.documents": "writes documents of this checkout; benchmarks/tests compare them",
+    ".venv/bin/python -m checks.documents": "writes documents of this checkout; checks/tests compare them",
     ".venv/bin/python -m pytest --evidence tests/evidence/test_NAME.py": "writes a report of this checkout",
     "raceway stability --all": "ten minutes; tests/evidence/test_stability.py does it",
     "raceway study article": "a quarter of an hour; its report does it",
@@ -53,9 +53,9 @@ NOT_RUN = {
     "raceway sweep examples/b7206.toml --set integrator.kind=periodic --grid excitation.speed_rpm=10980:15000:41 "
     "--grid load.axial=400:2000:17 --executor dask --scheduler tcp://127.0.0.1:8786 --out raceway-out/map": _THREE,
     "cd raceway-power && pip install -e . && pytest": "tests/test_third_party.py does it",
-    "python -m benchmarks.against_calculix --scene benchmarks/b7206_elastic_60k.toml --deck bearing.inp": "CalculiX takes an hour",
-    "python -m benchmarks.against_calculix --json": "a minute; tests/evidence/test_elastic.py does it",
-    "raceway run benchmarks/b7206_elastic_60k.toml": "a minute; tests/evidence/test_elastic.py does it",
+    "python -m checks.against_calculix --scene checks/b7206_elastic_60k.toml --deck bearing.inp": "CalculiX takes an hour",
+    "python -m checks.against_calculix --json": "a minute; tests/evidence/test_elastic.py does it",
+    "raceway run checks/b7206_elastic_60k.toml": "a minute; tests/evidence/test_elastic.py does it",
 }
 #: Pages of more than some seconds; their commands run with the slow tests.
 SLOW = {
@@ -79,7 +79,7 @@ def runs(page: Path) -> bool:
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """A folder as the root of a checkout looks to the commands."""
-    for name in ("examples", "benchmarks"):
+    for name in ("examples", "checks"):
         (tmp_path / name).symlink_to(ROOT / name)
     monkeypatch.chdir(tmp_path)
     return tmp_path

@@ -19,8 +19,8 @@ import pytest
 import raceway as rw
 import raceway.core
 from raceway import at_least, positive
+from raceway.answers.progress import ShowProgress
 from raceway.framework.doors import DURATION, PATH, PATHS
-from raceway.out.progress import ShowProgress
 from raceway.points.dataset import open_store
 from raceway.storage.files import write_whole
 
@@ -132,8 +132,8 @@ def test_a_file_that_is_no_longer_text_or_ends_what_reads_it_is_named(tmp_path):
 def test_what_runs_away_is_not_meshed():
     """A contact as large as a ball, and one that no mesh has room for, are failures of the numbers."""
     from raceway.core.contact.hertz import Ellipse
-    from raceway.core.patches.pressure import BeyondPatch, Reach
-    from raceway.core.patches.system import Pool
+    from raceway.core.fem.patches.pressure import BeyondPatch, Reach
+    from raceway.core.fem.patches.system import Pool
 
     far = BeyondPatch(-1.0, 0.26, 1e13, across=False)
     reach = Reach((0.2, 0.3), (0.2, 0.3), 1e-4, 100.0, 100.0)
@@ -157,7 +157,7 @@ def test_linearised_bearings_go_with_their_iteration():
     import gc
     import weakref
 
-    from raceway.elastic import superelement_solver as linearised
+    from raceway.core.fem.elastic import superelement_solver as linearised
     from tests.test_elastic_scene import scene as elastic_scene
 
     alive, most, plain = weakref.WeakSet(), [0], linearised._Linearised.__init__

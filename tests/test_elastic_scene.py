@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from raceway import RacewayError, SceneError, build_model, make_plan, scene_from_dict
+from raceway.core.fem.elastic.iterative_solver import LinearSolver
+from raceway.core.fem.elastic.ring import from_orbit
 from raceway.core.ring.orbit import steady_orbit
-from raceway.elastic.iterative_solver import LinearSolver
-from raceway.elastic.ring import from_orbit
 from raceway.pipeline.run import _Allowance
 from raceway.scene.unused import unused
 from raceway.storage.memory import allowed_bytes
@@ -254,7 +254,7 @@ def test_what_elastic_bodies_cannot_do_is_refused_with_the_way_out(change, path,
 
 
 def test_memory_that_will_not_do_is_refused_with_both_numbers(monkeypatch):
-    monkeypatch.setattr("raceway.bodies.elastic.allowed_bytes", lambda: 2.0**24)
+    monkeypatch.setattr("raceway.plugins.bodies.elastic.allowed_bytes", lambda: 2.0**24)
     with pytest.raises(SceneError, match="GiB, above 0.0 GiB"):
         make_plan(scene())
 

@@ -6,10 +6,10 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.scenes import rotating
 from raceway.core.contact.damping import stored_energy
 from raceway.core.ring.energy import _cumulative, energy_balance
 from raceway.testing import model_of, simulate, solve_equilibrium
-from validation.scenes import rotating
 
 
 def drift(integrator: str, steps: int, damping: float = 0.0, inertia: bool = False, law: str = "hertz") -> float:

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.equilibria import loose, random_scenes
+from checks.validation.reference.ring import Ring
+from checks.validation.reference.statics import equilibrium
+from checks.validation.scenes import imbalance, static
+from checks.validation.tangent import cases
 from raceway import ConvergenceError
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, DAMPING, SINE
 from raceway.planning.resolve import resolve
 from raceway.testing import Model, model_of, settled, solve_equilibrium
-from validation.equilibria import loose, random_scenes
-from validation.reference.ring import Ring
-from validation.reference.statics import equilibrium
-from validation.scenes import imbalance, static
-from validation.tangent import cases
 
 
 def twin(model: Model) -> Ring:

@@ -7,16 +7,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from checks.validation.error_estimate import judge, named, right
+from checks.validation.scenes import rotating
+from checks.validation.series_errors import SERIES, series
 from raceway import run
-from raceway.out.table import number_within
+from raceway.answers.table import number_within
 from raceway.pipeline import error as error_estimate
 from raceway.pipeline.error import _more_equilibria
 from raceway.pipeline.simulate import _at_speed, settles_elsewhere
 from raceway.planning.resolve import recorded_per_turn, samples_per_turn
 from raceway.testing import b7206c
-from validation.error_estimate import judge, named, right
-from validation.scenes import rotating
-from validation.series_errors import SERIES, series
 
 
 def test_a_series_that_cannot_be_told_from_a_finer_one_states_its_residual():

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from checks.validation.command_line import MINIMAL, install, invoke, raceway
 from raceway.errors import PluginError
 from raceway.framework.contracts import KINDS
 from raceway.framework.registry import Registry
 from tests.test_docs import FILES
-from validation.command_line import MINIMAL, install, invoke, raceway
 
 ROOT = Path(__file__).parents[1]
 #: The plug-ins of docs/plugins.md and examples/plugins by kind.

@@ -8,10 +8,10 @@ from pathlib import Path
 import attrs
 import pytest
 
+from checks.validation.command_line import invoke
 from raceway import SceneError, load_scene, make_plan
-from raceway.bodies.condensed import Condensed
+from raceway.plugins.bodies.condensed import Condensed
 from raceway.testing import run
-from validation.command_line import invoke
 
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
 #: Scenes for `raceway view --mesh`: too large to run here.
@@ -76,6 +76,6 @@ def test_a_coarse_mesh_leads_with_its_warning(tmp_path):
 
 @pytest.mark.parametrize("name", sorted(MESHES))
 def test_running_a_mesh_example_is_refused_where_the_memory_will_not_do(name, monkeypatch):
-    monkeypatch.setattr("raceway.bodies.elastic.allowed_bytes", lambda: 2.0**31)
+    monkeypatch.setattr("raceway.plugins.bodies.elastic.allowed_bytes", lambda: 2.0**31)
     with pytest.raises(SceneError, match="matrices would take about .* GiB, above 1.6 GiB"):
         run(load_scene(FOLDER / f"{name}.toml"))

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from raceway_meshing.gmsh import Gmsh
 
+from checks.validation.command_line import EXAMPLES, invoke, python
 from raceway import load_scene
 from tests.mesh.solids import write
-from validation.command_line import EXAMPLES, invoke, python
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 SCENE = """

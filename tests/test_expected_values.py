@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from validation.expected_values import secant
+from checks.validation.expected_values import secant
 
 
 def test_same_numbers_through_run():
     """The public path: a scene with an excitation and integrator quasi_static gives the mean of the static ones."""
+    from checks.validation.scenes import rotating
     from raceway import scene_from_dict
     from raceway.testing import run
-    from validation.scenes import rotating
 
     result = run(scene_from_dict(rotating(1000.0, "locked", 12000.0, False, "quasi_static"))).to_dict()
     found = result["identification"]["equivalent_stiffness"]

@@ -24,10 +24,11 @@ from raceway_view.bodies import Bearing
 from raceway_view.view import at_rest
 
 import raceway
+from checks.validation import article_study
 from raceway import scene_from_dict
-from raceway.bodies.elastic_stress import below_contacts
-from raceway.out.picture import readable
-from raceway.plugins import pictures
+from raceway.answers.picture import readable
+from raceway.plugins.bodies.elastic_stress import below_contacts
+from raceway.plugins.formats import pictures
 from raceway.points import band as band_picture
 from raceway.points import compare_picture as comparison
 from raceway.points import follow_picture as followed
@@ -43,7 +44,6 @@ from tests.elastic.test_below_contact import TINY
 from tests.figures import outside
 from tests.rig.test_orders import made as a_record
 from tests.stores import SPEEDS, as_list, made
-from validation import article_study
 
 LOADS = np.linspace(200.0, 2000.0, 5)
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation import film as published
 from raceway import make_plan
 from raceway.contact_laws.film import Film
 from raceway.core.contact.film import REGIMES, entraining_speed, film, thermal_reduction
@@ -13,7 +14,6 @@ from raceway.scene.lubricant import GRADES, Walther, _mineral_thinning, pressure
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.testing import run
 from raceway.testing.contact_law import _example_pairs
-from validation import film as published
 
 DRY_LAW = {"kind": "hertz"}
 

@@ -15,12 +15,12 @@ from raceway_rotor.rig_table import rig_of
 from raceway_rotor.shaft import balance, bearing, rotor
 
 import raceway as rw
+from checks.validation.command_line import EXAMPLES, invoke
+from checks.validation.shaker import hammer_record, record, turning_record
 from raceway import ConvergenceError, SceneError, load_scene
 from raceway.scene.changes import with_number
 from raceway.storage.number_table import NumberTable
 from raceway.testing import b7206c, default_registry
-from validation.command_line import EXAMPLES, invoke
-from validation.shaker import hammer_record, record, turning_record
 
 ANGLE = "bearing.contact_angle_deg"
 LOADED = b7206c(load={"axial": 500.0})

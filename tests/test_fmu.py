@@ -16,9 +16,9 @@ from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 
 import raceway as rw
+from checks.validation.fmu import FORCES, MAP, RANGES, Instance, exported, force_difference, jeffcott, map_difference
 from raceway.errors import SceneError
 from raceway.scene.inputs import as_scene
-from validation.fmu import FORCES, MAP, RANGES, Instance, exported, force_difference, jeffcott, map_difference
 
 TURNING = MAP | {"contact": {}, "excitation": MAP["excitation"] | {"force": 400.0}}
 

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation.command_line import invoke
+from checks.validation.followed import OVER, SCENE, beside, by_harmonic_balance, by_integration, z_of
+from checks.validation.oscillators import Oscillator, Pressed, natural_frequency
+from checks.validation.reference.harmonic_balance import harmonic_balance
 from raceway import ConvergenceError, SceneError
+from raceway.answers.answer import Interrupted
 from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, special_points
 from raceway.core.periodic.refinement import displacements
 from raceway.core.periodic.search import directly
-from raceway.out.answer import Interrupted
 from raceway.points.attractor import QUASI, REPEATS, WANDERS, judged
-from validation.command_line import invoke
-from validation.followed import OVER, SCENE, beside, by_harmonic_balance, by_integration, z_of
-from validation.oscillators import Oscillator, Pressed, natural_frequency
-from validation.reference.harmonic_balance import harmonic_balance
 
 
 def walked(branch, first, start, until, size=0.1, sense=1.0):

@@ -6,7 +6,7 @@ import pytest
 import raceway as rw
 from raceway.core.rolling_friction import measured_factors
 from raceway.errors import RacewayError
-from raceway.plugins.friction import PARTS, Friction
+from raceway.plugins.quantities.friction import PARTS, Friction
 from raceway.testing import run
 
 OIL = {"oil": "VG 32", "temperature_c": 60.0}

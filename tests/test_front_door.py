@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation.command_line import EXAMPLES, invoke, python
 from raceway.framework.shown import LINES, WIDTH, _as_html, _as_text
 from raceway.scene.inputs import as_given
 from raceway.testing import b7206c
-from validation.command_line import EXAMPLES, invoke, python
 
 ROOT = EXAMPLES.parent
 SCENE = EXAMPLES / "b7206.toml"

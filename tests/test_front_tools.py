@@ -10,9 +10,9 @@ import pytest
 from raceway_rotor.export import point_rows
 
 import raceway as rw
+from checks.validation.command_line import invoke
 from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
-from raceway.plugins.processes import Serial
-from validation.command_line import invoke
+from raceway.plugins.executors.processes import Serial
 
 SCENE = {
     "title": "tools",

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation.columns import case, compare
 from raceway.errors import SceneError
 from raceway.storage.tables import Tables
-from validation.columns import case, compare
 
 STATIC = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1.0}, "supports": {"tilt": "free"}}
 TURNING = {

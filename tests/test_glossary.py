@@ -6,12 +6,12 @@ from pathlib import Path
 import attrs
 import pytest
 
+from checks.validation.command_line import ARTICLE
 from raceway import load_scene
 from raceway.framework.registry import Registry
 from raceway.pipeline.run import run
 from raceway.scene.schema import keys
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
-from validation.command_line import ARTICLE
 
 DOCS = Path(__file__).parents[1] / "docs"
 ROWS = [

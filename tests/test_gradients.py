@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation.command_line import invoke
 from raceway import SceneError, build_model, scene_from_dict
 from raceway.bodies.columns import why_no_column
 from raceway.pipeline.gradient import (
@@ -20,7 +21,6 @@ from raceway.pipeline.gradient import (
 from raceway.planning.resolve import resolve
 from raceway.scene.changes import continuous_keys, key_of, with_number
 from raceway.testing import b7206c, settled, solve_equilibrium
-from validation.command_line import invoke
 
 LOADED = b7206c(load={"axial": 400.0, "radial": [120.0, 30.0]}, supports={"tilt": "free"})
 #: Whole runs are solved to 1e-11; a step of 1e-4 leaves 1e-7 of that in a difference.

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation.scenes import rotating
 from raceway import run
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.signals import _turns_of, fit_harmonics, identification, stiffness, synchronous_phasor, without_drift
 from raceway.testing import model_of, solve_equilibrium
-from validation.scenes import rotating
 
 K, M, C, SPEED = 1.7e8, 2.0, 4e3, 400.0 * np.pi
 FREQUENCY = SPEED / (2.0 * np.pi)

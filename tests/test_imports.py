@@ -7,7 +7,7 @@ import resource
 
 import pytest
 
-from validation.command_line import ARTICLE, python
+from checks.validation.command_line import ARTICLE, python
 
 LOOK = """
 import json, sys

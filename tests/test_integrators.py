@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from raceway_checks.stability.catalogue import BASE
 
+from checks.validation import orders
+from checks.validation.scenes import rotating
 from raceway import PluginError, SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
 from raceway.core.record import Schedule, State
 from raceway.core.ring.orbit import at_rest
@@ -18,8 +20,6 @@ from raceway.core.time.compiled import outer_force
 from raceway.core.time.schemes import Drivers, OneStep, integrate
 from raceway.integrators.methods import Newmark
 from raceway.testing import Registry, model_of, settled, simulate, solve_equilibrium
-from validation import orders
-from validation.scenes import rotating
 
 INTEGRATORS = orders.INTEGRATORS
 

@@ -14,14 +14,14 @@ from pathlib import Path
 
 import pytest
 
+from checks.validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, python, raceway
+from checks.validation.sessions import left, members
 from raceway.cli.interrupt import Interrupts, farewell
 from raceway.errors import RacewayError
 from raceway.framework.orphans import WATCH, deaf_to_terminals
-from raceway.plugins.processes import Processes
+from raceway.plugins.executors.processes import Processes
 from raceway.points.dataset import open_store
 from raceway.points.store import Store, connected, exists
-from validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, python, raceway
-from validation.sessions import left, members
 
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 

@@ -18,11 +18,11 @@ from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import IndexDataCacheFile
 
 import raceway
+from checks.validation.command_line import python
 from raceway import LAW, PluginError, jit
 from raceway.core.jit import clock
 from raceway.core.signatures import Pointer
 from raceway.storage.kernel_cache import current_folder, make, opened, refusal
-from validation.command_line import python
 
 #: The smallest kernels, three in a file, each used once; what was compiled and read, what was warned of, numba's own settings.
 USE = """

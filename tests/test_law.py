@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import quad
 
 import raceway as rw
+from checks.validation.command_line import EXAMPLES, invoke
 from raceway import RacewayError, SceneError
-from validation.command_line import EXAMPLES, invoke
 
 CUBIC = EXAMPLES.parent / "tests" / "cubic_law.py"
 HUNT_CROSSLEY = EXAMPLES / "third_party_law" / "raceway_hunt_crossley" / "__init__.py"

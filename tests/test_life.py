@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.lives import DEEP_GROOVE, MASTA, life, printed_life_factor, reference_life
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.life import (
     equivalent_loads,
@@ -16,7 +17,6 @@ from raceway.core.life import (
     system_life,
 )
 from raceway.core.ratings import STEEL, BallRow
-from validation.lives import DEEP_GROOVE, MASTA, life, printed_life_factor, reference_life
 
 ANGULAR = BallRow(12, 9.525e-3, 46e-3, np.radians(15.0), 0.522, 0.53)
 

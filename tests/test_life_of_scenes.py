@@ -10,7 +10,7 @@ import pytest
 import raceway as rw
 from raceway import SceneError
 from raceway.core.life import equivalent_loads, life_factor, reliability_factor, system_life
-from raceway.plugins.life import Life
+from raceway.plugins.quantities.life import Life
 from raceway.points.dataset import open_store, write_csv
 from raceway.scene.lubricant import Lubricant
 

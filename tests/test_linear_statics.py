@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.natural_modes import natural_modes
+from checks.validation.reference import annulus, elastic
 from raceway import ConvergenceError
-from raceway.core.hexahedron.operator import HexOperator
-from raceway.elastic.linear_statics import solve_static
-from validation.natural_modes import natural_modes
-from validation.reference import annulus, elastic
+from raceway.core.fem.elastic.linear_statics import solve_static
+from raceway.core.fem.hexahedron.operator import HexOperator
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation.command_line import EXAMPLES
 from raceway.points.dataset import values_of
-from validation.command_line import EXAMPLES
 
 STATIC = {"bearing": {"preset": "7014A"}, "load": {"axial": 400.0}, "kinematics": {"spin_speed_rpm": 5000.0}}
 MOVING = {

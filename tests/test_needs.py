@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from checks.validation.command_line import EXAMPLES, python, raceway
+from checks.validation.system_libraries import NEEDS, install_line
 from raceway.plugins.system_libraries import DEBIAN
 from tests.hidden_libraries import hide
-from validation.command_line import EXAMPLES, python, raceway
-from validation.system_libraries import NEEDS, install_line
 
 ROOT = EXAMPLES.parent
 FILE = "import pytest\n\n" + "\n\n".join(f'@pytest.mark.needs("{name}")\ndef test_{name}():\n    pass\n' for name in NEEDS)
@@ -25,7 +25,7 @@ def collected(folder: Path, **environment):
         "-p",
         "no:cacheprovider",
         "-p",
-        "validation.system_libraries",
+        "checks.validation.system_libraries",
         "-c",
         ROOT / "pyproject.toml",
     )

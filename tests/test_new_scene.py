@@ -8,10 +8,10 @@ import re
 import pytest
 
 import raceway as rw
+from checks.validation.command_line import invoke
 from raceway.cli.new_scene import _scene_text
 from raceway.framework.registry import default_registry
 from raceway.scene.catalogue import _single_presets
-from validation.command_line import invoke
 
 
 @pytest.mark.parametrize("preset", [*_single_presets(), "7014C", "7952A5", "NU206", "N1014"])

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.reference.ring import Ring
+from checks.validation.reference.shooting import periodic, swinging
+from checks.validation.scenes import rig_force, rotating
 from raceway.core.periodic.floquet import Floquet, floquet_of
 from raceway.core.ring.orbit import at_time, differentiation, from_orbit, steady_orbit
 from raceway.pipeline.simulate import _chosen_start
 from raceway.testing import b7206c, model_of, solve_equilibrium
-from validation.reference.ring import Ring
-from validation.reference.shooting import periodic, swinging
-from validation.scenes import rig_force, rotating
 
 
 def test_differentiation_is_exact_for_harmonics():

@@ -17,8 +17,8 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 import raceway
-from validation.command_line import install, python
-from validation.command_line import raceway as command
+from checks.validation.command_line import install, python
+from checks.validation.command_line import raceway as command
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT, *DISTRIBUTIONS = (
@@ -95,7 +95,7 @@ def test_the_wheel_holds_code_data_and_licence(wheel):
     }
     assert here <= set(wheel)
     assert any(name.endswith("licenses/LICENSE") for name in wheel)
-    assert not [name for name in wheel if name.startswith(("tests/", "benchmarks/", "validation/", "docs/"))]
+    assert not [name for name in wheel if name.startswith(("tests/", "checks/", "docs/"))]
 
 
 def test_the_readme_scene_runs():
@@ -105,12 +105,7 @@ def test_the_readme_scene_runs():
 
 
 #: Folder -> those beside it that its modules may import.
-MAY_IMPORT = {
-    "raceway": set(),
-    "validation": {"raceway"},
-    "tests": {"raceway", "validation"},
-    "benchmarks": {"raceway", "validation"},
-}
+MAY_IMPORT = {"raceway": set(), "checks": {"raceway"}, "tests": {"raceway", "checks"}}
 
 
 def imported(path):
@@ -123,7 +118,7 @@ def imported(path):
 
 
 @pytest.mark.parametrize("folder", MAY_IMPORT)
-def test_tests_and_benchmarks_do_not_import_each_other(folder):
+def test_folders_import_one_way(folder):
     forbidden = set(MAY_IMPORT) - MAY_IMPORT[folder] - {folder}
     files = sorted((ROOT / folder).rglob("*.py"))
     assert files

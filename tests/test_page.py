@@ -8,7 +8,7 @@ from html.parser import HTMLParser
 import pytest
 from matplotlib.figure import Figure
 
-from raceway.out.page import Cell, Page, data_uri, svg
+from raceway.answers.page import Cell, Page, data_uri, svg
 
 PNG = b"\x89PNG\r\n\x1a\n" + b"0" * 8
 

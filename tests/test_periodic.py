@@ -11,6 +11,9 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from checks.validation.command_line import ARTICLE, invoke
+from checks.validation.scenes import rotating
+from checks.validation.several import heavy
 from raceway import SceneError, run
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.collocation import Problem, _newton, one_turn, solve, stiff
@@ -34,9 +37,6 @@ from raceway.integrators.methods import Periodic
 from raceway.pipeline.simulate import steady_record
 from raceway.testing import model_of, solve_equilibrium
 from raceway.testing.systems import PRELOAD, SPEED, along_x, contact_system, exact, linear_system, motion
-from validation.command_line import ARTICLE, invoke
-from validation.scenes import rotating
-from validation.several import heavy
 
 
 def scene(kind="periodic", axial=1000.0, tilt="locked", inertia=False, **tables):

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from checks.validation.command_line import EXAMPLES
 from raceway import ConvergenceError, SceneError, check, run, scene_from_dict
 from raceway.framework.options import nearest
 from raceway.pipeline.plausible import inertia_warnings
@@ -20,7 +21,6 @@ from raceway.pipeline.simulate import _stride
 from raceway.planning.resolve import _damped_limit, resolve, samples_per_turn
 from raceway.planning.rules import scene_warnings
 from raceway.testing import b7206c
-from validation.command_line import EXAMPLES
 
 EXCITED = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
 

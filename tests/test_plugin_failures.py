@@ -4,12 +4,12 @@ from importlib.metadata import entry_points
 
 import pytest
 
+from checks.validation.command_line import install, law
 from raceway.errors import PluginError
 from raceway.framework.packages import packages
 from raceway.framework.registry import Registry
 from raceway.scene.reading import _check_requires
 from tests.fake_site import LAW, FakeSite
-from validation.command_line import install, law
 
 BROKEN = {
     "import": ("import a_module_that_nobody_has", "fails to import: ModuleNotFoundError"),

@@ -10,6 +10,8 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation import error_estimate as evidence
+from checks.validation.command_line import ARTICLE, invoke
 from raceway import RacewayError, SceneError, scene_from_dict
 from raceway.pipeline.equilibrium import peak
 from raceway.pipeline.transient_error import _hann_line
@@ -20,8 +22,6 @@ from raceway.points.settings import find_reference, make_design
 from raceway.points.store import Store, row_key, written
 from raceway.scene.inputs import read_toml
 from raceway.testing import b7206c, default_registry, run
-from validation import error_estimate as evidence
-from validation.command_line import ARTICLE, invoke
 
 TABLES = read_toml(ARTICLE)
 FEW = {**TABLES, "integrator": {"kind": "newmark", "turns": 4}}

@@ -10,7 +10,7 @@ import pytest
 from raceway import FORCE, LAW, PluginError, build_model, jit, scene_from_dict
 from raceway.contact_laws.hertz import Hertz
 from raceway.framework.probe import probe_excitation, probe_law
-from raceway.plugins.excitations import Bidirectional
+from raceway.plugins.excitations.harmonic import Bidirectional
 from raceway.testing import b7206c, run, solve_equilibrium
 from tests import broken_laws
 

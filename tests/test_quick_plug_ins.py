@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.bodies.rigid import Rigid
+from raceway.answers.quantities import K
 from raceway.framework.sources import blamed
 from raceway.integrators.methods import Periodic
-from raceway.out.quantities import K
-from raceway.plugins.identifiers import Fft1x
+from raceway.plugins.bodies.rigid import Rigid
+from raceway.plugins.identifiers.one_frequency import Fft1x
 from raceway.testing import default_registry
 
 SCENE = {

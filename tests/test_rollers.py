@@ -14,10 +14,10 @@ from scipy.optimize import brentq
 import raceway as rw
 from raceway import SceneError, scene_from_dict
 from raceway.bodies.model import build_model
-from raceway.bodies.rollers import CylindricalRollers
 from raceway.contact_laws.line import Line
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
+from raceway.plugins.bodies.rollers import CylindricalRollers
 
 N = 10.0 / 9.0
 LENGTH, FORCE = 9e-3, 4000.0

@@ -6,10 +6,10 @@ import pytest
 from scipy.optimize import minimize_scalar
 from scipy.special import ellipe
 
+from checks.validation import rolling_friction as published
 from raceway.core.contact.losses import _mean_slip
 from raceway.core.elementary import exponential, logarithm
 from raceway.core.rolling_friction import MEASURED, _spin_shape, losses
-from validation import rolling_friction as published
 
 
 @pytest.mark.parametrize("load", [50.0, 500.0])

@@ -15,7 +15,7 @@ from raceway_rotor.export import _ross_table
 from raceway_rotor.ross_file import NAMES, _smoothed, through_points
 
 from raceway import RacewayError, SceneError
-from raceway.plugins.processes import Serial
+from raceway.plugins.executors.processes import Serial
 from raceway.points.axes import grid
 from raceway.points.plot import select
 from raceway.points.sweep import fill_store, prepare

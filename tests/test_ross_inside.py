@@ -14,9 +14,9 @@ from raceway_rotor.node_bearing import _secant, node_bearing
 from raceway_rotor.ross_file import ross
 
 import raceway as rw
+from checks.validation.command_line import EXAMPLES
 from raceway import RacewayError, SceneError
-from raceway.plugins.excitations import harmonic_load
-from validation.command_line import EXAMPLES
+from raceway.plugins.excitations.harmonic import harmonic_load
 
 SPEED = 12000.0 * np.pi / 30.0
 UNITS = np.ones(2)

@@ -7,10 +7,10 @@ import tomllib
 import pytest
 from jsonschema import Draft202012Validator
 
+from checks.validation.command_line import EXAMPLES
 from raceway import load_scene
 from raceway.scene.schema import scene_schema
 from raceway.testing import Registry, b7206c, default_registry
-from validation.command_line import EXAMPLES
 
 SCHEMA = scene_schema(default_registry())
 CHECK = Draft202012Validator(SCHEMA)
@@ -38,7 +38,7 @@ def test_every_installed_plug_in_has_a_branch_with_its_options():
 
 
 def test_a_third_party_plug_in_appears(tmp_path, monkeypatch):
-    from validation.command_line import install, law
+    from checks.validation.command_line import install, law
 
     install(tmp_path, "elsewhere", law("elsewhere_law"))
     monkeypatch.syspath_prepend(tmp_path)

@@ -11,13 +11,13 @@ import pytest
 from rich.console import Console
 
 import raceway as rw
+from checks.validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
+from raceway.answers.table import rows_table
+from raceway.answers.wrapping import Words
 from raceway.bodies.model import tilts_follow
 from raceway.framework.estimate import Estimate, short
 from raceway.framework.shown import duration
-from raceway.out.table import rows_table
-from raceway.out.wrapping import Words
 from raceway.pipeline.run_parts import cost_row, equilibrium_rows
-from validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 
 PACKAGE = Path(__file__).parents[1] / "raceway"
 SCREENS = [*PACKAGE.glob("pipeline/run_parts.py"), *PACKAGE.rglob("*screen.py")]

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from checks.validation.several import article, by_integration, heavy
 from raceway import ConvergenceError, run
 from raceway.core.periodic import search as direct
 from raceway.core.periodic import steady
 from raceway.core.ring.orbit import differentiation
-from validation.several import article, by_integration, heavy
 
 
 def solved(tables):

@@ -18,12 +18,12 @@ from raceway_checks.stability.scenes import _axial_displacement, _axial_force
 from raceway_checks.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, _rows_of, measured, stability
 from raceway_checks.stability.systems import Bench
 
+from checks.validation.command_line import ARTICLE, invoke
 from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry, registry_with
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.points.store import written
-from validation.command_line import ARTICLE, invoke
 
 REGISTRY = default_registry()
 CUBIC, DAMPED = (Path(__file__).with_name(f"{name}.py") for name in ("cubic_law", "hunt_crossley"))
@@ -163,7 +163,7 @@ def test_elastic_bodies_of_another_stiffness_fail(monkeypatch):
 def test_elastic_bodies_that_forget_the_energy_of_their_contacts_fail(monkeypatch):
     name = "elastic bodies: rubber balls in ceramic rings"
     assert {row.verdict for row in rows_named(name)} == {AS_EXPECTED}
-    monkeypatch.setattr("raceway.elastic.contact.Contact.energy", lambda self: 0.0)
+    monkeypatch.setattr("raceway.core.fem.elastic.contact.Contact.energy", lambda self: 0.0)
     found = verdicts(rows_named(name))
     assert found == {"axial force on the outer seat": AS_EXPECTED, "change of the stored energy over the axial way": FAILED}
 

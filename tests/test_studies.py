@@ -2,10 +2,10 @@
 
 import pytest
 
+from checks.validation.command_line import invoke, raceway
 from raceway import PluginError, hookimpl
 from raceway.cli import study as command
 from raceway.testing import Registry
-from validation.command_line import invoke, raceway
 
 STUDY = """
 import attrs

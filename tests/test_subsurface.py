@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.reference.half_space import pressed_stress
 from raceway.core.contact.hertz import axis_shear, axis_stresses, largest_shear
-from validation.reference.half_space import pressed_stress
 
 NU = 0.3
 

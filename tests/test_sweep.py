@@ -18,11 +18,12 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.command_line import ARTICLE, EXAMPLES, PATIENCE_S, invoke
 from raceway import PluginError, RacewayError, SceneError, __version__, scene_from_dict
 from raceway import sweep as front
 from raceway.framework.contracts import Lost, Refused
-from raceway.plugins.dask import Dask
-from raceway.plugins.processes import Processes, Serial
+from raceway.plugins.executors.dask import Dask
+from raceway.plugins.executors.processes import Processes, Serial
 from raceway.points.axes import Design, design_file, grid, listed_points, parse_axes, tables_at
 from raceway.points.dataset import open_store, values_of
 from raceway.points.engine import Work
@@ -32,7 +33,6 @@ from raceway.points.sweep import fill_store as study
 from raceway.scene.inputs import read_toml
 from raceway.testing import default_registry, run
 from tests.deadly_work import Deadly
-from validation.command_line import ARTICLE, EXAMPLES, PATIENCE_S, invoke
 
 SCENE: dict[str, Any] = {
     "title": "test",

@@ -7,8 +7,8 @@ import threading
 
 import pytest
 
+from checks.validation.command_line import PATIENCE_S
 from raceway.core.threads import BOUNDS, ThreadPool, usable_cores
-from validation.command_line import PATIENCE_S
 
 
 def helpers() -> int:

@@ -20,7 +20,7 @@ def test_marks_are_the_tiers():
     # Quick and night leave out what the next tiers run; ROSS has a line of its own.
     for line in (
         '-m "not slow and not night and not release and not ross"', '-m "not release and not ross"', "-m ross ",
-        "python -m benchmarks.night",
+        "python -m checks.night",
     ):  # fmt: skip
         assert line in make, line
 

@@ -6,16 +6,16 @@ import json
 
 import pytest
 
+from checks.validation.command_line import EXAMPLES, invoke
 from raceway import load_scene, scene_from_dict
-from raceway.out.page import Page
-from raceway.plugins.pictures import picture
+from raceway.answers.page import Page
+from raceway.plugins.formats.pictures import picture
 from raceway.points.plot import head, select
 from raceway.points.store import row_key
 from raceway.scene.changes import parse_change, titled
 from raceway.storage.files import slug
 from raceway.testing import b7206c, default_registry, run
 from tests.stores import SPEEDS, made
-from validation.command_line import EXAMPLES, invoke
 
 SCENE = EXAMPLES / "b7206.toml"
 FIRST = "B7206C, 1 kN axial, rig unbalance at 12 000 r/min"

@@ -10,10 +10,10 @@ from raceway_app.picture import at_rest, result_picture
 from rich.console import Console
 
 import raceway as rw
+from checks.validation.command_line import MINIMAL, invoke
+from raceway.answers.quantities import KXX, KYY, K
 from raceway.bodies.elastic_change import elastic_change
-from raceway.out.quantities import KXX, KYY, K
 from raceway.pipeline.uncertainty import interval, stated
-from validation.command_line import MINIMAL, invoke
 
 STATIC = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
 BEARINGS = [

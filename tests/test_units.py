@@ -10,12 +10,12 @@ import pytest
 from jsonschema import Draft202012Validator
 
 import raceway as rw
+from checks.validation.command_line import ARTICLE, invoke
 from raceway import SceneError
 from raceway.scene.inputs import plain_tables
 from raceway.scene.schema import scene_schema
 from raceway.scene.units import number_in, unit_of
 from raceway.testing import b7206c, default_registry
-from validation.command_line import ARTICLE, invoke
 
 #: Unit of the key, text, number: exactly the number that one types in the key's unit.
 SAME = {

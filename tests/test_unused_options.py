@@ -7,12 +7,12 @@ from typing import ClassVar
 import attrs
 import pytest
 
+from checks.validation.command_line import ARTICLE, invoke
 from raceway import option
 from raceway.contact_laws.hertz import Hertz
 from raceway.errors import PluginError
 from raceway.framework.options import unused_options
-from raceway.plugins.excitations import Bidirectional, Unidirectional
-from validation.command_line import ARTICLE, invoke
+from raceway.plugins.excitations.harmonic import Bidirectional, Unidirectional
 
 
 @pytest.mark.parametrize(

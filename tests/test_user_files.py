@@ -18,6 +18,7 @@ from raceway_meshing.formats import Msh, Vtu
 from raceway_meshing.gmsh import Gmsh
 from raceway_meshing.mesh_files import File
 
+from checks.validation.cubes import block
 from raceway import MeshError, RacewayError, SceneError, scene_from_dict
 from raceway.framework import sources as plugin_sources
 from raceway.framework.sources import import_file
@@ -27,7 +28,6 @@ from raceway.storage import number_table
 from raceway.storage.files import memory_for, size_words
 from raceway.storage.number_table import read_numbers
 from raceway.testing import b7206c
-from validation.cubes import block
 
 BEARING = scene_from_dict(b7206c()).bearing
 

@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import raceway as rw
-from raceway.plugins.heat import Temperatures
+from checks.validation import warm as published
+from raceway.plugins.quantities.heat import Temperatures
 from raceway.points.dataset import open_store
-from validation import warm as published
 
 
 def test_infinite_conductances_give_the_isothermal_bearing():

@@ -5,7 +5,7 @@ import json
 import pytest
 
 import raceway as rw
-from validation.command_line import EXAMPLES, invoke
+from checks.validation.command_line import EXAMPLES, invoke
 
 STEADY = EXAMPLES / "minimal.toml"
 

@@ -177,7 +177,7 @@ def gyroscopic(problem: Problem) -> np.ndarray:
 
 
 def seat_of(problem: Problem, inner: bool) -> str | float:
-    """What a ring sits on, as ``raceway.core.revolution.body.Revolution`` takes it: "clamped", or a bed [N/m3]."""
+    """What a ring sits on, as ``raceway.core.fem.revolution.body.Revolution`` takes it: "clamped", or a bed [N/m3]."""
     seat = problem.supports.inner_seat if inner else problem.supports.outer_seat
     return "clamped" if isinstance(seat, str) else float(seat)
 

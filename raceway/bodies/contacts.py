@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from raceway.bodies.model import Equilibrium, Model, Told
-    from raceway.core.structural import ElasticBodies
+    from raceway.core.fem.structural import ElasticBodies
 
 
 def contact_angles(centre: np.ndarray, placed: bool, ball: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ k sin^2(alpha) + (Q / s) cos^2(alpha), radially that with sine and cosine exchan
 References
 ----------
 Fitted to condensed bodies of 23 bearings of eight series under 0.5, 2 and 8 % of C0: their changes are met within ``_WITHIN`` of themselves
-(``python -m benchmarks.checks uncertainty``).
+(``python -m checks uncertainty``).
 """
 
 from __future__ import annotations

@@ -8,8 +8,8 @@ from datetime import datetime
 import click
 from rich.console import RenderableType
 
+from raceway.answers.table import sections
 from raceway.cli.frame import common, show, show_progress
-from raceway.out.table import sections
 from raceway.storage.tables import ReadTables
 
 #: Compliances that are listed one by one; a study keeps thousands.

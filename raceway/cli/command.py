@@ -37,8 +37,8 @@ from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, Scen
 from raceway.framework.packages import named
 
 if TYPE_CHECKING:
+    from raceway.answers.answer import Answer
     from raceway.framework.registry import Registry
-    from raceway.out.answer import Answer
 
 Value = Any
 #: Types of options by annotation; of others, texts.
@@ -211,9 +211,9 @@ def _argument(parameter: inspect.Parameter, metavar: str | None) -> Callable[[Va
 
 def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:
     """Read the scene, call the front, write and show its answer."""
+    from raceway.answers.answer import Interrupted
     from raceway.cli.failure import keep_state
     from raceway.framework.registry import registry_with
-    from raceway.out.answer import Interrupted
     from raceway.scene.scene import Scene
     from raceway.storage.files import slug, writable
 

@@ -17,8 +17,8 @@ from raceway.errors import Mistake, RacewayError, SceneError, extra
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
+    from raceway.answers.progress import ProgressBar
     from raceway.framework.registry import Registry
-    from raceway.out.progress import ProgressBar
     from raceway.scene.inputs import Given
     from raceway.scene.scene import Scene
 
@@ -57,7 +57,7 @@ def common(command: F) -> F:
 
 def show_progress(remaining: bool = False, waiting: str | None = None) -> ProgressBar:
     """A bar; ``waiting`` says what happens before the first step where that is not the start of this process."""
-    from raceway.out.progress import ProgressBar
+    from raceway.answers.progress import ProgressBar
     from raceway.storage.kernel_cache import current_folder
 
     folder = current_folder()
@@ -68,7 +68,7 @@ def show_progress(remaining: bool = False, waiting: str | None = None) -> Progre
 
 def attempt(write: Callable[[], list[Path]], files: list[str]) -> RacewayError | None:
     """Write files; hand a failure back, so that what was computed is shown before it is reported."""
-    from raceway.out.progress import ProgressBar
+    from raceway.answers.progress import ProgressBar
 
     try:
         with ProgressBar("writing"):

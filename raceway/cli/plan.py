@@ -13,11 +13,11 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.table import Table
 
+from raceway.answers.answer import Answer, Part
+from raceway.answers.table import Row, grouped, number, sections
+from raceway.answers.wrapping import Words
 from raceway.errors import SceneError
 from raceway.framework.shown import duration
-from raceway.out.answer import Answer, Part
-from raceway.out.table import Row, grouped, number, sections
-from raceway.out.wrapping import Words
 from raceway.planning.plan import ScenePlan, check, make_plan
 from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables

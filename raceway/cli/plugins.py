@@ -13,13 +13,13 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from raceway.answers.table import file_lines
+from raceway.answers.wrapping import Words
 from raceway.cli.console import print_json
 from raceway.cli.frame import common, faults, plugin_files, show, show_progress
 from raceway.errors import RacewayError
 from raceway.framework.contracts import KINDS, plural
 from raceway.framework.registry import default_registry, registry_with
-from raceway.out.table import file_lines
-from raceway.out.wrapping import Words
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:

@@ -12,15 +12,15 @@ from typing import ClassVar, NamedTuple
 
 import attrs
 
+from raceway.answers.answer import Answer, Interrupted, Part
+from raceway.answers.progress import ShowProgress, telling
+from raceway.answers.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, Z_REAL, K
+from raceway.answers.table import file_lines, micro
+from raceway.answers.wrapping import Words
 from raceway.cli.frame import RESULTS, require_matplotlib
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact
-from raceway.out.answer import Answer, Interrupted, Part
-from raceway.out.progress import ShowProgress, telling
-from raceway.out.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, Z_REAL, K
-from raceway.out.table import file_lines, micro
-from raceway.out.wrapping import Words
 from raceway.points.axes import Design, design_file, grid, point_words, sampled, shown
 from raceway.points.dataset import NOT_CHECKED, TABLE, all_failed, blank, open_store, points_of, write_csv, write_netcdf
 from raceway.points.store import POINTS, exists

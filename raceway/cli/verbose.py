@@ -28,7 +28,7 @@ class _Lines(logging.Handler):
         self._begun = time.perf_counter()
 
     def emit(self, record: logging.LogRecord) -> None:
-        from raceway.out.wrapping import lines_of
+        from raceway.answers.wrapping import lines_of
 
         first, *following = lines_of(record.getMessage(), shutil.get_terminal_size().columns - _TIME) or [""]
         click.echo(f"{time.perf_counter() - self._begun:{_TIME - 4}.2f} s  {first}", err=True)
@@ -53,7 +53,7 @@ class _Listener:
         parts = [f"{word} {cost[name]:.2f} s" for word, name in _PARTS.items() if cost.get(name)]
         LOGGER.info("run finished in %.2f s: %s", cost["wall_s"], ", ".join(parts) or "nothing to build")
         if result.identification is not None:
-            from raceway.out.quantities import K
+            from raceway.answers.quantities import K
 
             LOGGER.info("K = %s at %g r/min", K.text(K.of(result)), 60.0 * result.identification.frequency_hz)
 

@@ -16,11 +16,7 @@ ring           the compiled bearing: five coordinates of the inner ring, balls c
 time           one-step, explicit and static methods: compiled loops and loops in Python
 periodic       steady motions by collocation and continuation, with their Floquet multipliers
 signals        dynamic stiffness from the spectral lines of a motion
-mesh           hexahedral meshes of rings and balls
-hexahedron     the eight-node hexahedron
-revolution     compliances of bodies of revolution, harmonic by harmonic
-structural     structural compliances behind contact resultants
-patches        pressures at surface points on condensed bodies
+fem            the shared finite elements: meshes, hexahedra, condensation, elastic bodies in full
 """
 
 import os

@@ -1,4 +1,4 @@
-"""Compiled forces of the built-in excitations; the classes with the options are in ``raceway.plugins.excitations``."""
+"""Compiled forces of the built-in excitations; the classes with the options are in ``raceway.plugins.excitations.harmonic``."""
 
 import numpy as np
 

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     import click
     import numpy as np
 
+    from raceway.core.fem.mesh.hex_mesh import HexMesh
     from raceway.core.jit import Kernel
-    from raceway.core.mesh.hex_mesh import HexMesh
     from raceway.core.record import Record
     from raceway.core.signals import Identification
     from raceway.core.time.schemes import Scheme
@@ -270,14 +270,14 @@ class Mesher(attrs.AttrsInstance, Protocol):
     """Bodies to hexahedra.
 
     1. ``mesh(bearing)``: body -> mesh with ``points`` (n, 3) [m] and ``cells`` (m, 8) in VTK's order, best a
-       ``raceway.core.mesh.hex_mesh.HexMesh`` with sets; ``bearing`` is the scene's [bearing] table.  Names of bodies:
+       ``raceway.core.fem.mesh.hex_mesh.HexMesh`` with sets; ``bearing`` is the scene's [bearing] table.  Names of bodies:
        ``inner_ring``, ``outer_ring``, ``ball_0`` and so on; a set of facets on the groove is called ``raceway``, on the
        bore or the outer cylinder ``seat``, on a contact of a ball ``inner_patch`` and ``outer_patch``.
     2. No cell is inverted or flat; what cannot be meshed raises ``MeshError``.
     3. The same bearing gives the same mesh.
     4. An option ``ball_load`` that is None gets the static load of a ball [N] from the scene.
     5. Optional ``predict(bearing)``: body -> number of cells, without meshing, for the plan (or a
-       ``raceway.core.mesh.quality.Prediction``; None: unknown); what cannot be meshed raises ``MeshError`` here
+       ``raceway.core.fem.mesh.quality.Prediction``; None: unknown); what cannot be meshed raises ``MeshError`` here
        already.  It executes nothing, starts no process and writes no file: ``raceway check`` calls it on foreign scenes.
     6. May be left out: ``swept`` = True says that rings are swept from their sections, in as many equal sectors as there are balls.
     """
@@ -409,7 +409,7 @@ class SolvedPoints:
 class Quantities(attrs.AttrsInstance, Protocol):
     """Numbers of a solved point; its options are the keys of the table [quantities.NAME], which all have defaults.
 
-    1. ``numbers``: a ``raceway.out.quantities.Quantity`` for each, whose ``path`` begins with the plug-in's name: NAME.KEY is its place
+    1. ``numbers``: a ``raceway.answers.quantities.Quantity`` for each, whose ``path`` begins with the plug-in's name: NAME.KEY is its place
        in result.json.  They are outputs of functions, columns of sweeps, numbers of bands and of fits by their names, which no other
        quantity has; short tables show the first.
     2. ``why_not(problem)``: what a scene lacks for them, with the keys; empty where it has all.  They are left out then.

@@ -31,7 +31,7 @@ from raceway.framework.sources import chosen_entry_points, foreign_words, import
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-_BUILT_IN = ("raceway.bodies", "raceway.contact_laws", "raceway.integrators", "raceway.plugins")
+_BUILT_IN = ("raceway.contact_laws", "raceway.integrators", "raceway.plugins")
 
 
 @attrs.frozen

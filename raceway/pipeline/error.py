@@ -29,13 +29,13 @@ from math import ceil, pi
 import attrs
 import numpy as np
 
+from raceway.answers.quantities import C, K
 from raceway.bodies.model import Equilibrium, Model
 from raceway.core.ring.ring import TOLERANCE
 from raceway.core.ring.system import compiled, surrogate
 from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.framework.estimate import Estimate, Note
 from raceway.framework.registry import default_registry
-from raceway.out.quantities import C, K
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import Simulation, simulate
 from raceway.pipeline.transient_error import Clean, Identified, Run, distance, settled_value, without_free_vibration

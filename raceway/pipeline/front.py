@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import attrs
 
+from raceway.answers.progress import ShowProgress, telling
+from raceway.answers.quantities import KYY, KYY_TILTS_FOLLOW
 from raceway.errors import RacewayError
 from raceway.framework.doors import DURATION, PATH, PATHS, TEXTS, door
 from raceway.framework.registry import default_registry, registry_with
-from raceway.out.progress import ShowProgress, telling
-from raceway.out.quantities import KYY, KYY_TILTS_FOLLOW
 from raceway.scene.inputs import SceneSource, as_scene, plain_tables
 from raceway.storage.files import writable
 

@@ -25,6 +25,19 @@ from typing import TypeAlias
 import attrs
 import numpy as np
 
+from raceway.answers.quantities import (
+    AMPLITUDE,
+    DIFFERENTIABLE,
+    KXX,
+    KYY,
+    KYY_TILTS_FOLLOW,
+    LARGEST_BALL_LOAD,
+    C,
+    K,
+    X,
+    quantity_of,
+    read_in,
+)
 from raceway.bodies.columns import (
     Excitations,
     build_columns,
@@ -47,19 +60,6 @@ from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, renews
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import Fact, race_words, tilt_words
-from raceway.out.quantities import (
-    AMPLITUDE,
-    DIFFERENTIABLE,
-    KXX,
-    KYY,
-    KYY_TILTS_FOLLOW,
-    LARGEST_BALL_LOAD,
-    C,
-    K,
-    X,
-    quantity_of,
-    read_in,
-)
 from raceway.pipeline.equilibrium import race_of, solve_equilibrium
 from raceway.pipeline.quantities import solved_point, stated_numbers
 from raceway.planning.resolve import Problem, resolve

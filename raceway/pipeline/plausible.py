@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.answers.quantities import KXX, KYY, KYY_TILTS_FOLLOW, P0, PEAK_BALL_LOAD, K
 from raceway.bodies.basis import Basis, growth_of
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.bodies.mounting import place_ring
@@ -37,7 +38,6 @@ from raceway.core.signals import Identification, stiffness
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.duties import renews
 from raceway.framework.estimate import Estimate, Note
-from raceway.out.quantities import KXX, KYY, KYY_TILTS_FOLLOW, P0, PEAK_BALL_LOAD, K
 from raceway.pipeline.equilibrium import pressures, solve_equilibrium
 from raceway.pipeline.simulate import Simulation, last_turn
 from raceway.planning.resolve import Problem

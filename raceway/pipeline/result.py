@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, cast, overload
 import attrs
 import numpy as np
 
+from raceway.answers.answer import Answer, Part
+from raceway.answers.damping import DRY
+from raceway.answers.quantities import C_ERROR, IDENTIFIED, KXX, KYY, KYY_TILTS_FOLLOW, C, K, X, Z, nested
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.signals import Identification, Line
 from raceway.errors import PluginError, RacewayError
@@ -22,17 +25,14 @@ from raceway.framework.estimate import Note, short
 from raceway.framework.options import nearest
 from raceway.framework.shown import Fact, in_micro, largest_facts, number, tilt_words
 from raceway.framework.sources import blamed
-from raceway.out.answer import Answer, Part
-from raceway.out.damping import DRY
-from raceway.out.quantities import C_ERROR, IDENTIFIED, KXX, KYY, KYY_TILTS_FOLLOW, C, K, X, Z, nested
 from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts, motion_table, pressures
 from raceway.pipeline.plausible import closed_bound, model_spread
 from raceway.pipeline.quantities import StatedQuantities
 from raceway.pipeline.simulate import Simulation
 from raceway.pipeline.uncertainty import stated, uncertainty_table
 from raceway.planning.resolve import Problem
-from raceway.plugins.labelled import labelled
-from raceway.plugins.pictures import Pictures, plot
+from raceway.plugins.formats.labelled import labelled
+from raceway.plugins.formats.pictures import Pictures, plot
 from raceway.scene.catalogue import geometry_of
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.files import without_nan

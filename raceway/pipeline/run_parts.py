@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from raceway.answers.quantities import HEADLINE, K_ERROR, KXX, KYY, KYY_TILTS_FOLLOW, STIFFNESSES, K, Quantity, X
+from raceway.answers.table import Row, number, tilt_words
 from raceway.errors import PluginError
 from raceway.framework.duties import quantity_screen
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import in_micro
-from raceway.out.quantities import HEADLINE, K_ERROR, KXX, KYY, KYY_TILTS_FOLLOW, STIFFNESSES, K, Quantity, X
-from raceway.out.table import Row, number, tilt_words
 from raceway.pipeline.uncertainty import interval, stated
 from raceway.storage.tables import ReadTables
 

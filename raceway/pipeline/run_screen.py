@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from raceway.framework.duties import has_rollers
-from raceway.framework.registry import default_registry
-from raceway.out.answer import Part
-from raceway.out.damping import DRY, dry_damping_note
-from raceway.out.quantities import (
+from raceway.answers.answer import Part
+from raceway.answers.damping import DRY, dry_damping_note
+from raceway.answers.quantities import (
     FORCE_AMPLITUDE,
     KXX,
     KYY,
@@ -22,8 +20,10 @@ from raceway.out.quantities import (
     K,
     Z,
 )
-from raceway.out.table import Row, micro, sections, tilt_words
-from raceway.out.wrapping import Words
+from raceway.answers.table import Row, micro, sections, tilt_words
+from raceway.answers.wrapping import Words
+from raceway.framework.duties import has_rollers
+from raceway.framework.registry import default_registry
 from raceway.pipeline.run_parts import (
     bodies_rows,
     cost_row,

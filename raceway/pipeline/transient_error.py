@@ -48,7 +48,7 @@ from raceway.framework.duties import ramp_turns
 from raceway.framework.estimate import Estimate, Note
 from raceway.framework.registry import default_registry
 from raceway.pipeline.simulate import OnProgress, Simulation, SteadyMotions, settles_elsewhere, simulate, steady_record
-from raceway.plugins.identifiers import whole_turns
+from raceway.plugins.identifiers.one_frequency import whole_turns
 from raceway.storage.tables import Tables
 
 #: Free vibrations below this share of the 1x power shift nothing that can be seen.

@@ -21,6 +21,8 @@ from typing import TYPE_CHECKING, Any
 
 import attrs
 
+from raceway.answers.quantities import HEADLINE, KXX, KYY, L10R, P0, PEAK_BALL_LOAD, PRELOAD, STIFFNESSES, K, Quantity, Z
+from raceway.answers.quantities import KYY_TILTS_FOLLOW as FOLLOWS
 from raceway.bodies.elastic_change import elastic_change
 from raceway.bodies.model import Equilibrium, Model, model_of, tilts_follow
 from raceway.bodies.rigid_bearing import build, with_hertz
@@ -28,8 +30,6 @@ from raceway.core.ring.ring import TOLERANCE
 from raceway.errors import RacewayError
 from raceway.framework.estimate import Estimate
 from raceway.framework.shown import Fact, number_within, percents
-from raceway.out.quantities import HEADLINE, KXX, KYY, L10R, P0, PEAK_BALL_LOAD, PRELOAD, STIFFNESSES, K, Quantity, Z
-from raceway.out.quantities import KYY_TILTS_FOLLOW as FOLLOWS
 from raceway.pipeline.equilibrium import pressures, solve_equilibrium
 from raceway.pipeline.quantities import plugins_stating, solved_point, stated_numbers
 from raceway.planning.resolve import Problem

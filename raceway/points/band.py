@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import attrs
 import numpy as np
 
+from raceway.answers.answer import Answer, Part
+from raceway.answers.picture import MOST_COLUMNS, new_figure, wrapped
+from raceway.answers.progress import ShowProgress, telling
+from raceway.answers.quantities import Z_IMAG, Z_REAL, C, quantity_of, read_in
+from raceway.answers.wrapping import Words
 from raceway.bodies.model import build_model
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.doors import KEY_VALUES, PATH, PATHS, TEXTS, door
 from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, default_registry
 from raceway.framework.shown import Fact, number
-from raceway.out.answer import Answer, Part
-from raceway.out.picture import MOST_COLUMNS, new_figure, wrapped
-from raceway.out.progress import ShowProgress, telling
-from raceway.out.quantities import Z_IMAG, Z_REAL, C, quantity_of, read_in
-from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import Gradients, definitions, described, resolved, values
 from raceway.pipeline.quantities import stated_quantities

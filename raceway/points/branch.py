@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 import numpy as np
 
+from raceway.answers.answer import Answer, Part
+from raceway.answers.wrapping import Words
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Solved
 from raceway.core.periodic.intervals import Change, forces, spread
@@ -19,8 +21,6 @@ from raceway.core.ring.orbit import States, responses
 from raceway.core.signals import stiffness
 from raceway.errors import ConvergenceError
 from raceway.framework.shown import Fact
-from raceway.out.answer import Answer, Part
-from raceway.out.wrapping import Words
 from raceway.points.attractor import Attractor
 from raceway.storage.tables import Tables
 

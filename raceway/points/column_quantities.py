@@ -9,6 +9,7 @@ from functools import cached_property
 import attrs
 import numpy as np
 
+from raceway.answers.quantities import AMPLITUDE, KNOWN, OF_ORBITS, Z_IMAG, Z_REAL, C, K, Quantity, plugin_quantities
 from raceway.bodies.columns import (
     ColumnBearing,
     Excitations,
@@ -25,7 +26,6 @@ from raceway.core.ring.ring import COORDINATES
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, turn_samples
 from raceway.framework.registry import Registry, default_registry
-from raceway.out.quantities import AMPLITUDE, KNOWN, OF_ORBITS, Z_IMAG, Z_REAL, C, K, Quantity, plugin_quantities
 from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
 from raceway.planning.plan import make_plan

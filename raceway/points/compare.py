@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import attrs
 import numpy as np
 
+from raceway.answers.answer import Answer, Interrupted, Part
+from raceway.answers.progress import ShowProgress, telling
+from raceway.answers.quantities import ENDS, K_ERROR, C, Quantity, Z, named
+from raceway.answers.wrapping import Words
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import KEY_VALUES, PATH, PATHS, door, member
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import Fact, number_within
-from raceway.out.answer import Answer, Interrupted, Part
-from raceway.out.progress import ShowProgress, telling
-from raceway.out.quantities import ENDS, K_ERROR, C, Quantity, Z, named
-from raceway.out.wrapping import Words
 from raceway.pipeline.run import run
 from raceway.pipeline.uncertainty import interval
 from raceway.planning.plan import make_plan
-from raceway.plugins.labelled import labelled_dataset
+from raceway.plugins.formats.labelled import labelled_dataset
 from raceway.points.axes import Axis, Vary, axes_of, points, refuse_mistakes, shown, tables_at
 from raceway.points.dataset import axis_labels
 from raceway.points.effects import MOVING, Findings, Row, explain, in_few_words

@@ -7,8 +7,8 @@ from collections.abc import Collection, Iterable, Sequence
 from itertools import product
 from typing import TYPE_CHECKING
 
-from raceway.out.picture import COLOURS, GREY, MARKERS, dress, given_axes, new_figure, wrapped
-from raceway.out.quantities import KXX, K, Quantity
+from raceway.answers.picture import COLOURS, GREY, MARKERS, dress, given_axes, new_figure, wrapped
+from raceway.answers.quantities import KXX, K, Quantity
 from raceway.points.axes import shown as _text
 from raceway.points.effects import MOVING, Findings, Row
 from raceway.storage.tables import Tables

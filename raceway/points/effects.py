@@ -31,8 +31,8 @@ from itertools import combinations, product
 import attrs
 import numpy as np
 
+from raceway.answers.quantities import C_ERROR, KXX, KYY, RESIDUAL, C, K, Quantity, X, Z, named
 from raceway.framework.doors import member
-from raceway.out.quantities import C_ERROR, KXX, KYY, RESIDUAL, C, K, Quantity, X, Z, named
 from raceway.points.axes import Axis, shown
 from raceway.storage.tables import Tables
 

@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway import __version__
+from raceway.answers.quantities import AXIAL_DISPLACEMENT, P0, PEAK_BALL_LOAD, Z_IMAG, Z_REAL, K, named
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import Answer, Batch, Lost, Refused
 from raceway.framework.registry import Registry
-from raceway.out.quantities import AXIAL_DISPLACEMENT, P0, PEAK_BALL_LOAD, Z_IMAG, Z_REAL, K, named
 from raceway.points.store import Row, Store, program_key, row_key
 from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables

@@ -10,6 +10,8 @@ from typing import Annotated
 import attrs
 import numpy as np
 
+from raceway.answers.answer import Interrupted
+from raceway.answers.progress import ShowProgress, telling
 from raceway.core.periodic.branch import DOUBLING, Branch, Point, apart, located, special_points
 from raceway.core.periodic.branch import doubled as doubled_branch
 from raceway.core.periodic.collocation import Path as OrbitPath
@@ -20,8 +22,6 @@ from raceway.errors import ConvergenceError
 from raceway.framework.doors import PATH, PATHS, door
 from raceway.framework.options import at_least, positive
 from raceway.framework.registry import registry_with
-from raceway.out.answer import Interrupted
-from raceway.out.progress import ShowProgress, telling
 from raceway.points.attractor import attractor_beside
 from raceway.points.branch import OPENS, PEAK, Followed, Label, Orbit, growth_of_swing, open_contacts, orbit_of, resonance
 from raceway.points.parameter import Parameter, parameter_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from raceway.out.picture import dress, new_figure, wrapped
+from raceway.answers.picture import dress, new_figure, wrapped
 from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:

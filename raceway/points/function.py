@@ -16,6 +16,7 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
+from raceway.answers.quantities import KNOWN, Quantity, plugin_quantities
 from raceway.bodies.columns import Excitations, build_columns, column_problem, law_keys, why_no_column, why_not
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
@@ -24,12 +25,11 @@ from raceway.framework.duties import is_foundation, why_no_quantities
 from raceway.framework.options import at_least, nearest
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import duration
-from raceway.out.quantities import KNOWN, Quantity, plugin_quantities
 from raceway.pipeline.gradient import other_meshes, refuse_points
 from raceway.pipeline.run import run
 from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import resolve
-from raceway.plugins.labelled import labelled_dataset
+from raceway.plugins.formats.labelled import labelled_dataset
 from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Computed, of_result
 from raceway.points.derivatives import Columns, jacobian
 from raceway.scene.changes import key_of, with_columns, with_numbers
@@ -320,7 +320,7 @@ class Function:
             status[rows[fine]] = PointStatus.COMPUTED
             oil = self.scene.lubricant
             if self.scene.heat is not None and oil is not None and oil.thins:
-                from raceway.plugins.heat import beyond_oil
+                from raceway.plugins.quantities.heat import beyond_oil
 
                 reason[rows[fine]] = [beyond_oil(float(level)) for level in chosen["lubricant.temperature_c"][fine]]
             for name in self.outputs:

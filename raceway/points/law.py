@@ -17,6 +17,9 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import attrs
 import numpy as np
 
+from raceway.answers.answer import Answer, Part
+from raceway.answers.table import sections
+from raceway.answers.wrapping import Words
 from raceway.bodies.model import build_model
 from raceway.core.ring.kernels.impact import single_contact
 from raceway.core.ring.ring import Increment
@@ -26,9 +29,6 @@ from raceway.framework.doors import PATHS, door
 from raceway.framework.options import at_least, positive
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact
-from raceway.out.answer import Answer, Part
-from raceway.out.table import sections
-from raceway.out.wrapping import Words
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import damping_origin
 from raceway.planning.resolve import resolve
@@ -361,7 +361,7 @@ def _ratio(value: float | None) -> str:
 
 def _draw(curves: LawCurves) -> Figure:
     """Force and stiffness over the approach; of a law that loses energy the loop of the cycle and the damping, too."""
-    from raceway.out.picture import new_figure, wrapped
+    from raceway.answers.picture import new_figure, wrapped
 
     damped = curves.cycle.energy != 0.0 or bool(curves.damping.any())
     figure = new_figure(9.6, 7.2 if damped else 3.9)

@@ -14,10 +14,10 @@ import attrs
 import numpy as np
 
 from raceway import __version__
+from raceway.answers.picture import COLOURS, MARKERS, dress, new_figure, wrapped
+from raceway.answers.quantities import AXIAL_DISPLACEMENT, COLUMNS, STIFFNESS, Z_REAL, K, entry_unit, read_in
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
-from raceway.out.picture import COLOURS, MARKERS, dress, new_figure, wrapped
-from raceway.out.quantities import AXIAL_DISPLACEMENT, COLUMNS, STIFFNESS, Z_REAL, K, entry_unit, read_in
 from raceway.points.axes import is_number, shown
 from raceway.points.dataset import FINISHED, open_store
 from raceway.scene.changes import parse_value

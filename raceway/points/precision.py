@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import attrs
 import numpy as np
 
+from raceway.answers.answer import Answer, Part
+from raceway.answers.picture import given_axes
+from raceway.answers.progress import ShowProgress, telling
+from raceway.answers.quantities import AXIAL_DISPLACEMENT, PRECISION, Z_REAL
+from raceway.answers.wrapping import Words
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.doors import DURATION, KEY_VALUES, PATH, PATHS, door, member
 from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import Fact
-from raceway.out.answer import Answer, Part
-from raceway.out.picture import given_axes
-from raceway.out.progress import ShowProgress, telling
-from raceway.out.quantities import AXIAL_DISPLACEMENT, PRECISION, Z_REAL
-from raceway.out.wrapping import Words
 from raceway.planning.resolve import resolve
-from raceway.plugins.labelled import labelled_dataset
+from raceway.plugins.formats.labelled import labelled_dataset
 from raceway.points.axes import Vary, shown
 from raceway.points.engine import measured_once
 from raceway.points.settings import (

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.out.picture import COLOURS, GREY, GRID, MARKERS, dress, new_figure, wrapped
-from raceway.out.quantities import P0, PEAK_BALL_LOAD, K
+from raceway.answers.picture import COLOURS, GREY, GRID, MARKERS, dress, new_figure, wrapped
+from raceway.answers.quantities import P0, PEAK_BALL_LOAD, K
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import attrs
 import numpy as np
 
+from raceway.answers.answer import Answer, Part
+from raceway.answers.picture import MOST_COLUMNS, new_figure, wrapped
+from raceway.answers.progress import ShowProgress, telling
+from raceway.answers.quantities import quantity_of, read_in
+from raceway.answers.table import sections
 from raceway.bodies.model import build_model
 from raceway.core.jit import working_processor_time
 from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import KEY_VALUES, PATHS, TEXTS, door, member
 from raceway.framework.shown import Fact, number
-from raceway.out.answer import Answer, Part
-from raceway.out.picture import MOST_COLUMNS, new_figure, wrapped
-from raceway.out.progress import ShowProgress, telling
-from raceway.out.quantities import quantity_of, read_in
-from raceway.out.table import sections
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.gradient import (
     Gradient,

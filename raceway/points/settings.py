@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING
 
 import attrs
 
+from raceway.answers.quantities import AXIAL_DISPLACEMENT, Z_IMAG, Z_REAL
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.contracts import Integrator
 from raceway.framework.registry import Registry
-from raceway.out.quantities import AXIAL_DISPLACEMENT, Z_IMAG, Z_REAL
 from raceway.planning.plan import make_plan
 from raceway.points.axes import Vary, axes_of, points, refuse_mistakes, tables_at
 from raceway.points.engine import measured_once

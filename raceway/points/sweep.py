@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Annotated
 import attrs
 import numpy as np
 
+from raceway.answers.progress import ShowProgress, telling
+from raceway.answers.quantities import COLUMNS, ENDS, KYY_TILTS_FOLLOW, MODEL_BOUND
 from raceway.core.threads import usable_cores
 from raceway.errors import PluginError, RacewayError, SceneError
 from raceway.framework.contracts import Batch, Lost
@@ -22,8 +24,6 @@ from raceway.framework.doors import PATH, PATHS, TEXTS, Reader, door, member, re
 from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import duration
-from raceway.out.progress import ShowProgress, telling
-from raceway.out.quantities import COLUMNS, ENDS, KYY_TILTS_FOLLOW, MODEL_BOUND
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
 from raceway.points.column_quantities import MOVING, QUANTITIES, stated_columns

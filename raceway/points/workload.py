@@ -10,12 +10,12 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
+from raceway.answers.answer import Answer, Part
+from raceway.answers.table import Row, sections
+from raceway.answers.wrapping import Words
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.framework.shown import duration
-from raceway.out.answer import Answer, Part
-from raceway.out.table import Row, sections
-from raceway.out.wrapping import Words
 from raceway.planning.cost import START_S, column_time, slowness
 from raceway.planning.plan import make_plan
 from raceway.points.function import BLOCK, Function

@@ -141,7 +141,7 @@ class Bearing:
     def _check_profiles(self) -> None:
         for profile, inner in ((self.inner_profile, True), (self.outer_profile, False)):
             if profile is not None:
-                from raceway.core.mesh.ring_mesh import ring_shape
+                from raceway.core.fem.mesh.ring_mesh import ring_shape
 
                 try:
                     ring_shape(self, inner)

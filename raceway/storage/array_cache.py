@@ -58,7 +58,7 @@ def kept(
     kind : what sort of entry, one word
     label : one short line for people
     inputs : everything that the arrays depend on, by name: numbers, strings, None, arrays, and sequences of these
-    sources : files or folders of this package, such as "core/revolution", whose code makes the arrays
+    sources : files or folders of this package, such as "core/fem/revolution", whose code makes the arrays
     make : makes them, when they are not there
 
     Returns

@@ -75,10 +75,10 @@ def make(folder: Path) -> None:
 
 @cache
 def source_key() -> str:
-    """Hash of the sources of core and elastic, where all shared kernels are, and of the versions that produce machine code."""
+    """Hash of the sources of core, where all shared kernels are, and of the versions that produce machine code."""
     digest = hashlib.sha256()
     package = Path(__file__).resolve().parents[1]
-    for path in sorted((*package.glob("core/**/*.py"), *package.glob("elastic/*.py"))):
+    for path in sorted(package.glob("core/**/*.py")):
         digest.update(path.relative_to(package).as_posix().encode())
         digest.update(path.read_bytes())
     versions = (sys.version, *(version(name) for name in ("numba", "llvmlite", "numpy")))

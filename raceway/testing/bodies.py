@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
+from raceway.answers.quantities import K
 from raceway.bodies.columns import build_columns, column_problem, why_not
 from raceway.bodies.model import Bearing, Equilibrium, Model
 from raceway.core.record import Schedule
@@ -25,7 +26,6 @@ from raceway.framework.duties import gives_columns, unused_with_bodies
 from raceway.framework.hookspecs import hookimpl
 from raceway.framework.registry import Registry
 from raceway.integrators.methods import CentralDifference, Newmark, QuasiStatic
-from raceway.out.quantities import K
 from raceway.pipeline.run import run
 from raceway.planning.parts import Decisions, decide_balls, decide_motion, decide_tilts
 from raceway.planning.plan import make_plan

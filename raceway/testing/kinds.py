@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
+from raceway.answers.quantities import plugin_quantities
 from raceway.bodies.columns import build_columns, column_problem
 from raceway.errors import RacewayError
 from raceway.framework.contracts import Batch, Refused, SolvedPoints
 from raceway.framework.duties import of_results, quantities_at, quantity_report, why_no_quantities
 from raceway.framework.registry import default_registry
-from raceway.out.quantities import plugin_quantities
 from raceway.pipeline.quantities import solved_point
 from raceway.pipeline.run import run
 from raceway.planning.plan import make_plan

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, cast
 import attrs
 import numpy as np
 
+from raceway.answers.quantities import C, K
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.signals import Identification
 from raceway.framework.duties import is_synchronous
-from raceway.out.quantities import C, K
 from raceway.storage.tables import Tables
 from raceway.testing.suite import Suite, check_class, check_kernel, duty, require
 

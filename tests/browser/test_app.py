@@ -6,9 +6,9 @@ import time
 
 import pytest
 
-from validation.browser.application import Application, Tab, expected, hurry
-from validation.browser.chromium import Browser
-from validation.command_line import EXAMPLES, PATIENCE_S
+from checks.validation.browser.application import Application, Tab, expected, hurry
+from checks.validation.browser.chromium import Browser
+from checks.validation.command_line import EXAMPLES, PATIENCE_S
 
 pytestmark = pytest.mark.needs("browser")
 SCENE = str(EXAMPLES / "b7206.toml")

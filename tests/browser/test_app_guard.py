@@ -18,10 +18,10 @@ from raceway_app.session import Session
 from raceway_app.worker import Job, News, Worker
 
 import raceway as rw
+from checks.validation.browser.application import Application, Tab, proportional_memory
+from checks.validation.browser.chromium import Browser
+from checks.validation.command_line import EXAMPLES, PATIENCE_S
 from raceway.scene.inputs import as_given
-from validation.browser.application import Application, Tab, proportional_memory
-from validation.browser.chromium import Browser
-from validation.command_line import EXAMPLES, PATIENCE_S
 
 SCENE = str(EXAMPLES / "b7206.toml")
 

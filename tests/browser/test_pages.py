@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 import raceway as rw
-from raceway.out.page import Page
-from raceway.out.picture import new_figure
-from validation.browser.chromium import WIDTHS, Browser
-from validation.browser.pages import PAGES
-from validation.command_line import MINIMAL
+from checks.validation.browser.chromium import WIDTHS, Browser
+from checks.validation.browser.pages import PAGES
+from checks.validation.command_line import MINIMAL
+from raceway.answers.page import Page
+from raceway.answers.picture import new_figure
 
 #: The page of `view` has pictures; those of studies take longest to write.
 MARKS = {

@@ -7,6 +7,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from raceway import ConvergenceError
+from raceway.core.fem.structural import ElasticBodies, _RingCompliance, elastic_system
 from raceway.core.record import Schedule
 from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels import STORED
@@ -14,7 +15,6 @@ from raceway.core.ring.kernels.layout import CENTRIFUGAL
 from raceway.core.ring.orbit import from_orbit, static_orbit, steady_orbit
 from raceway.core.ring.system import System
 from raceway.core.signatures import Balls, Constants, Contacts, Response
-from raceway.core.structural import ElasticBodies, _RingCompliance, elastic_system
 from raceway.core.time.schemes import integrate
 from raceway.testing import b7206c, model_of
 

@@ -11,8 +11,8 @@ import pytest
 from raceway.contact_laws.hertz import Hertz
 from raceway.core.time.schemes import Drivers
 from raceway.integrators.methods import CentralDifference, GeneralizedAlpha, Newmark, Periodic
-from raceway.plugins.excitations import Bidirectional
-from raceway.plugins.identifiers import SineFit
+from raceway.plugins.excitations.harmonic import Bidirectional
+from raceway.plugins.identifiers.one_frequency import SineFit
 from raceway.testing import BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, suite_of
 from raceway.testing import suite as suites
 from raceway.testing.contact_law import exponents

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from raceway import Quantity, RacewayError
-from raceway.plugins.processes import Serial
+from raceway.plugins.executors.processes import Serial
 from raceway.testing import ExecutorSuite, FormatSuite, MesherSuite, QuantitySuite, StudySuite
 
 BOX = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)

@@ -10,13 +10,13 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.reference.mounted import FORCE, approach, axial, row, secant
 from raceway import ConvergenceError, run, scene_from_dict
 from raceway.bodies import mounting
 from raceway.bodies.mounting import preload_table
 from raceway.core.ring.kernels.layout import SHIFT
 from raceway.scene.unused import unused
 from raceway.testing import b7206c, solve_equilibrium
-from validation.reference.mounted import FORCE, approach, axial, row, secant
 
 #: Of K, kxx and kyy: 0.1 % is asked for; what differs is the time step of newmark and the 1x line of the orbit.
 TOLERANCE = 1e-3

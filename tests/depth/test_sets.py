@@ -8,14 +8,14 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.command_line import EXAMPLES, invoke
+from checks.validation.reference.ring import Ring
+from checks.validation.reference.row_set import RowSet, press, press_together
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.mounting import preload_table
 from raceway.scene.growth import ring_inertia
 from raceway.scene.sets import NAMES
 from raceway.testing import solve_equilibrium
-from validation.command_line import EXAMPLES, invoke
-from validation.reference.ring import Ring
-from validation.reference.row_set import RowSet, press, press_together
 
 DISTANCE = 16e-3
 #: Equilibria are solved to 1e-11; the references' Hertz factors, by quadrature and root finding, agree to 1e-9.

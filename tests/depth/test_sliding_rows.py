@@ -8,11 +8,11 @@ import pytest
 from raceway_rotor.node_bearing import node_bearing
 
 import raceway as rw
+from checks.validation.reference.mounted import approach, axial, row
 from raceway import ConvergenceError
 from raceway.core.ring.kernels.layout import SHIFT
 from raceway.pipeline.run_parts import _mounted
 from raceway.testing import b7206c
-from validation.reference.mounted import approach, axial, row
 
 #: Asked for: a stiffness against slopes of whole runs.  Differences of fourth order leave 1e-8, the spring's force 1e-9.
 SLOPE = 1e-6

@@ -15,7 +15,7 @@ from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
 from raceway.core.ring.orbit import at_rest
 from raceway.core.ring.ring import _SteppedBearing
 from raceway.core.time.schemes import integrate
-from raceway.plugins.excitations import Bidirectional, RunUp
+from raceway.plugins.excitations.harmonic import Bidirectional, RunUp
 from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c
 

@@ -7,15 +7,15 @@ from math import radians
 import numpy as np
 import pytest
 
+from checks.validation.fits import ALUMINIUM, fits_by_hand
+from checks.validation.reference.ring import Ring
+from checks.validation.reference.row_set import RowSet, press, warmed
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.mounting import preload_table
 from raceway.planning.resolve import resolve
 from raceway.scene.growth import ball_growth
 from raceway.scene.unused import unused
 from raceway.testing import run, solve_equilibrium
-from validation.fits import ALUMINIUM, fits_by_hand
-from validation.reference.ring import Ring
-from validation.reference.row_set import RowSet, press, warmed
 
 DISTANCE = 16e-3
 STEEL = 12.5e-6

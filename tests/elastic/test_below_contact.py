@@ -6,14 +6,14 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.below_groove import below
+from checks.validation.cubes import block
 from raceway import scene_from_dict
-from raceway.bodies.elastic_stress import BelowContact, below_contacts
-from raceway.elastic.stress import cells_near, contact_axes
+from raceway.core.fem.elastic.stress import cells_near, contact_axes
+from raceway.plugins.bodies.elastic_stress import BelowContact, below_contacts
 from raceway.storage.files import write_whole
 from raceway.testing import run
 from tests.test_elastic_scene import TINY
-from validation.below_groove import below
-from validation.cubes import block
 
 TINY = {**TINY, "load": {"axial": 2500.0, "radial": [300.0, 0.0]}}
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from raceway.elastic.assembly import Cage
-from raceway.elastic.bearing import _cage_rows, _cage_stiffness
-from raceway.elastic.iterative_solver import _LowRankContacts
+from raceway.core.fem.elastic.assembly import Cage
+from raceway.core.fem.elastic.bearing import _cage_rows, _cage_stiffness
+from raceway.core.fem.elastic.iterative_solver import _LowRankContacts
 from tests.superelements.bearings import built
 
 #: Nodes, of which the last one is held, and contacts.

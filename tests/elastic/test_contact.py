@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from raceway.elastic.contact import _forces_and_tangents, _gaps, _plane, groove
-from raceway.elastic.surface import Facets, surface_points
-from validation.groove import GROOVE, HERTZ, RADIUS, ROLLING, guess, model, solve
-from validation.reference.contact import contact_forces, groove_gap
+from checks.validation.groove import GROOVE, HERTZ, RADIUS, ROLLING, guess, model, solve
+from checks.validation.reference.contact import contact_forces, groove_gap
+from raceway.core.fem.elastic.contact import _forces_and_tangents, _gaps, _plane, groove
+from raceway.core.fem.elastic.surface import Facets, surface_points
 
 MIDDLE = np.array([0.0, 0.0, -(RADIUS + ROLLING)])
 SURFACE = groove(MIDDLE, ROLLING + GROOVE, GROOVE)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from raceway_view.stress import _Fields, contacts_left_out, field_files
 
+from checks.validation.command_line import EXAMPLES
 from raceway import scene_from_dict
 from raceway.scene.inputs import read_toml
 from raceway.storage.files import write_whole
 from raceway.testing import run
-from validation.command_line import EXAMPLES
 
 
 @pytest.fixture(scope="module")

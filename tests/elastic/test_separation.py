@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.reference import elastic
 from raceway.core.contact.hertz import ball_compliance, normal_displacement
-from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.mesh.ball_mesh import ball_mesh
-from raceway.elastic.resultant import LoadedBody, _locate, footprint
-from raceway.elastic.surface import Facets
-from validation.reference import elastic
+from raceway.core.fem.elastic.resultant import LoadedBody, _locate, footprint
+from raceway.core.fem.elastic.surface import Facets
+from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.core.fem.mesh.ball_mesh import ball_mesh
 
 STEEL = YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 #: Thickness of a clamped block, four times as wide as thick, and radius of a ball [m].
@@ -151,7 +151,7 @@ def test_what_is_replaced_in_a_ball_is_surface_less_exact_and_the_half_spaces(an
 def test_the_springs_that_hold_a_ball_are_too_soft_to_count(monkeypatch):
     body, contact, normal, _ = ball(4, 0.0)
     before = body.replaced(contact, normal, 0.0)
-    monkeypatch.setattr("raceway.elastic.resultant._SLOW", 0.025)
+    monkeypatch.setattr("raceway.core.fem.elastic.resultant._SLOW", 0.025)
     softer, contact, normal, _ = ball(4, 0.0)
     # Springs of a twentieth of the ball's own frequency: of the order of (1/20)^2 of the displacement.
     assert softer.replaced(contact, normal, 0.0) == pytest.approx(before, rel=2.5e-3)

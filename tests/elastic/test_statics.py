@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from raceway.elastic.newton import solve_equilibrium
+from raceway.core.fem.elastic.newton import solve_equilibrium
 from raceway.testing import settled
 from tests.test_elastic_scene import TINY
 

@@ -27,10 +27,10 @@ from raceway_article.design import (
     design,
 )
 
+from checks.validation.command_line import EXAMPLES
 from raceway.framework.registry import default_registry
 from raceway.pipeline.run import run
 from raceway.scene.reading import scene_from_dict
-from validation.command_line import EXAMPLES
 
 pytestmark = pytest.mark.release
 

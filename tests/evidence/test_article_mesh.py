@@ -15,25 +15,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from checks.validation.command_line import EXAMPLES
 from raceway import load_scene
-from raceway.bodies.elastic import _elastic_cost
-from raceway.bodies.mesh import mesh_bodies
 from raceway.bodies.model import build_model
-from raceway.elastic.assembly import Assembly
-from raceway.elastic.bearing import ElasticSystem
-from raceway.elastic.ring import ElasticRing
+from raceway.core.fem.elastic.assembly import Assembly
+from raceway.core.fem.elastic.bearing import ElasticSystem
+from raceway.core.fem.elastic.ring import ElasticRing
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import make_plan
 from raceway.planning.resolve import resolve
+from raceway.plugins.bodies.elastic import _elastic_cost
+from raceway.plugins.bodies.mesh import mesh_bodies
 from raceway.storage.kernel_cache import cache_root
-from validation.command_line import EXAMPLES
 
 # One process for all: the cases share superelements on the disk.
 pytestmark = [pytest.mark.release, pytest.mark.xdist_group("article mesh")]
 
 SCENE = EXAMPLES / "b7206_article_mesh.toml"
 #: A bearing of 63 120 elements, and the same size in CalculiX, with facets [CPU s], measured before this program existed.
-COARSE, CALCULIX_BEARING = EXAMPLES.parent / "benchmarks" / "b7206_elastic_60k.toml", 334.0
+COARSE, CALCULIX_BEARING = EXAMPLES.parent / "checks" / "b7206_elastic_60k.toml", 334.0
 #: The article's four load cases: changes of the scene.
 CASES = {
     "1000 N": {},

@@ -12,15 +12,15 @@ from itertools import product
 import numpy as np
 import pytest
 
+from checks.validation.condensed import cost, largest, quantities, tables
+from checks.validation.scenes import rotating
+from raceway.core.fem.revolution.body import Revolution, _seat_areas
+from raceway.core.fem.revolution.sections import ball_profile, coarse_profile, dofs, graded_profile
 from raceway.core.record import Schedule
-from raceway.core.revolution.body import Revolution, _seat_areas
-from raceway.core.revolution.sections import ball_profile, coarse_profile, dofs, graded_profile
 from raceway.core.ring.orbit import from_orbit, steady_orbit
 from raceway.core.time.schemes import integrate
 from raceway.testing import model_of, settled
 from tests.revolution.sections import STEEL, shape
-from validation.condensed import cost, largest, quantities, tables
-from validation.scenes import rotating
 
 pytestmark = pytest.mark.night
 

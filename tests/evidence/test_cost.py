@@ -17,6 +17,8 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation import fused_loop, left_out, plan_time
+from checks.validation.command_line import ARTICLE, MINIMAL, python, raceway
 from raceway import build_model, load_scene
 from raceway.core.record import Schedule
 from raceway.core.ring.orbit import from_orbit, steady_orbit
@@ -25,8 +27,6 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.cost import column_time
 from raceway.points.precision import EXACT, precision
 from raceway.scene.inputs import read_toml
-from validation import fused_loop, left_out, plan_time
-from validation.command_line import ARTICLE, MINIMAL, python, raceway
 
 pytestmark = pytest.mark.night
 

@@ -18,17 +18,17 @@ import numpy as np
 import pytest
 from raceway_meshing.formats import Vtu
 
+from checks.validation.below_groove import below
+from checks.validation.command_line import EXAMPLES
+from checks.validation.condensed import largest, quantities, tables
+from checks.validation.groove import HERTZ, pressed, solve
 from raceway import load_scene
-from raceway.bodies.condensed import Condensed
-from raceway.bodies.mesh import mesh_bodies
 from raceway.planning.resolve import resolve
+from raceway.plugins.bodies.condensed import Condensed
+from raceway.plugins.bodies.mesh import mesh_bodies
 from raceway.scene.growth import ring_inertia
 from raceway.scene.reading import scene_from_dict
 from raceway.testing import run, settled
-from validation.below_groove import below
-from validation.command_line import EXAMPLES
-from validation.condensed import largest, quantities, tables
-from validation.groove import HERTZ, pressed, solve
 
 pytestmark = pytest.mark.night
 
@@ -52,7 +52,7 @@ OWN, HERTZIAN = {"basis": "own other method"}, {"basis": "closed form", "source"
 
 def rows_of(benchmark):
     """In a process of its own: its peak memory is that of this case."""
-    words = [sys.executable, "-m", f"benchmarks.{benchmark}", "--json"]
+    words = [sys.executable, "-m", f"checks.{benchmark}", "--json"]
     return json.loads(subprocess.run(words, cwd=ROOT, stdout=subprocess.PIPE, check=True).stdout)["rows"]
 
 
@@ -106,7 +106,7 @@ def test_calculix(claim):
 def test_bearing_in_nodal_contact(claim):
     """63 120 elements."""
     begin = time.process_time()
-    result = run(load_scene(ROOT / "benchmarks" / "b7206_elastic_60k.toml")).to_dict()
+    result = run(load_scene(ROOT / "checks" / "b7206_elastic_60k.toml")).to_dict()
     cpu = time.process_time() - begin
     inner = np.array([ball["load_inner_n"] for ball in result["equilibrium"]["balls"]])
     mirror = float(np.abs(inner[1:] / inner[:0:-1] - 1.0).max())

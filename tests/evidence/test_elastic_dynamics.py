@@ -10,19 +10,19 @@ import time
 import numpy as np
 import pytest
 
+from checks.validation.block import Block
+from checks.validation.command_line import EXAMPLES
+from checks.validation.impact import MODULUS, expected, model, moving, structural_compliances
 from raceway import build_model, make_plan, scene_from_dict
+from raceway.core.fem.elastic.bearing import ElasticSystem
+from raceway.core.fem.elastic.friction import CoulombFriction
+from raceway.core.fem.elastic.iterative_solver import _sticking
+from raceway.core.fem.elastic.ring import from_orbit
 from raceway.core.record import Schedule, drift, largest_share
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.time.schemes import integrate
-from raceway.elastic.bearing import ElasticSystem
-from raceway.elastic.friction import CoulombFriction
-from raceway.elastic.iterative_solver import _sticking
-from raceway.elastic.ring import from_orbit
 from raceway.integrators.methods import CentralDifference, Newmark
 from raceway.testing import run, solve_equilibrium
-from validation.block import Block
-from validation.command_line import EXAMPLES
-from validation.impact import MODULUS, expected, model, moving, structural_compliances
 
 pytestmark = pytest.mark.night
 
@@ -212,7 +212,7 @@ def test_predicted_work(claim):
 
 
 def test_explicit_step_of_the_article_s_mesh(claim):
-    words = [sys.executable, "-m", "benchmarks.explicit_step", "--json"]
+    words = [sys.executable, "-m", "checks.explicit_step", "--json"]
     found = json.loads(subprocess.run(words, cwd=EXAMPLES.parent, stdout=subprocess.PIPE, check=True).stdout)
     assert found["same_digits"]
     name, once = "explicit step, a million elements, friction", {"basis": "regression", "source": "ratios of one run"}

@@ -11,11 +11,11 @@ from functools import cache
 
 import pytest
 
-from validation.error_estimate import CASES, FACTOR, judge, right, worst
-from validation.identified_stiffness import CASES as STIFFNESSES
-from validation.identified_stiffness import LIMIT, compared
-from validation.series_errors import SERIES, series_errors
-from validation.start_errors import judged_starts
+from checks.validation.error_estimate import CASES, FACTOR, judge, right, worst
+from checks.validation.identified_stiffness import CASES as STIFFNESSES
+from checks.validation.identified_stiffness import LIMIT, compared
+from checks.validation.series_errors import SERIES, series_errors
+from checks.validation.start_errors import judged_starts
 
 pytestmark = pytest.mark.night
 

@@ -7,15 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from raceway import build_model, scene_from_dict
-from raceway.contact_laws.film import Film
-from raceway.core.contact.film import REGIMES, film, thermal_reduction
-from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.run import run
-from raceway.pipeline.simulate import simulate
-from raceway.scene.lubricant import GRADES, Walther
-from raceway.scene.tables import TIME_CONSTANTS
-from validation.film import (
+from checks.validation.film import (
     OIL,
     ROLLED,
     SPINDLE,
@@ -29,7 +21,15 @@ from validation.film import (
     skf_reduction,
     springs,
 )  # fmt: skip
-from validation.ross_rotor import in_ross
+from checks.validation.ross_rotor import in_ross
+from raceway import build_model, scene_from_dict
+from raceway.contact_laws.film import Film
+from raceway.core.contact.film import REGIMES, film, thermal_reduction
+from raceway.pipeline.equilibrium import solve_equilibrium
+from raceway.pipeline.run import run
+from raceway.pipeline.simulate import simulate
+from raceway.scene.lubricant import GRADES, Walther
+from raceway.scene.tables import TIME_CONSTANTS
 
 pytestmark = pytest.mark.night
 
@@ -58,7 +58,7 @@ def test_formulas(claim):
         off,
         at_most=1e-12,
         basis="published",
-        source="the regimes' formulas, written out again (validation/film.py)",
+        source="the regimes' formulas, written out again (checks/validation/film.py)",
     )
 
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import pytest
 
-from validation.error_estimate import FACTOR, judge, named, worst
-from validation.identified_stiffness import CASES, INTEGRATORS, LIMIT, SOME, compared
-from validation.orders import MARGIN, contact_errors, independent, linear_errors, order
-from validation.series_errors import series_errors
+from checks.validation.error_estimate import FACTOR, judge, named, worst
+from checks.validation.identified_stiffness import CASES, INTEGRATORS, LIMIT, SOME, compared
+from checks.validation.orders import MARGIN, contact_errors, independent, linear_errors, order
+from checks.validation.series_errors import series_errors
 
 #: Of a slope against 2: the coarsest steps are off by up to a tenth, which leaves as much of the terms of fourth order.
 ORDER = {"near": 2.0, "within": MARGIN / 2.0}

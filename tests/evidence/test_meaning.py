@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from validation.command_line import python
-from validation.sentences import contradictions
+from checks.validation.command_line import python
+from checks.validation.sentences import contradictions
 
 pytestmark = pytest.mark.night
 

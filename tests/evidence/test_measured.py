@@ -22,6 +22,8 @@ from raceway_measure.rig.study import rig as rig_study
 from raceway_rotor.rig_table import Rig, rig_of
 from raceway_rotor.shaft import _beam, balance, bearing, rotor, shaft
 
+from checks.validation.shaker import hammer_record
+from checks.validation.shaker import record as record_of_shaker
 from raceway import RacewayError, load_scene
 from raceway.core.jit import working_process_time
 from raceway.pipeline.front import run
@@ -29,8 +31,6 @@ from raceway.scene.catalogue import catalogue
 from raceway.scene.changes import with_number
 from raceway.scene.inputs import evolve
 from raceway.testing import b7206c, default_registry
-from validation.shaker import hammer_record
-from validation.shaker import record as record_of_shaker
 
 pytestmark = pytest.mark.night
 

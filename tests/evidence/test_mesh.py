@@ -12,13 +12,13 @@ import sys
 import numpy as np
 import pytest
 
+from checks.validation.command_line import EXAMPLES
+from checks.validation.natural_modes import natural_modes
+from checks.validation.reference import annulus, elastic
 from raceway import load_scene
-from raceway.core.hexahedron.operator import HexOperator
-from raceway.elastic.linear_statics import solve_static
-from raceway.plugins.structured_mesh import Structured
-from validation.command_line import EXAMPLES
-from validation.natural_modes import natural_modes
-from validation.reference import annulus, elastic
+from raceway.core.fem.elastic.linear_statics import solve_static
+from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.plugins.meshers.structured import Structured
 
 pytestmark = pytest.mark.night
 
@@ -40,14 +40,14 @@ ELEMENTS = 1_061_016
 BUILD = """
 import json, resource, sys, time
 from raceway import load_scene
-from raceway.bodies.mesh import mesh_bodies
+from raceway.plugins.bodies.mesh import mesh_bodies
 from raceway.planning.resolve import resolve
 scene = load_scene(sys.argv[1])
 begin = time.process_time()
 meshes = mesh_bodies(resolve(scene))
 seconds = time.process_time() - begin
 memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-from raceway.core.mesh.quality import summary
+from raceway.core.fem.mesh.quality import summary
 print(json.dumps({"seconds": seconds, "memory": memory, "summary": summary(meshes)}))
 """
 

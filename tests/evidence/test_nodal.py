@@ -11,12 +11,12 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.condensed import largest, quantities, tables
+from checks.validation.reference.mindlin import Mindlin
+from checks.validation.single import single
 from raceway import scene_from_dict
-from raceway.core.patches.friction import Friction
+from raceway.core.fem.patches.friction import Friction
 from raceway.testing import model_of, run, settled, simulate, solve_equilibrium
-from validation.condensed import largest, quantities, tables
-from validation.reference.mindlin import Mindlin
-from validation.single import single
 
 pytestmark = pytest.mark.night
 

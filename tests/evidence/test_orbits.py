@@ -10,6 +10,14 @@ import pytest
 from scipy.linalg import expm
 
 import raceway as rw
+from checks.validation import followed, several
+from checks.validation.crossed import compared, crossed
+from checks.validation.oscillators import Oscillator, Pressed, natural_frequency
+from checks.validation.reference.ring import Ring
+from checks.validation.reference.shooting import periodic as shooting
+from checks.validation.reference.shooting import rotating as turning
+from checks.validation.reference.shooting import swinging
+from checks.validation.scenes import rig_force, rotating
 from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, special_points
 from raceway.core.periodic.collocation import one_turn
 from raceway.core.periodic.refinement import displacements, states
@@ -21,14 +29,6 @@ from raceway.integrators.methods import Newmark, Periodic
 from raceway.scene.growth import ring_inertia
 from raceway.testing import model_of, run, simulate, solve_equilibrium
 from raceway.testing.systems import SPEED, linear_system, motion
-from validation import followed, several
-from validation.crossed import compared, crossed
-from validation.oscillators import Oscillator, Pressed, natural_frequency
-from validation.reference.ring import Ring
-from validation.reference.shooting import periodic as shooting
-from validation.reference.shooting import rotating as turning
-from validation.reference.shooting import swinging
-from validation.scenes import rig_force, rotating
 
 pytestmark = pytest.mark.night
 

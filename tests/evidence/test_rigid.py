@@ -13,18 +13,18 @@ import numpy as np
 import pytest
 from raceway_article.study import SOLVER_SPEEDS, TRENDS
 
+from checks.validation.ball_pass import passing_hz, passing_scene, static_amplitude
+from checks.validation.equilibria import EXTREME_RESIDUAL, RESIDUAL, families, part, random_scenes, solve
+from checks.validation.expected_values import TABLE, axial_row, secant
+from checks.validation.gyroscopic import SHARES, axial_displacement, harris_ball
+from checks.validation.scenes import random_tables
+from checks.validation.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
 from raceway import RacewayError
 from raceway.core.ring.energy import energy_balance, friction_energy
 from raceway.core.signals import phasors
 from raceway.testing import b7206c, model_of, settled, simulate, solve_equilibrium
-from validation.ball_pass import passing_hz, passing_scene, static_amplitude
-from validation.equilibria import EXTREME_RESIDUAL, RESIDUAL, families, part, random_scenes, solve
-from validation.expected_values import TABLE, axial_row, secant
-from validation.gyroscopic import SHARES, axial_displacement, harris_ball
-from validation.scenes import random_tables
-from validation.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
 
-SOLVER = "another rigid-ring solver (validation/expected_values.py)"
+SOLVER = "another rigid-ring solver (checks/validation/expected_values.py)"
 TURNING = "another rigid-ring solver (packages/raceway-article/raceway_article/study.py)"
 #: Printed digits, largest relative error of rounding.
 ROUNDING = {3: 0.005, 4: 0.0005}

@@ -1,6 +1,6 @@
 """Rotor models and ROSS.
 
-Each number is the worst of the versions of ROSS that are there (validation/ross_rotor.py).  The files for Nastran, Ansys and
+Each number is the worst of the versions of ROSS that are there (checks/validation/ross_rotor.py).  The files for Nastran, Ansys and
 spreadsheets are read back by the fields of their formats: neither program is there.
 """
 
@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from validation.ross_rotor import in_ross
-from validation.rotor_files import COMBI214, DIGITS, apdl, by_direction, constants, entries, read_csv, tables
+from checks.validation.ross_rotor import in_ross
+from checks.validation.rotor_files import COMBI214, DIGITS, apdl, by_direction, constants, entries, read_csv, tables
 
 pytestmark = pytest.mark.night
 

@@ -8,12 +8,12 @@ from time import process_time
 import numpy as np
 import pytest
 
+from checks.validation.reference.mounted import FORCE, approach, axial, row, secant
+from checks.validation.reference.ring import Ring
+from checks.validation.reference.row_set import RowSet, press, press_together, warmed
 from raceway import build_model, load_scene, run, scene_from_dict
 from raceway.bodies.mounting import preload_table
 from raceway.pipeline.equilibrium import solve_equilibrium
-from validation.reference.mounted import FORCE, approach, axial, row, secant
-from validation.reference.ring import Ring
-from validation.reference.row_set import RowSet, press, press_together, warmed
 
 pytestmark = pytest.mark.night
 
@@ -25,7 +25,7 @@ PRINTED = {"TBT": ((1.35, 1.36), (1.45, 1.48)), "QBT": ((1.6, 1.6), (1.8, 1.8)),
 MAKERS = "printed factors of makers of spindle bearings, two digits of one bearing for all"
 RING = {
     "basis": "own other method",
-    "source": "independent ring (validation/reference), whose equilibria are solved to 1e-9",
+    "source": "independent ring (checks/validation/reference), whose equilibria are solved to 1e-9",
 }
 STEADY = "steady run"
 

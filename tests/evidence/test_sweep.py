@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from validation import sweeps
+from checks.validation import sweeps
 
 pytestmark = pytest.mark.night
 

@@ -7,11 +7,11 @@ import pytest
 from scipy.linalg import eigh
 from scipy.sparse.linalg import spsolve
 
-from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.hexahedron.strain import KINDS
-from validation.hexahedra import distorted, errors
-from validation.reference import hexahedron as reference
-from validation.reference.elastic import block
+from checks.validation.hexahedra import distorted, errors
+from checks.validation.reference import hexahedron as reference
+from checks.validation.reference.elastic import block
+from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.core.fem.hexahedron.strain import KINDS
 
 STEEL = (2.1e11, 0.29, 7810.0)
 EVERY = pytest.mark.parametrize("kind", KINDS)

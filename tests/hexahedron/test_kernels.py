@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.hexahedra import distorted
+from checks.validation.reference import hexahedron as reference
+from checks.validation.reference.elastic import block
 from raceway import MeshError
-from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.hexahedron.strain import KINDS
-from validation.hexahedra import distorted
-from validation.reference import hexahedron as reference
-from validation.reference.elastic import block
+from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.core.fem.hexahedron.strain import KINDS
 
 STEEL = (2.1e11, 0.29, 7810.0)
 #: Rounding of a sum of some hundred products.

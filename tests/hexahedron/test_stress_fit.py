@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.reference.half_space import pressed_stress
 from raceway.core.contact.hertz import axis_stresses, largest_shear
-from raceway.core.hexahedron.stress_fit import StressFit
-from raceway.elastic.stress import StressProfile
-from validation.reference.half_space import pressed_stress
+from raceway.core.fem.elastic.stress import StressProfile
+from raceway.core.fem.hexahedron.stress_fit import StressFit
 
 #: Ellipse of a ball bearing's contact, and steel.
 SEMI_AXES, NU = (8.0, 1.0), 0.3

@@ -12,7 +12,7 @@ from functools import cache
 import pytest
 
 from raceway import SceneError, scene_from_dict
-from raceway.bodies.rollers import CylindricalRollers
+from raceway.plugins.bodies.rollers import CylindricalRollers
 from raceway.testing import default_registry, run
 from tests.matrix.combinations import crossed, options
 

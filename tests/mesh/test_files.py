@@ -11,14 +11,14 @@ from raceway_meshing.formats import Msh, Vtu
 from raceway_meshing.gmsh import Gmsh
 from raceway_meshing.mesh_files import File
 
+from checks.validation.command_line import EXAMPLES
+from checks.validation.cubes import block
+from checks.validation.squeezed import squeezed
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
-from raceway.bodies.mesh import check_sets, mesh_bodies
 from raceway.planning.resolve import resolve
+from raceway.plugins.bodies.mesh import check_sets, mesh_bodies
 from raceway.scene.tables import Supports
 from tests.mesh.solids import write, write_msh
-from validation.command_line import EXAMPLES
-from validation.cubes import block
-from validation.squeezed import squeezed
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 

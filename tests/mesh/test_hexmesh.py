@@ -4,11 +4,11 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.cubes import block
 from raceway import MeshError
-from raceway.core.mesh.hex_mesh import HexMesh, merged
-from raceway.core.mesh.quality import _quality, refuse_bad_cells, summary
+from raceway.core.fem.mesh.hex_mesh import HexMesh, merged
+from raceway.core.fem.mesh.quality import _quality, refuse_bad_cells, summary
 from tests.mesh.solids import facet_normals
-from validation.cubes import block
 
 #: Sums of a few hundred terms in double precision.
 ROUNDING = 1e-12

@@ -10,12 +10,12 @@ import pytest
 from raceway_meshing.abaqus import Abaqus
 from raceway_meshing.gmsh import Gmsh
 
+from checks.validation.command_line import EXAMPLES, invoke
 from raceway import MeshError, PluginError, SceneError, load_scene, make_plan, scene_from_dict
-from raceway.bodies.mesh import mesh_bodies, predicted_mesh
 from raceway.planning.resolve import resolve
-from raceway.plugins.structured_mesh import Structured
+from raceway.plugins.bodies.mesh import mesh_bodies, predicted_mesh
+from raceway.plugins.meshers.structured import Structured
 from tests.mesh import solids
-from validation.command_line import EXAMPLES, invoke
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 
@@ -58,7 +58,7 @@ def test_the_plan_refuses_meshes_beside_everything_else(mesh, path, words):
 
 
 def test_the_plan_shows_the_mesh(monkeypatch):
-    monkeypatch.setattr("raceway.bodies.elastic.allowed_bytes", lambda: float("inf"))
+    monkeypatch.setattr("raceway.plugins.bodies.elastic.allowed_bytes", lambda: float("inf"))
     found = json.loads(invoke("plan", EXAMPLES / "b7206_article_mesh.toml", "--json").stdout)
     assert found["mesh"]["cells"] == sum(body["cells"] for body in found["mesh"]["bodies"]) > 1_000_000
     shown = invoke("plan", EXAMPLES / "b7206_article_mesh.toml").stdout

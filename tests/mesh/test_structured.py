@@ -6,18 +6,18 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.command_line import EXAMPLES
+from checks.validation.quarter import quarter_groove
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
-from raceway.bodies.mesh import mesh_bodies, mesher_of
-from raceway.core.mesh import ball_mesh as sphere
-from raceway.core.mesh.ball_mesh import ball_cells, ball_mesh
-from raceway.core.mesh.hex_mesh import EDGES, graded, growing
-from raceway.core.mesh.quality import _quality, refuse_bad_cells, summary
-from raceway.core.mesh.ring_mesh import ring_mesh, ring_shape
+from raceway.core.fem.mesh import ball_mesh as sphere
+from raceway.core.fem.mesh.ball_mesh import ball_cells, ball_mesh
+from raceway.core.fem.mesh.hex_mesh import EDGES, graded, growing
+from raceway.core.fem.mesh.quality import _quality, refuse_bad_cells, summary
+from raceway.core.fem.mesh.ring_mesh import ring_mesh, ring_shape
 from raceway.planning.resolve import resolve
-from raceway.plugins.structured_mesh import Structured
+from raceway.plugins.bodies.mesh import mesh_bodies, mesher_of
+from raceway.plugins.meshers.structured import Structured
 from tests.mesh.solids import facet_normals
-from validation.command_line import EXAMPLES
-from validation.quarter import quarter_groove
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 COARSE = Structured(element_size=1.5e-3, nodes_per_semi_axis=2, growth=1.6)

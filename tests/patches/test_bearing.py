@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from raceway import ConvergenceError, SceneError, make_plan, scene_from_dict
-from raceway.core.patches.balls import Balls
-from raceway.core.patches.system import Pool
+from raceway.core.fem.patches.balls import Balls
+from raceway.core.fem.patches.system import Pool
 from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
 from raceway.core.ring.system import compiled, surrogate
 from raceway.testing import b7206c, model_of, run, settled

@@ -6,11 +6,11 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.single import Single, single
 from raceway import LAW, ConvergenceError, MeshError, jit
 from raceway.core.contact.laws import three_halves
-from raceway.core.patches.patch import Spacing
-from raceway.core.patches.pressure import BeyondPatch, Contact, PointLaw, _Factor, pressure_field
-from validation.single import Single, single
+from raceway.core.fem.patches.patch import Spacing
+from raceway.core.fem.patches.pressure import BeyondPatch, Contact, PointLaw, _Factor, pressure_field
 
 
 @pytest.fixture(scope="module")

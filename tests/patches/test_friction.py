@@ -8,18 +8,18 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from checks.validation.reference.mindlin import Mindlin
+from checks.validation.single import single
 from raceway import make_plan, scene_from_dict
-from raceway.bodies.condensed import _patch_cost
-from raceway.core.patches.balls import Gyroscopic
-from raceway.core.patches.friction import Friction, Traction
-from raceway.core.patches.pressure import Contact, SlipState
-from raceway.core.patches.system import _History
+from raceway.core.fem.patches.balls import Gyroscopic
+from raceway.core.fem.patches.friction import Friction, Traction
+from raceway.core.fem.patches.pressure import Contact, SlipState
+from raceway.core.fem.patches.system import _History
 from raceway.core.ring.ring import Increment
 from raceway.planning.resolve import resolve
+from raceway.plugins.bodies.condensed import _patch_cost
 from raceway.scene.unused import unused
 from tests.patches.test_bearing import RESULTANT, at_rest, off_tangent, tables
-from validation.reference.mindlin import Mindlin
-from validation.single import single
 
 MU, LOAD = 0.1, 300.0
 

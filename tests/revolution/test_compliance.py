@@ -7,11 +7,11 @@ import pytest
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh
 
+from checks.validation.reference.swept import Swept
 from raceway import MeshError
-from raceway.core.revolution.body import Revolution, _seat_areas, solved_harmonics
-from raceway.core.revolution.sections import dofs
+from raceway.core.fem.revolution.body import Revolution, _seat_areas, solved_harmonics
+from raceway.core.fem.revolution.sections import dofs
 from tests.revolution.sections import STEEL, ball, ring
-from validation.reference.swept import Swept
 
 DIVISIONS, BED = 16, 5e11
 ALL = (0, 1, 2)

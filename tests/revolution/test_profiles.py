@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from raceway import MeshError, SceneError, scene_from_dict
-from raceway.core.mesh.quality import refuse_bad_cells
-from raceway.core.mesh.ring_mesh import ring_shape
-from raceway.core.patches.patch import _BallMesh, _free_ball
-from raceway.core.revolution.body import Revolution
-from raceway.core.revolution.sections import Profile, coarse_profile, dofs, graded_profile
-from raceway.plugins.structured_mesh import Structured
+from raceway.core.fem.mesh.quality import refuse_bad_cells
+from raceway.core.fem.mesh.ring_mesh import ring_shape
+from raceway.core.fem.patches.patch import _BallMesh, _free_ball
+from raceway.core.fem.revolution.body import Revolution
+from raceway.core.fem.revolution.sections import Profile, coarse_profile, dofs, graded_profile
+from raceway.plugins.meshers.structured import Structured
 from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c
 from tests.revolution.sections import BEARING, RADIUS, STEEL, ball

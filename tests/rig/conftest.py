@@ -8,9 +8,9 @@ import pytest
 from raceway_rotor.rig_table import Rig
 from raceway_rotor.shaft import balance, bearing, rotor
 
+from checks.validation.command_line import EXAMPLES
 from raceway import load_scene
 from raceway.testing import default_registry
-from validation.command_line import EXAMPLES
 
 SPEED = 13000.0 * pi / 30.0
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from validation.rotor_in_ross import compared
+from checks.validation.rotor_in_ross import compared
 
 pytestmark = pytest.mark.ross
 

@@ -8,8 +8,8 @@ from raceway_measure.fit.column_headers import columns_of
 from raceway_measure.fit.signals import recording_of, signals_of
 
 import raceway as rw
+from checks.validation.command_line import EXAMPLES, invoke
 from raceway import SceneError
-from validation.command_line import EXAMPLES, invoke
 
 SCENE = EXAMPLES / "test_rig.toml"
 COUNT, TURN = 400, 50

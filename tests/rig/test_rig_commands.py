@@ -14,11 +14,11 @@ from raceway_measure.rig.signals import _silent, record, response
 from raceway_rotor.rig_table import Signals
 from raceway_rotor.shaft import balance, bearing, rotor
 
+from checks.validation.command_line import EXAMPLES, invoke
 from raceway import ConvergenceError, RacewayError, load_scene
 from raceway.points.store import written
 from raceway.testing import default_registry
 from tests.rig.conftest import SPEED
-from validation.command_line import EXAMPLES, invoke
 
 SCENE = EXAMPLES / "test_rig.toml"
 SHORT = ["--set", "rig.speeds_rpm=[13000.0]", "--set", "rig.axial_loads=[2000.0]", "--set", "rig.signals.duration=0.25"]

@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.scenes import rotating
 from raceway import StabilityError
 from raceway.core.record import Schedule
 from raceway.core.ring.orbit import at_rest, static_orbit
@@ -16,7 +17,6 @@ from raceway.core.time.schemes import Drivers, integrate
 from raceway.integrators import raceway_integrators
 from raceway.testing import settled
 from raceway.testing.integrator import IntegratorSuite
-from validation.scenes import rotating
 
 #: Those that march in time.
 METHODS = [m for m in raceway_integrators() if not m.steady]

@@ -7,19 +7,19 @@ import re
 import numpy as np
 import pytest
 
+from checks.validation.impact import moving
+from checks.validation.reference import elastic
 from raceway import ConvergenceError, MeshError, StabilityError
 from raceway.core.contact.laws import linear
-from raceway.core.hexahedron.operator import HexOperator
-from raceway.core.mesh.hex_mesh import FACES, boundary
+from raceway.core.fem.elastic.assembly import Assembly, Body
+from raceway.core.fem.elastic.bearing import ElasticSystem
+from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, _plane
+from raceway.core.fem.elastic.surface import Facets, surface_points
+from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.core.fem.mesh.hex_mesh import FACES, boundary
 from raceway.core.record import Schedule, drift
 from raceway.core.time.schemes import integrate
-from raceway.elastic.assembly import Assembly, Body
-from raceway.elastic.bearing import ElasticSystem
-from raceway.elastic.contact import NodalContact, Pair, PlaceLaw, _plane
-from raceway.elastic.surface import Facets, surface_points
 from raceway.integrators.methods import CentralDifference, Newmark
-from validation.impact import moving
-from validation.reference import elastic
 
 YOUNG, SIDE = 2e11, 2e-3
 MODULUS = YOUNG / 2.0

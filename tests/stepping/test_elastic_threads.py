@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from raceway import StabilityError
+from raceway.core.fem.elastic.assembly import _fitting_threads
+from raceway.core.fem.elastic.ring import standstill
 from raceway.core.record import Schedule
 from raceway.core.threads import ThreadPool
 from raceway.core.time.schemes import integrate
-from raceway.elastic.assembly import _fitting_threads
-from raceway.elastic.ring import standstill
 from raceway.integrators.methods import CentralDifference
 from raceway.testing import settled
 from tests.test_elastic_scene import EXCITED, TINY
@@ -137,7 +137,7 @@ def test_threads_live_over_a_run_and_end_with_it_also_where_it_fails():
 
 
 def test_small_bodies_are_stepped_by_one_thread(monkeypatch):
-    monkeypatch.setattr("raceway.elastic.assembly.usable_cores", lambda: 16)
+    monkeypatch.setattr("raceway.core.fem.elastic.assembly.usable_cores", lambda: 16)
     assert _fitting_threads(500) == 1
     assert 1 < _fitting_threads(60_000) < 16
     assert _fitting_threads(1_000_000) == 16

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.block import POISSON, YOUNG, Block
 from raceway import ConvergenceError
+from raceway.core.fem.elastic.friction import CoulombFriction
 from raceway.core.record import Schedule, drift
 from raceway.core.time.schemes import integrate
-from raceway.elastic.friction import CoulombFriction
 from raceway.integrators.methods import CentralDifference, Newmark
-from validation.block import POISSON, YOUNG, Block
 
 WEIGHT, MU = 2.0, 0.3
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
-from raceway.elastic.bearing import ElasticBearing, ElasticSystem
+from raceway.core.fem.elastic.bearing import ElasticBearing, ElasticSystem
 from raceway.testing import model_of
 from tests.test_elastic_scene import TINY
 

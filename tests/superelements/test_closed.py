@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.hexahedron.operator import HexOperator
-from raceway.elastic.superelement import Closed, Copies, Loose, Part, gather_turned, sectors
+from checks.validation.reference import elastic
+from raceway.core.fem.elastic.superelement import Closed, Copies, Loose, Part, gather_turned, sectors
+from raceway.core.fem.hexahedron.operator import HexOperator
 from tests.superelements.bearings import STEEL, assembled, schur, unknowns
-from validation.reference import elastic
 
 #: Even and odd: with and without the harmonic in which neighbours move against each other.
 COUNTS = [3, 4, 5]

@@ -7,12 +7,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from raceway.core.hexahedron.rows import BlockRows
+from checks.validation.reference import elastic
+from raceway.core.fem.elastic.assembly import _BodyForces, _CopiedStiffness
+from raceway.core.fem.elastic.superelement import Copies, same_bodies, sectors, turn
+from raceway.core.fem.hexahedron.rows import BlockRows
 from raceway.core.threads import ThreadPool
-from raceway.elastic.assembly import _BodyForces, _CopiedStiffness
-from raceway.elastic.superelement import Copies, same_bodies, sectors, turn
 from tests.superelements.bearings import built
-from validation.reference import elastic
 
 Z = 5
 AZIMUTH = 0.3 + 2.0 * np.pi / Z * np.arange(Z)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.reference import elastic
 from raceway import ConvergenceError
-from raceway.core.hexahedron.operator import HexOperator
-from raceway.elastic.fronts import dissect, factored
+from raceway.core.fem.elastic.fronts import dissect, factored
+from raceway.core.fem.hexahedron.operator import HexOperator
 from tests.superelements.bearings import STEEL, assembled, schur, unknowns
-from validation.reference import elastic
 
 MESHES = {
     "block": elastic.block((0.03, 0.02, 0.01), (14, 9, 7)),

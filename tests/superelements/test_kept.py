@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from raceway import MeshError
-from raceway.elastic import interface as kept
-from raceway.elastic.bearing import ElasticBearing
-from raceway.elastic.interface import touchable
-from raceway.elastic.superelement import Part
+from raceway.core.fem.elastic import interface as kept
+from raceway.core.fem.elastic.bearing import ElasticBearing
+from raceway.core.fem.elastic.interface import touchable
+from raceway.core.fem.elastic.superelement import Part
 from raceway.storage import array_cache
 from tests.superelements.bearings import built, start_of, with_node_moved
 

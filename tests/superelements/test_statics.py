@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.elastic import superelement_solver as linearised
-from raceway.elastic.interface import Motions
-from raceway.elastic.superelement import Closed, Loose
-from raceway.elastic.superelement_solver import _BallTangent, _Linearised
+from raceway.core.fem.elastic import superelement_solver as linearised
+from raceway.core.fem.elastic.interface import Motions
+from raceway.core.fem.elastic.superelement import Closed, Loose
+from raceway.core.fem.elastic.superelement_solver import _BallTangent, _Linearised
 from tests.superelements.bearings import built, start_of, unreduced, with_node_moved
 
 #: Of Newton's residual over the forces that balance; the iterated solver needs some ten iterations to it.

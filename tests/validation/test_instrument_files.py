@@ -10,10 +10,10 @@ from raceway_measure.fit.column_headers import columns_of
 from raceway_measure.fit.signals import signals_of
 
 import raceway as rw
+from checks.validation.command_line import invoke
 from raceway import SceneError
 from raceway.storage.number_table import read_numbers
 from tests.validation.instrument_files import DAMPING, FORMS, MASS, STIFFNESS, WORDS, write
-from validation.command_line import invoke
 
 
 @pytest.mark.parametrize("instrument", [*FORMS, "tdms"])

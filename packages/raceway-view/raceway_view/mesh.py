@@ -85,7 +85,7 @@ def _outside(cells: np.ndarray) -> np.ndarray:
 class _Meshes(Answer):
     """Meshes of the bodies of a scene.
 
-    content : ``raceway.core.mesh.quality.summary`` with title, mesher, seconds, and the files that ``save`` wrote
+    content : ``raceway.core.fem.mesh.quality.summary`` with title, mesher, seconds, and the files that ``save`` wrote
     meshes : by name of the body;  form : what writes them;  drawn : whether ``save`` also writes mesh.png
     """
 

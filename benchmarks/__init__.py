@@ -1,1 +1,0 @@
-"""Measurements that the documents quote; run from the root of the repository."""

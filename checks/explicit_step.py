@@ -1,0 +1,163 @@
+"""An explicit step of elastic bodies on the article's mesh, one thread against all: ``python -m checks.explicit_step [--json]``.
+
+Times are minima over steps, CPU and on the wall; the forces of the elements alone are measured in the same run.  Wall times
+of several threads mean something only while the machine is otherwise idle.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import time
+from typing import Any
+
+import numpy as np
+
+from checks.kernel import least
+from raceway import load_scene
+from raceway.bodies.basis import make_basis
+from raceway.core.contact.laws import linear
+from raceway.core.fem.elastic.bearing import ElasticBearing
+from raceway.core.fem.elastic.bearing_data import BearingData
+from raceway.core.fem.elastic.contact import penalty_stiffness
+from raceway.core.record import Recorder, Schedule, State
+from raceway.core.threads import ThreadPool, usable_cores
+from raceway.core.time.stepped import central_difference
+from raceway.planning.resolve import resolve
+from raceway.plugins.bodies.mesh import mesh_bodies
+
+#: The article's mesh.
+ARTICLE = "examples/b7206_article_mesh.toml"
+#: Axial displacement that presses the balls [m], and the step [s], so small that the state hardly changes.
+_PRESSED, _STEP = 1e-5, 1e-12
+#: Steps of which the quickest counts.
+_STEPS = 8
+#: How often one thread and all of them take turns.
+_ROUNDS = 3
+
+
+def bearing(scene: Any) -> ElasticBearing:
+    """The bearing of a scene with one-point hexahedra, a penalty and friction 0.03, without equilibrium or plan."""
+    basis, b = make_basis(resolve(scene)), scene.bearing
+    modulus = basis.modulus
+
+    def params(pair: np.ndarray, area: np.ndarray) -> np.ndarray:
+        return penalty_stiffness(modulus, 2.0 * np.sqrt(area))[:, None]
+
+    data = BearingData(
+        geometry=basis.geometry,
+        azimuth=basis.azimuth,
+        rings=(b.rings.young, b.rings.poisson, b.rings.density),
+        balls=(b.balls.young, b.balls.poisson, b.balls.density),
+        reference_load=basis.ball_load,
+        law=linear,
+        params=params,
+        mass=np.diag([0.5, 0.5, 0.5, 1e-4, 1e-4]),
+        free=np.ones(5, dtype=bool),
+        load=np.array([1000.0, 0.0, 0.0, 0.0, 0.0]),
+        formulation="one_point",
+        friction=0.03,
+    )
+    return ElasticBearing(mesh_bodies(resolve(scene)), data)
+
+
+class _Timed(Recorder):
+    """Notes both clocks after every step."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self.clocks: list[tuple[float, float]] = []
+
+    def accept(self, state: State, velocity: np.ndarray | None = None, outer: np.ndarray | None = None) -> None:
+        super().accept(state, velocity, outer)
+        self.clocks.append((time.process_time(), time.perf_counter()))
+
+
+def steps(built: ElasticBearing, threads: int, recorded: bool = False) -> tuple[float, float, State]:
+    """CPU and wall time of the quickest step [s], and the state after all; ``recorded``: each step is kept in the record."""
+    system = built.system
+    assembly, contact = system.assembly, system.contact
+    assert contact is not None
+    assembly.threads = ThreadPool(threads)
+    held = np.tile([0.0, 0.5 * built.setup.geometry.pitch_diameter], (built.ball_count, 1)) - built.setup.offsets[1]
+    y = built.guess(np.array([_PRESSED, 0.0, 0.0, 0.0, 0.0]), held)
+    contact.restore(contact.place, np.zeros_like(contact.memory))
+    system.locate(y)
+    if contact.friction is not None:
+        contact.friction.begin((contact.move @ assembly.nodal(y)).reshape(-1, 3))
+    zero = np.zeros(system.size)
+    schedule = Schedule(_STEP, _STEPS, 1, 1 if recorded else 2 * _STEPS)
+    with system.threads:
+        recorder = _Timed(system, State(y, zero, zero.copy()), schedule, None)
+        central_difference(system, recorder)
+    cpu, wall = np.diff(np.array(recorder.clocks), axis=0).min(axis=0)
+    return float(cpu), float(wall), recorder.state
+
+
+def forces_s(built: ElasticBearing) -> float:
+    """CPU time of the forces of all elements, one body after the other by one thread [s]."""
+    assembly = built.system.assembly
+    u = 1e-9 * np.random.default_rng(0).standard_normal(3 * assembly.nodes)
+    parts = [(body.operator, u[assembly.part(k)]) for k, body in enumerate(assembly.bodies)]
+    out = [np.empty_like(body.points) for body in assembly.bodies]
+
+    def all_of_them() -> None:
+        for (operator, part), force in zip(parts, out, strict=True):
+            operator.internal_force(part, force)
+
+    return least(all_of_them, 7)
+
+
+def measure(scene: Any = None, threads: int | None = None) -> dict[str, Any]:
+    """The table; ``threads`` are all cores that this process may use unless it says less."""
+    scene = load_scene(ARTICLE) if scene is None else scene
+    threads = usable_cores() if threads is None else threads
+    built = bearing(scene)
+    quiet = os.getloadavg()[0] <= 1.3  # this process itself is 1
+    force = forces_s(built)
+    # In turns, so that what else the machine does hits both alike.
+    rounds = [[steps(built, count) for count in (1, threads)] for _ in range(_ROUNDS)]
+    kept = [[steps(built, count, recorded=True)[1] for count in (1, threads)] for _ in range(_ROUNDS)]
+    (one_cpu, one_wall), (all_cpu, all_wall) = (
+        (min(one[k][0] for one in rounds), min(one[k][1] for one in rounds)) for k in (0, 1)
+    )
+    alone, shared = rounds[0][0][2], rounds[0][1][2]
+    cells = built.cells
+    same = all(np.array_equal(getattr(alone, name), getattr(shared, name)) for name in ("u", "v", "a"))
+
+    def us(seconds: float) -> float:
+        return 1e6 * seconds / cells
+
+    return {
+        "elements": cells,
+        "threads": threads,
+        "quiet": quiet,
+        "forces_us_per_element": us(force),
+        "step_us_per_element": us(one_cpu),
+        "step_wall_us_per_element": us(one_wall),
+        "all_threads_cpu_us_per_element": us(all_cpu),
+        "all_threads_wall_us_per_element": us(all_wall),
+        "recorded_step_wall_us_per_element": us(min(one for one, _ in kept)),
+        "all_threads_recorded_wall_us_per_element": us(min(both for _, both in kept)),
+        "step_over_forces": one_cpu / force,
+        "cpu_ratio": all_cpu / one_cpu,
+        "wall_ratio": one_wall / all_wall,
+        "same_digits": same,
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--json", action="store_true", help="machine-readable answer")
+    options = parser.parse_args()
+    found = measure()
+    if options.json:
+        print(json.dumps(found, indent=1))
+        return
+    for name, value in found.items():
+        print(f"{name:42}", value if isinstance(value, (str, bool, int)) else f"{value:.4g}")
+
+
+if __name__ == "__main__":
+    main()

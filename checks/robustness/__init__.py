@@ -1,0 +1,82 @@
+"""Checks of robustness that take minutes: ``python -m checks [NAME...]`` prints their rows; CONTRIBUTING keeps a number of each.
+
+fuzz                  scenes that nobody would write, made from the schema, and calls with wrong arguments
+damage                stores and caches that were damaged
+signals               commands that are asked to end, or killed
+dask                  workers that are killed, unfit or silent
+types                 what editors and type checkers see of the package
+words                 length of the documents, terms that the field does not know
+pages                 pages in a real browser
+unchanged             numbers of results, compared with another commit: --base COMMIT
+fmu                   exported FMUs against runs and kernels, a rotor on them, time of a step
+points                time of a point of ``raceway.function``, and equality with runs
+quantities            lives, ratings, friction and temperatures against published numbers and hand calculations
+app                   time from a change to its picture in the application, memory, numbers beside those of runs
+uncertainty           elastic bodies without a mesh against condensed ones; default hypotheses inside the range of the others
+extremes              what runs at the edges say of errors that are not estimated, or larger than Z
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from math import isfinite
+from pkgutil import iter_modules
+
+import attrs
+
+
+def _finite_or_text(value: float | str) -> float | str:
+    """JSON knows no NaN and no infinity: they become words."""
+    return str(value) if isinstance(value, float) and not isfinite(value) else value
+
+
+@attrs.frozen
+class Row:
+    """One line of a report.
+
+    Attributes
+    ----------
+    quantity : what was measured, with its unit
+    value : the number, or a few numbers as text
+    limit : what it is held against: an expected value with its tolerance, or a bound
+    ok : whether it holds
+    command : what to type to see it
+    note : why it does not hold, or what one should know
+    """
+
+    quantity: str
+    value: float | str = attrs.field(converter=_finite_or_text)
+    limit: str
+    ok: bool = attrs.field(converter=bool)
+    command: str
+    note: str = ""
+
+
+def near(quantity: str, value: float, expected: float, relative: float, command: str, note: str = "") -> Row:
+    """A row for a value that must equal ``expected`` within a relative tolerance."""
+    ok = abs(value - expected) <= relative * abs(expected)
+    return Row(quantity, float(value), f"{expected:g} within {100 * relative:g} %", ok, command, note)
+
+
+def below(quantity: str, value: float, bound: float, command: str, note: str = "") -> Row:
+    """A row for a value that must not exceed ``bound``."""
+    return Row(quantity, float(value), f"at most {bound:g}", value <= bound, command, note)
+
+
+def show(asked: list[str], there: list[str], rows_of: Callable[[str], list[Row]]) -> int:
+    """Print the rows of what is asked for, or of all that is there, a line each; 1 where one does not hold, 2 for another name."""
+    if unknown := set(asked) - set(there):
+        print(f"nothing is called {', '.join(sorted(unknown))}; there are {', '.join(there)}", file=sys.stderr)
+        return 2
+    good = True
+    for name in asked or there:
+        for row in rows_of(name):
+            good &= row.ok
+            print(f"{'yes' if row.ok else 'NO':4}{name}: {row.quantity}: {row.value} ({row.limit}) {row.note}", flush=True)
+    return 0 if good else 1
+
+
+def names() -> list[str]:
+    """Names of all checks."""
+    return sorted(module.name for module in iter_modules(__path__) if not module.name.startswith("_"))

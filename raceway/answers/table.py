@@ -1,0 +1,203 @@
+"""Parts that every screen is made of: sections, tables, numbers with units."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, TypeVar
+
+import attrs
+from rich.box import SIMPLE_HEAD
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from raceway.answers.wrapping import Words, fixed
+from raceway.framework.shown import number as number
+from raceway.framework.shown import number_within as number_within
+from raceway.framework.shown import tilt_words as tilt_words
+from raceway.storage.tables import ReadTables
+
+if TYPE_CHECKING:
+    from rich.console import Console, ConsoleOptions, RenderableType
+
+
+Row = tuple[str, str, str]
+
+T = TypeVar("T")
+
+#: Widths of the first two columns of a section: the rest of 80 is left to the remark.
+_QUANTITY, _VALUE = 22, 16
+
+
+def sections(rows: Iterable[Row]) -> RenderableType:
+    """Quantity, value, remark; a row without a value is a heading with its remark, or a remark alone where it has no quantity."""
+    parts: list[RenderableType] = []
+    table = _section()
+    for quantity, value, remark in rows:
+        if value:
+            table.add_row(Words(quantity), escape(value), Words(remark, "dim"))
+            continue
+        if quantity:
+            parts.append(Words(quantity, "bold"))
+        if remark:
+            parts.append(Words(remark, "dim", indent=2))
+        table = _section()
+        parts.append(Padding(table, (0, 0, 0, 2)))
+    return Group(*parts)
+
+
+def _section() -> Table:
+    table = Table.grid(padding=(0, 2))
+    table.add_column(width=_QUANTITY)
+    table.add_column(justify="right", min_width=_VALUE, no_wrap=True)
+    table.add_column()
+    return table
+
+
+def micro(text: str) -> str:
+    """A text with the sign of micrometres that screens have, where what it comes from is written in ASCII."""
+    return re.sub(r"\bum\b", "µm", text)
+
+
+def file_lines(files: Sequence[str]) -> list[RenderableType]:
+    """The files' names, each unbroken on its line, so that it can be copied."""
+    return [Text(f"written: {name}", no_wrap=True, overflow="ignore") for name in files]
+
+
+def csv_text(rows: Sequence[ReadTables]) -> str:
+    """A table as CSV, with every key of any row as a column."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, list(dict.fromkeys(key for row in rows for key in row)), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def grouped(bodies: Mapping[str, T]) -> list[tuple[str, T]]:
+    """Bodies with what is said of them; balls of which the same is said share a line, ``balls (12)``."""
+    rows: list[tuple[str, T]] = []
+    balls: list[tuple[T, int]] = []
+    for name, value in bodies.items():
+        if not name.startswith("ball"):
+            rows.append((name, value))
+            continue
+        at = next((i for i, (value_of_line, _) in enumerate(balls) if value_of_line == value), None)
+        if at is None:
+            balls.append((value, 1))
+        else:
+            balls[at] = value, balls[at][1] + 1
+    return rows + [(f"balls ({count})", value) for value, count in balls]
+
+
+_NUMBER = re.compile(r"[+\-−]?\d[\d.]*(e[+-]?\d+)?([ \u202f]%)?[*~]*")
+#: Words of a cell or head up to which a column is not made narrower by breaking lines; blanks between columns.
+_WHOLE, _BETWEEN = 14, 2
+#: Head of the column that tells which rows belong together where one table is too wide.
+_PLACE = "#"
+
+
+def rows_table(rows: Sequence[ReadTables], title: str = "") -> RenderableType:
+    """A table of dictionaries with the same keys; underscores become blanks, numbers are aligned.
+
+    Columns that hold the same in all of several rows are said in one line above.  What is wider than the screen goes on in a
+    second table, whose rows have the first one's numbers.
+    """
+    keys = list(dict.fromkeys(key for row in rows for key in row))
+    cells = {key: [_cell(row.get(key)) for row in rows] for key in keys}
+    same = [key for key in keys if len(rows) > 1 and len(set(cells[key])) == 1]
+    columns = tuple(_Column(_head(key), tuple(cells[key])) for key in keys if key not in same)
+    constants = ", ".join(f"{' '.join(_head(key).split())} {cells[key][0]}" for key in same if cells[key][0])
+    return _Rows(columns, title, f"same in all rows: {constants}" if constants else "")
+
+
+@attrs.frozen
+class _Column:
+    """Head and cells, as text."""
+
+    head: str
+    cells: tuple[str, ...]
+
+    @property
+    def numeric(self) -> bool:
+        return all(_NUMBER.fullmatch(cell) or cell in ("", "-", "–") for cell in self.cells)
+
+    @property
+    def whole(self) -> bool:
+        """Whether no cell is broken into lines: numbers and short texts."""
+        return self.numeric or max(map(len, self.cells), default=0) <= _WHOLE
+
+    @property
+    def most(self) -> int:
+        """Signs on one line."""
+        return max(len(line) for text in (self.head, *self.cells) for line in text.splitlines() or [""])
+
+    @property
+    def least(self) -> int:
+        """Signs that it needs, with its head and long texts in lines of one word each."""
+        broken = (self.head, *(() if self.whole else self.cells))
+        return max(map(len, (*_words(broken), *(self.cells if self.whole else ()))))
+
+
+def _words(texts: Sequence[str]) -> list[str]:
+    return [word for text in texts for word in re.split(r"[ \n]", fixed(text))]
+
+
+@attrs.frozen
+class _Rows:
+    """Tables that stand below each other where one would be too wide."""
+
+    columns: tuple[_Column, ...]
+    title: str
+    told: str
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[RenderableType]:
+        if self.title:
+            yield Text(self.title, style="italic")
+        if self.told:
+            yield Words(self.told, "dim")
+        for columns in self._blocks(options.max_width):
+            table = Table(header_style="bold", box=SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
+            narrow = sum(column.most + _BETWEEN for column in columns) > options.max_width + _BETWEEN
+            for column in columns:
+                table.add_column(
+                    Words(column.head, "bold"),
+                    justify="right" if column.numeric else "left",
+                    width=column.least if narrow and column.whole else None,
+                    min_width=column.least,
+                )
+            for cells in zip(*(column.cells for column in columns), strict=True):
+                table.add_row(*map(Words, cells))
+            yield table
+
+    def _blocks(self, width: int) -> list[list[_Column]]:
+        """Columns in tables that fit; from the second on, and in the first then, rows are numbered."""
+        blocks = _packed(self.columns, width)
+        if len(blocks) == 1:
+            return blocks
+        count = len(self.columns[0].cells)
+        numbers = _Column(_PLACE, tuple(str(row + 1) for row in range(count)))
+        return [[numbers, *block] for block in _packed(self.columns, width - numbers.least - _BETWEEN)]
+
+
+def _packed(columns: Sequence[_Column], width: int) -> list[list[_Column]]:
+    blocks: list[list[_Column]] = [[]]
+    for column in columns:
+        if blocks[-1] and sum(member.least + _BETWEEN for member in (*blocks[-1], column)) > width + _BETWEEN:
+            blocks.append([])
+        blocks[-1].append(column)
+    return blocks
+
+
+def _head(key: str) -> str:
+    return key if "." in key else key.replace("_rpm", " r/min").replace("_", " ")
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return number(value) if isinstance(value, float) else "-" if value is None else str(value)

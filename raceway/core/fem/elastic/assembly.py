@@ -1,0 +1,561 @@
+"""The unknowns of all bodies in one vector: the frames' motions first, then the displacements of the free nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import attrs
+import numpy as np
+from numba import int64, void
+
+from raceway.core.fem.elastic.linear_statics import MOTIONS
+from raceway.core.fem.elastic.superelement import Copies, Group
+from raceway.core.fem.elastic.surface import surface_points
+from raceway.core.fem.elastic.unknowns import MeanMotions, Selection, gather, of_nodes, spread
+from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.core.fem.hexahedron.rows import BlockRows, add_rows
+from raceway.core.fem.mesh.hex_mesh import FACES
+from raceway.core.jit import jit
+from raceway.core.signatures import CUBE, VECTOR
+from raceway.core.threads import ThreadPool, usable_cores
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from scipy.sparse import csr_matrix
+
+    from raceway.core.fem.elastic.contact import Contact
+
+
+@attrs.frozen(eq=False)
+class Cage:
+    """Springs on mean motions: energy 1/2 k (L u)^2.
+
+    Attributes
+    ----------
+    rows : (m, 3 nodes) sparse L: a mean displacement [m], or a mean turn [rad], of one ball
+    stiffness : (m,) k [N/m, N m/rad]
+    nodal : (3 nodes,) springs on single displacements that hold the balls' means about as well [N/m]
+
+    Notes
+    -----
+    Where nothing pushes a ball along its orbit, the cage carries nothing, whatever its stiffness.  Friction pushes: see ``raceway.core.fem.elastic.bearing``.
+    """
+
+    rows: csr_matrix
+    stiffness: np.ndarray
+    nodal: np.ndarray
+
+    def force(self, u: np.ndarray) -> np.ndarray:
+        """(m,) forces and moments [N, N m]."""
+        return np.asarray(self.stiffness * (self.rows @ u))
+
+    def internal(self, u: np.ndarray) -> np.ndarray:
+        return np.asarray(self.rows.T @ self.force(u))
+
+
+@attrs.frozen(eq=False)
+class Frame:
+    """A rigid frame of a few degrees of freedom, and the nodes that move with it.
+
+    Attributes
+    ----------
+    nodes : (k,) int, of the body that the frame belongs to; tied to it, or on a bed between it and them
+    centre : (3,) float, the reference point [m]
+    motions : columns of ``rigid`` that are unknowns, 0 to 2 translations [m], 3 to 5 rotations [rad] about x, y, z
+    mass, damping, stiffness : (k, k) of the frame itself, for instance of a rotor
+    free : (k,) bool, which motions are unknowns; the others keep the value that a state gives them
+    """
+
+    nodes: np.ndarray
+    centre: np.ndarray
+    motions: tuple[int, ...]
+    mass: np.ndarray
+    damping: np.ndarray
+    stiffness: np.ndarray
+    free: np.ndarray
+
+    def basis(self, points: np.ndarray) -> np.ndarray:
+        """(3 n, k) displacements of points (n, 3) under unit motions of the frame, linear in the rotations."""
+        arm = points - self.centre
+        out = np.zeros((len(points), 3, len(self.motions)))
+        for column, motion in enumerate(self.motions):
+            axis = np.eye(3)[motion % 3]
+            out[:, :, column] = axis if motion < 3 else np.cross(axis, arm)
+        return out.reshape(-1, len(self.motions))
+
+
+@attrs.frozen(eq=False)
+class Body:
+    """One body.
+
+    Attributes
+    ----------
+    name : str
+    operator : HexOperator
+    held : (n, 3) bool, displacements that are zero
+    frame : Frame | None
+    bed : (quads (k, 4) nodes, stiffness [N/m3]) | None: springs on a surface, to the ground or to the frame
+    """
+
+    name: str
+    operator: HexOperator
+    held: np.ndarray
+    frame: Frame | None = None
+    foundation: tuple[np.ndarray, float] | None = None
+
+    @property
+    def points(self) -> np.ndarray:
+        return self.operator.points
+
+    def quads(self, facets: np.ndarray) -> np.ndarray:
+        """(k, 4) nodes of facets (k, 2)."""
+        return np.asarray(self.operator.cells[facets[:, :1], FACES[facets[:, 1]]], dtype=np.int64)
+
+
+#: Nodes of a mesh whose forces are computed together: enough work for a thread.
+_ROWS = 4096
+_NUMBERS = int64[:, ::1]
+
+
+@jit(void(int64, int64, _NUMBERS, CUBE, VECTOR, CUBE), releases=True)
+def _gather_copies(first, last, numbers, turns, u, moved):  # type: ignore[no-untyped-def]
+    """Displacements of nodes ``first`` to ``last - 1`` of every copy, turned back to the first: moved (n, 3, c)."""
+    for i in range(first, last):
+        for c in range(turns.shape[0]):
+            at = 3 * numbers[c, i]
+            for a in range(3):
+                moved[i, a, c] = turns[c, 0, a] * u[at] + turns[c, 1, a] * u[at + 1] + turns[c, 2, a] * u[at + 2]
+
+
+@jit(void(int64, int64, int64[::1], _NUMBERS, CUBE, CUBE, VECTOR), releases=True)
+def _spread_copies(first, last, nodes, numbers, turns, force, out):  # type: ignore[no-untyped-def]
+    """The way back of forces (m, 3, c) on nodes[first:last], written to ``out`` (3 nodes of all copies,)."""
+    for row in range(first, last):
+        for c in range(turns.shape[0]):
+            at = 3 * numbers[c, nodes[row]]
+            for a in range(3):
+                out[at + a] = (
+                    turns[c, a, 0] * force[row, 0, c] + turns[c, a, 1] * force[row, 1, c] + turns[c, a, 2] * force[row, 2, c]
+                )
+
+
+class _CopiedStiffness:
+    """K u of all copies of a mesh.
+
+    copies : Copies;  operator : HexOperator, whose material and formulation it has
+
+    A node on a cut plane belongs to the sector behind it, and the cells of the sector before it that share its cut plane are
+    part of the matrix: every row is whole, every force is written once.
+    """
+
+    def __init__(self, copies: Copies, operator: HexOperator) -> None:
+        points, cells, numbers = copies.points, copies.cells, copies.nodes
+        belongs = np.ones(len(points), dtype=bool)
+        belongs[copies.behind] = False
+        if len(copies.behind):
+            beyond = cells[np.isin(cells, copies.behind).any(axis=1)]  # of the sector before, at the first cut plane
+            more = np.setdiff1d(beyond, copies.behind)
+            number = np.empty(len(points), dtype=np.int64)
+            number[copies.behind], number[more] = copies.before, len(points) + np.arange(len(more))
+            points = np.concatenate([points, copies.points[more] @ copies.turns[-1].T])
+            cells = np.concatenate([cells, number[beyond]])
+            numbers = np.concatenate([numbers, np.roll(copies.nodes, 1, axis=0)[:, more]], axis=1)
+        mesh = operator.of_mesh(points, cells)
+        self.rows = BlockRows.assemble(mesh.cells, len(points), mesh.element_stiffness)
+        self._own = np.flatnonzero(belongs)
+        self._numbers, self._turns = np.ascontiguousarray(numbers), np.ascontiguousarray(copies.turns)
+        self._moved = np.empty((len(points), 3, len(copies.turns)))
+        self._force = np.empty((len(self._own), 3, len(copies.turns)))
+
+    @property
+    def parts(self) -> int:
+        """How many jobs a product is made of."""
+        return -(-len(self._moved) // _ROWS)
+
+    def gather(self, part: int, u: np.ndarray) -> None:
+        """First round of jobs: displacements (3 nodes,) into the frame of the first copy."""
+        last = min((part + 1) * _ROWS, len(self._moved))
+        _gather_copies(part * _ROWS, last, self._numbers, self._turns, u, self._moved)
+
+    def multiply(self, part: int, out: np.ndarray) -> None:
+        """Second round: forces into ``out`` (3 nodes,)."""
+        first, last = part * _ROWS, min((part + 1) * _ROWS, len(self._own))
+        r = self.rows
+        add_rows(first, last, self._own, r.starts, r.neighbours, r.data, self._moved, self._force)
+        _spread_copies(first, last, self._own, self._numbers, self._turns, self._force, out)
+
+    def apply(self, u: np.ndarray) -> np.ndarray:
+        """(3 nodes,) forces of all copies at u (3 nodes,), zero elsewhere."""
+        out = np.zeros_like(u)
+        for part in range(self.parts):
+            self.gather(part, u)
+        for part in range(self.parts):
+            self.multiply(part, out)
+        return out
+
+    def times(self, moved: np.ndarray) -> np.ndarray:
+        """(3 n, m) forces on the first copy of displacements (3 n, m), of a body that is one copy."""
+        columns = np.ascontiguousarray(moved.reshape(len(self._moved), 3, -1))
+        return self.rows.times(self._own, columns).reshape(moved.shape)
+
+
+def _bed_blocks(body: Body) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (4 k, 4) of the points of a bed's facets, and the stiffness (4 k, 4, 4) between them in each direction [N/m]."""
+    assert body.foundation is not None
+    quads, stiffness = body.foundation
+    p = surface_points(body.points, quads)
+    return p.nodes, stiffness * p.area[:, None, None] * p.weights[:, :, None] * p.weights[:, None, :]
+
+
+def bed_of_cells(body: Body) -> tuple[np.ndarray, np.ndarray]:
+    """Cells (b,) that a bed's facets belong to, and what it adds to their matrices (b, 24, 24)."""
+    nodes, blocks = _bed_blocks(body)
+    quads, blocks = nodes[::4], blocks.reshape(-1, 4, 4, 4).sum(axis=1)
+    cells = np.asarray(body.operator.cells, dtype=np.int64)
+    on_bed = np.zeros(len(body.points), dtype=bool)
+    on_bed[quads.ravel()] = True
+    near = np.flatnonzero(on_bed[cells].sum(axis=1) >= 4)
+    owner: dict[int, list[int]] = {}
+    for cell in near:
+        for node in cells[cell][on_bed[cells[cell]]]:
+            owner.setdefault(int(node), []).append(int(cell))
+    owners, matrices = np.empty(len(quads), dtype=np.int64), np.zeros((len(quads), 24, 24))
+    for k, (quad, block) in enumerate(zip(quads, blocks, strict=True)):
+        (owners[k],) = set.intersection(*(set(owner[int(node)]) for node in quad))
+        corners = np.array([int(np.flatnonzero(cells[owners[k]] == node)[0]) for node in quad])
+        for axis in range(3):
+            matrices[k][np.ix_(3 * corners + axis, 3 * corners + axis)] = block
+    return owners, matrices
+
+
+#: Elements below which one more thread costs more than it saves: handing over work takes some 50 us, 1000 elements.
+_EACH = 8000
+#: Nodes that are summed together, so that what follows finds their forces in the second cache.
+_NODES = 8192
+
+
+def _fitting_threads(elements: int) -> int:
+    """Threads for so many elements: all cores that this process may use, fewer for small bodies."""
+    return max(1, min(usable_cores(), elements // _EACH))
+
+
+class _BodyForces:
+    """Forces K u of bodies whose nodes follow one another.
+
+    operators : of the bodies;  starts : (bodies + 1,) first node of each
+    groups : equal parts; bodies in none of them, and single ones of one-point elements, whose forces cost no more without a
+        matrix, are computed element by element
+
+    The sums have one order whatever the number of threads (``raceway.core.fem.hexahedron.rows``).
+    """
+
+    def __init__(self, operators: list[HexOperator], starts: np.ndarray, groups: list[Group] | None = None) -> None:
+        self._operators, self._starts = operators, [int(start) for start in starts]
+        worth = [
+            group
+            for group in groups or []
+            if len(group.copies.turns) > 1 or operators[group.members[0]].formulation != "one_point"
+        ]
+        #: By the first body of a group.
+        self._copied = {group.members[0]: _CopiedStiffness(group.copies, operators[group.members[0]]) for group in worth}
+        alone = set(range(len(operators))) - {body for group in worth for body in group.members}
+        ranges = [(int(n), body, r) for body in sorted(alone) for r, n in enumerate(operators[body].range_sizes)]
+        #: Body and range, the largest first: what comes last shall not keep one thread busy alone.
+        self._queue = [(body, r) for _, body, r in sorted(ranges, key=lambda job: -job[0])]
+        self._products = [(copied, part) for copied in self._copied.values() for part in range(copied.parts)]
+        self._parts = [
+            (body, first, min(first + _NODES, len(operator.points)), body in alone)
+            for body, operator in enumerate(operators)
+            for first in range(0, len(operator.points), _NODES)
+        ]
+        self._force = np.empty(3 * self._starts[-1])
+
+    def compute(self, u: np.ndarray, pool: ThreadPool, first: list[Callable[[], None]]) -> None:
+        """All bodies at u (3 nodes,) [m], and other jobs ``first``; ``sum`` makes forces of them."""
+        jobs = {body: self._operators[body].force_job(self._of(u, body)) for body, _ in self._queue}
+        ahead, products = len(first), self._products
+
+        def work(number: int) -> None:
+            if number < ahead:
+                first[number]()
+            elif number < ahead + len(self._queue):
+                body, r = self._queue[number - ahead]
+                jobs[body](r)
+            else:
+                copied, part = products[number - ahead - len(self._queue)]
+                copied.gather(part, u)
+
+        pool.do(ahead + len(self._queue) + len(products), work)
+        pool.do(len(products), lambda number: products[number][0].multiply(products[number][1], self._force))
+
+    def sum(self, pool: ThreadPool, also: Callable[[np.ndarray, int, int], None]) -> np.ndarray:
+        """(3 nodes,) forces [N], until the next call; ``also(forces, begin, end)`` is done with each part's entries."""
+        force = self._force
+
+        def work(number: int) -> None:
+            body, first, last, alone = self._parts[number]
+            if alone:
+                self._operators[body].add_parts(first, last, self._of(force, body))
+            start = self._starts[body]
+            also(force, 3 * (start + first), 3 * (start + last))
+
+        pool.do(len(self._parts), work)
+        return force
+
+    def of_body(self, body: int, u: np.ndarray) -> np.ndarray:
+        """(3 n,) forces of one body at u (3 nodes,)."""
+        copied = self._copied.get(body)
+        if copied is None:
+            return self._operators[body].internal_force(self._of(u, body)).reshape(-1)
+        return self._of(copied.apply(u), body)
+
+    def of_mesh(self, body: int, moved: np.ndarray) -> np.ndarray:
+        """(3 n, m) forces of one body at displacements (3 n, m) of its own."""
+        if body in self._copied:
+            return self._copied[body].times(moved)
+        force = [self._operators[body].internal_force(column).reshape(-1) for column in moved.T]
+        return np.stack(force, axis=1)
+
+    def hourglass_energy(self, u: np.ndarray, pool: ThreadPool) -> float:
+        """The part of the strain energy at u (3 nodes,) that hourglass control holds [J]."""
+        queue = [(body, r) for body, operator in enumerate(self._operators) for r in range(len(operator.range_sizes))]
+        energy = np.empty(len(queue))
+
+        def work(number: int) -> None:
+            body, r = queue[number]
+            energy[number] = self._operators[body].range_hourglass_energy(r, self._of(u, body))
+
+        pool.do(len(queue), work)
+        return float(energy.sum())
+
+    def _of(self, values: np.ndarray, body: int) -> np.ndarray:
+        return values[3 * self._starts[body] : 3 * self._starts[body + 1]]
+
+
+class Assembly:
+    """Linear part of a system: elastic bodies, beds, frames, cage.
+
+    Parameters
+    ----------
+    bodies : list of Body
+
+    Attributes
+    ----------
+    cage : Cage | None, set by ``hold``
+    groups : of equal parts (``raceway.core.fem.elastic.interface``), set before forces are asked for
+
+    Notes
+    -----
+    All displacements U (3 nodes,) follow from the unknowns y (size,) by U = G y: free nodes are unknowns, tied ones follow
+    their frame, held ones are zero.  Forces on the unknowns are G^T F.
+
+    Inside ``with assembly.threads:`` threads share the work of all bodies; digits do not depend on how many there are.
+    """
+
+    def __init__(self, bodies: list[Body]) -> None:
+        self.bodies = bodies
+        self.cage: Cage | None = None
+        self.groups: list[Group] = []
+        counts = np.array([len(body.points) for body in bodies])
+        self.starts = np.concatenate([[0], np.cumsum(counts)])
+        #: Number of nodes.
+        self.nodes = int(self.starts[-1])
+        self.points = np.concatenate([body.points for body in bodies])
+        self.node_mass = np.concatenate([body.operator.lumped_mass() for body in bodies])
+        frames = [(index, body.frame) for index, body in enumerate(bodies) if body.frame is not None]
+        #: Number of the frames' unknowns.
+        self.frame_size = sum(len(frame.motions) for _, frame in frames)
+        held = np.concatenate([body.held for body in bodies]).reshape(-1)
+        tied = np.zeros(3 * self.nodes, dtype=bool)
+        self.frame_mass = np.zeros((self.frame_size, self.frame_size))
+        self.frame_damping, self.frame_stiffness = self.frame_mass.copy(), self.frame_mass.copy()
+        self.frame_free = np.ones(self.frame_size, dtype=bool)
+        #: (3 nodes, frame_size) displacement of every node of a frame's body, moving with the frame.
+        self.carried = np.zeros((3 * self.nodes, self.frame_size))
+        begin = 0
+        for index, frame in frames:
+            part = slice(begin, begin + len(frame.motions))
+            begin = part.stop
+            self.carried[self.part(index), part] = frame.basis(bodies[index].points)
+            if bodies[index].foundation is None:
+                tied[of_nodes(frame.nodes + self.starts[index])] = True
+            self.frame_mass[part, part], self.frame_damping[part, part] = frame.mass, frame.damping
+            self.frame_stiffness[part, part], self.frame_free[part] = frame.stiffness, frame.free
+        self.carried[held] = 0.0
+        self.tied = np.flatnonzero(tied & ~held)
+        self.free = np.flatnonzero(~held & ~tied)
+        self.size = self.frame_size + len(self.free)
+        #: (size,) which unknowns are to be solved for.
+        self.unknown = np.concatenate([self.frame_free, np.ones(len(self.free), dtype=bool)])
+        self._tie, self._ride = self.carried[self.tied], self.carried[self.free]
+        mass = np.repeat(self.node_mass, 3)
+        self.free_mass = mass[self.free]
+        self.frame_mass = self.frame_mass + self._tie.T @ (mass[self.tied, None] * self._tie)
+        self.foundations = self._beds()
+        self._seats = [self._seat(*bed) for bed in self.foundations]
+        self._stiffness: csr_matrix = None
+        #: Threads that share the work while they are open.
+        self.threads = ThreadPool(_fitting_threads(sum(len(body.operator.cells) for body in bodies)))
+        self._means: MeanMotions | None = None
+        self._near: tuple[object, Selection] | None = None
+        self._u = np.zeros(3 * self.nodes)
+
+    def hold(self, cage: Cage) -> None:
+        """Hold mean motions of bodies by a cage."""
+        self.cage, self._means = cage, MeanMotions(cage.rows)
+
+    def unequal(self) -> list[Body]:
+        """One of each group of equal bodies; all where no groups are known."""
+        first = [group.members[0] for group in self.groups] or range(len(self.bodies))
+        return [self.bodies[index] for index in first]
+
+    @cached_property
+    def body_forces(self) -> _BodyForces:
+        return _BodyForces([body.operator for body in self.bodies], self.starts, self.groups)
+
+    def part(self, index: int) -> slice:
+        """Rows of a body's displacements in U."""
+        return slice(3 * int(self.starts[index]), 3 * int(self.starts[index + 1]))
+
+    def nodal(self, y: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
+        """U = G y, (3 nodes,); ``out`` is one of before, to be overwritten."""
+        out, values = np.zeros(3 * self.nodes) if out is None else out, y[self.frame_size :]
+        self.threads.do_shares(len(self.free), lambda a, b: spread(a, b, self.free, values, out))
+        if self.frame_size:
+            out[self.tied] = self._tie @ y[: self.frame_size]
+        return out
+
+    def reduced(self, force: np.ndarray) -> np.ndarray:
+        """G^T F, (size,)."""
+        out = np.empty(self.size)
+        out[: self.frame_size] = self._tie.T @ force[self.tied]
+        values = out[self.frame_size :]
+        self.threads.do_shares(len(self.free), lambda a, b: gather(a, b, self.free, force, values))
+        return out
+
+    def internal(self, y: np.ndarray, u: np.ndarray, beside: Callable[[], None] | None = None) -> np.ndarray:
+        """(size,) forces of bodies, beds, cage and frames at y, U = G y, without matrices of the bodies.
+
+        Parameters
+        ----------
+        beside : work that is done at the same time
+        """
+        means = self._means
+        moved = np.empty(0 if means is None else means.count)
+        first = [beside] if beside else []
+        self.body_forces.compute(u, self.threads, first + ([] if means is None else means.jobs(u, moved)))
+        amounts = moved if self.cage is None else self.cage.stiffness * moved
+        out = np.empty(self.size)
+        values = out[self.frame_size :]
+
+        def join(force: np.ndarray, begin: int, end: int) -> None:
+            if means is not None:
+                means.add(begin, end, amounts, force)
+            gather(*np.searchsorted(self.free, (begin, end)), self.free, force, values)
+
+        force = self.body_forces.sum(self.threads, join)
+        out[: self.frame_size] = self._tie.T @ force[self.tied]
+        frame = self.frame_stiffness @ y[: self.frame_size]
+        for matrix, ride, seat in self._seats:
+            pull = matrix @ (u[seat.entries] - ride @ y[: self.frame_size])
+            seat.add(pull, out)
+            frame -= ride.T @ pull
+        out[: self.frame_size] += frame
+        return out
+
+    def forces(self, dt: float, y: np.ndarray, v: np.ndarray, contact: Contact | None) -> tuple[np.ndarray, np.ndarray]:
+        """Internal forces (size,) at y and velocities v (size,) after a step dt [s], with those of the contacts; U = G y until the next call."""
+        u = self.nodal(y, self._u)
+        if contact is None:
+            return self.internal(y, u), u
+        near = contact.near
+        if self._near is None or self._near[0] is not near:
+            self._near = near, Selection.of(near.entries, self.free, self.tied, self._tie)
+        at = self._near[1]
+        rate = at.nodal(v) if dt > 0.0 else None
+        pressing: list[np.ndarray] = []
+        out = self.internal(y, u, lambda: pressing.append(contact.evaluate_near(dt, u[near.entries], rate)))
+        at.add(pressing[0], out)
+        return out, u
+
+    def stiffness(self) -> csr_matrix:
+        """(3 nodes, 3 nodes) sparse stiffness of bodies and beds, made at the first call."""
+        if self._stiffness is None:
+            from scipy.sparse import block_diag, csr_array
+
+            matrix = csr_array(block_diag([body.operator.stiffness() for body in self.bodies], format="csr"))
+            for foundation, _ in self.foundations:
+                matrix = matrix + foundation
+            self._stiffness = matrix.tocsr()
+        return self._stiffness
+
+    def elastic_energy(self, y: np.ndarray, u: np.ndarray) -> float:
+        """Strain energy of the bodies and their beds and what the frames' springs and the cage hold [J]."""
+        return float(0.5 * y @ self.internal(y, u))
+
+    def reactions(self, y: np.ndarray) -> np.ndarray:
+        """(3,) force of the ground on the bodies, through held nodes and beds [N]."""
+        u, out = self.nodal(y), np.zeros(3)
+        for index, body in enumerate(self.bodies):
+            if body.held.any():
+                out += (self.body_forces.of_body(index, u).reshape(-1, 3) * body.held).sum(axis=0)
+        for foundation, ride in self.foundations:
+            if not ride.any():
+                out -= (foundation @ u).reshape(-1, 3).sum(axis=0)
+        return out
+
+    def hourglass_energy(self, u: np.ndarray) -> float:
+        """The part that hourglass control holds [J]."""
+        return self.body_forces.hourglass_energy(u, self.threads)
+
+    def loose_motions(self, contacts: list[tuple[int, int]]) -> list[str]:
+        """Rigid motions that nothing holds: for each body in words; ``contacts`` are pairs of bodies that touch and so hold each other.
+
+        Notes
+        -----
+        A body that touches another counts as held, but for the motions that no contact can hold: a ball's turning and,
+        between two rings, its way along the orbit, unless the cage holds them.
+        """
+        sentences = []
+        touching = {i for pair in contacts for i in pair}
+        caged = set() if self.cage is None else {int(i) for i in np.unique(self._owners(self.cage.rows))}
+        for index, body in enumerate(self.bodies):
+            if body.held.any() or body.foundation is not None or body.frame is not None or index in caged:
+                continue
+            why = "it touches nothing" if index not in touching else "frictionless contact does not constrain them"
+            free = ", ".join(MOTIONS if index not in touching else MOTIONS[3:])
+            sentences.append(
+                f"{body.name}: {free} ({why}); constrain it by the cage, fixed nodes, or an elastic foundation under one of its surfaces"
+            )
+        return sentences
+
+    def _owners(self, rows: csr_matrix) -> np.ndarray:
+        return np.asarray(np.searchsorted(3 * self.starts, rows.tocoo().col, side="right") - 1)
+
+    def _seat(self, foundation: csr_matrix, ride: np.ndarray) -> tuple[csr_matrix, np.ndarray, Selection]:
+        """A bed at its own entries alone: matrix (k, k), the frame's motion (k, frame_size), and the entries."""
+        entries = np.flatnonzero(np.diff(foundation.indptr))
+        seat = Selection.of(entries, self.free, self.tied, self._tie)
+        return foundation[entries][:, entries].tocsr(), np.ascontiguousarray(ride[entries]), seat
+
+    def _beds(self) -> list[tuple[csr_matrix, np.ndarray]]:
+        """For each bed its matrix (3 nodes, 3 nodes) and the frame's motion that it acts against (3 nodes, frame_size)."""
+        from scipy.sparse import coo_array
+
+        out = []
+        for index, body in enumerate(self.bodies):
+            if body.foundation is None:
+                continue
+            nodes, w = _bed_blocks(body)
+            nodes = nodes + self.starts[index]
+            i = np.broadcast_to(nodes[:, :, None], w.shape).ravel()
+            j = np.broadcast_to(nodes[:, None, :], w.shape).ravel()
+            rows, columns = (of_nodes(k) for k in (i, j))
+            size = 3 * self.nodes
+            foundation = coo_array((np.repeat(w.ravel(), 3), (rows, columns)), shape=(size, size)).tocsr()
+            ride = self.carried if body.frame is not None else np.zeros_like(self.carried)
+            out.append((foundation, ride))
+        return out

@@ -1,0 +1,315 @@
+"""Quality of cells (scaled Jacobian, aspect, skew), and refusal of those that cannot be computed with.
+
+References
+----------
+Knupp, Ernst, Thompson, Stimpson, Pebay: The Verdict geometric quality library, SAND2007-1751 (2007): scaled Jacobian,
+edge ratio, skew of hexahedra.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import attrs
+import numpy as np
+
+from raceway.core.fem.mesh.hex_mesh import BLOCK, EDGES, HexMesh
+from raceway.errors import MeshError
+from raceway.storage.tables import Tables
+
+#: Neighbours of each corner along the three local axes, in right-handed order.
+_AROUND = np.array([[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]])
+#: A scaled Jacobian below this is flat to the rounding of coordinates.
+DEGENERATE = 1e-6
+
+
+@attrs.frozen(eq=False)
+class _Quality:
+    """Quality of each cell.
+
+    scaled_jacobian : (m,) smallest determinant of the unit edge vectors at the corners: 1 for a cuboid, <= 0 is inverted
+    aspect : (m,) longest edge / shortest edge
+    skew : (m,) largest |cosine| between the cell's principal axes: 0 for a cuboid
+    """
+
+    scaled_jacobian: np.ndarray
+    aspect: np.ndarray
+    skew: np.ndarray
+
+
+def _quality(mesh: HexMesh) -> _Quality:
+    """Quality of every cell; flat cells get a scaled Jacobian of 0 and an infinite aspect."""
+    count = len(mesh.cells)
+    jacobian, aspect, skew = np.empty(count), np.empty(count), np.empty(count)
+    for first in range(0, count, BLOCK):
+        here = slice(first, first + BLOCK)
+        # (3, 8, k): components outermost, so that every product below runs along contiguous memory.
+        corner = np.ascontiguousarray(mesh.points[mesh.cells[here]].transpose(2, 1, 0))
+        edge = corner[:, EDGES[:, 1]] - corner[:, EDGES[:, 0]]
+        length = np.sqrt((edge * edge).sum(axis=0))
+        shortest, longest = length.min(axis=0), length.max(axis=0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            aspect[here] = np.where(shortest > 0.0, longest / shortest, np.inf)
+        worst = np.full(corner.shape[2], np.inf)
+        for at, ends in enumerate(_AROUND):
+            worst = np.minimum(worst, _unit_determinant(*(corner[:, end] - corner[:, at] for end in ends)))
+        jacobian[here] = worst
+        axes = [edge[:, 4 * i : 4 * i + 4].sum(axis=1) for i in range(3)]
+        skew[here] = np.maximum.reduce([_cosine(axes[i], axes[(i + 1) % 3]) for i in range(3)])
+    return _Quality(jacobian, aspect, skew)
+
+
+def refuse_bad_cells(mesh: HexMesh, body: str = "") -> _Quality:
+    """The quality, unless a cell is inverted or degenerate.
+
+    Raises
+    ------
+    MeshError
+        How many cells, the first of them, its centre and its nodes.
+    """
+    measures = _quality(mesh)
+    bad = np.flatnonzero(measures.scaled_jacobian < DEGENERATE)
+    if not len(bad):
+        return measures
+    cell = int(bad[0])
+    value = float(measures.scaled_jacobian[cell])
+    word = "inverted" if value < -DEGENERATE else "degenerate"
+    centre = ", ".join(f"{x:.6g}" for x in mesh.points[mesh.cells[cell]].mean(axis=0))
+    nodes = ", ".join(str(node) for node in mesh.cells[cell])
+    where = f"`{body}`: " if body else ""
+    raise MeshError(
+        f"{where}{len(bad)} of {len(mesh.cells)} cells are inverted or degenerate; the first is cell {cell}, {word} (scaled "
+        f"Jacobian {value:.3g}), centre ({centre}) m, nodes {nodes}. Nodes 0 to 3 of a cell go around its bottom, 4 to 7 "
+        "stand above them: check their order, and points that coincide"
+    )
+
+
+def refuse_doubled(mesh: HexMesh, body: str) -> None:
+    """Refuse what cannot be one body: cells that are duplicated, points that coincide and are not one, parts that do not hang together.
+
+    Raises
+    ------
+    MeshError
+        How many, and where the first is.
+    """
+    nodes = np.sort(mesh.cells, axis=1)
+    _, first, counts = np.unique(nodes, axis=0, return_index=True, return_counts=True)
+    if (counts > 1).any():
+        cell = int(first[counts > 1].min())
+        raise MeshError(
+            f"`{body}`: {int((counts - 1).sum())} cells are duplicated; the first is cell {cell}: remove the copies"
+        )
+    used = np.unique(mesh.cells)
+    points = mesh.points[used]
+    grain = 1e-9 * float(np.ptp(points, axis=0).max())
+    _, first, counts = np.unique(np.round(points / grain), axis=0, return_index=True, return_counts=True)
+    if (counts > 1).any():
+        where = ", ".join(f"{x:.6g}" for x in points[first[counts > 1].min()])
+        raise MeshError(
+            f"`{body}`: {int((counts - 1).sum())} points coincide with others without being merged, the first at ({where}) m: "
+            "touching parts are not connected there. Merge coincident nodes"
+        )
+    parts = _parts(mesh.cells)
+    if parts > 1:
+        raise MeshError(f"`{body}`: its cells form {parts} parts that are not connected: give one connected body")
+
+
+def _parts(cells: np.ndarray) -> int:
+    """Number of sets of cells that share nodes with no other set."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    count = int(cells.max()) + 1
+    rows, columns = np.repeat(np.arange(len(cells)), 8), cells.reshape(-1)
+    owns = coo_matrix((np.ones(rows.size, dtype=np.int8), (rows, columns + len(cells))), shape=(len(cells) + count,) * 2)
+    _, label = connected_components(owns, directed=False)
+    return len(np.unique(label[: len(cells)]))
+
+
+def _unit_determinant(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """a . (b x c) of vectors (3, k), divided by their lengths; 0 where one has none."""
+    value = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    size = np.sqrt((a * a).sum(axis=0) * (b * b).sum(axis=0) * (c * c).sum(axis=0))
+    return np.where(size > 0.0, value / np.where(size > 0.0, size, 1.0), 0.0)
+
+
+def _cosine(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    size = np.sqrt((a * a).sum(axis=0) * (b * b).sum(axis=0))
+    return np.where(size > 0.0, np.abs((a * b).sum(axis=0)) / np.where(size > 0.0, size, 1.0), 1.0)
+
+
+#: Bytes a cell that a mesh keeps: points, cells, sets (92 to 104 measured, more where sets are many).
+_BYTES_KEPT = 110
+#: Bytes a cell beside them while a structured mesh is made and judged (80 to 103 measured, 1.1 and 0.5 million cells).
+_BYTES_BESIDE = 120
+#: Above this a mesh is refused [bytes].
+MEMORY_LIMIT = 4 * 2**30
+
+
+@attrs.frozen
+class Prediction:
+    """Size of meshes that have not been made.
+
+    Attributes
+    ----------
+    bodies : name of the body -> number of hexahedra
+    beside_bytes : what is needed at the peak beside the meshes themselves
+    """
+
+    bodies: dict[str, int]
+    beside_bytes: int
+
+    @classmethod
+    def of(cls, bodies: Mapping[str, float], beside_bytes: float | None = None) -> Prediction:
+        """The prediction for bodies of so many cells; by default with what a structured mesh needs beside."""
+        if beside_bytes is None:
+            beside_bytes = _BYTES_BESIDE * sum(bodies.values())
+        return cls({name: int(cells) for name, cells in bodies.items()}, int(beside_bytes))
+
+    @property
+    def cells(self) -> int:
+        """Hexahedra of all bodies."""
+        return sum(self.bodies.values())
+
+    @property
+    def memory_bytes(self) -> int:
+        """Bytes at the peak, while the meshes are made and judged."""
+        return sum(map(body_bytes, self.bodies.values())) + self.beside_bytes
+
+
+def body_bytes(cells: int) -> int:
+    """Bytes that a mesh of so many cells keeps."""
+    return _BYTES_KEPT * cells
+
+
+def refuse_memory(prediction: Prediction, key: str, value: float | str, remedy: str) -> None:
+    """Refuse what will not fit.
+
+    Raises
+    ------
+    MeshError
+        With the predicted number of elements and bytes.
+    """
+    if prediction.memory_bytes > MEMORY_LIMIT:
+        raise MeshError.at(
+            key,
+            value,
+            f"would give about {float(prediction.cells):.3g} elements and take {prediction.memory_bytes / 2**30:.3g} GiB, above "
+            f"{MEMORY_LIMIT / 2**30:.0f} GiB: {remedy}",
+        )
+
+
+def refuse_coarse(size: float, wall: float, where: str) -> None:
+    """Refuse elements that are larger than what they shall fill.
+
+    Raises
+    ------
+    MeshError
+        With both numbers.
+    """
+    if size > wall:
+        raise MeshError.at(
+            "mesh.element_size", size, f"is larger than the {where}, {wall:.4g} m: use no more than that, in metres"
+        )
+
+
+#: Sets of facets that meshers name after contacts.
+_PATCHES = ("inner_patch", "outer_patch", "band")
+
+
+def summary(meshes: Mapping[str, HexMesh]) -> Tables:
+    """Numbers of every body and of all.
+
+    Parameters
+    ----------
+    meshes : name of the body -> mesh
+
+    Returns
+    -------
+    dict
+        ``elements, nodes, memory_bytes, scaled_jacobian{min, mean}, aspect{max, mean}, skew{max, mean}``,
+        ``element_size_m{min, mean, max}`` (edges), ``patch_size_m`` (edges on the contact patches: the shorter and the
+        longer direction {min, max}, and the depth of the cells below {min, max}; None where no set is named after a
+        contact), ``bodies{name: the same}``.
+
+    Notes
+    -----
+    A body whose array ``cells`` is the very same object as an earlier one's, with edges as long (balls: a rigid motion of
+    one mesh), takes that one's numbers over.
+    """
+    bodies: dict[str, Tables] = {}
+    first_names: dict[int, str] = {}
+    for name, mesh in meshes.items():
+        twin = first_names.setdefault(id(mesh.cells), name)
+        bodies[name] = bodies[twin] if twin != name and _congruent(mesh, meshes[twin]) else _body(mesh)
+    weights = np.array([body["elements"] for body in bodies.values()], dtype=float)
+
+    def over(key: str, word: str) -> float:
+        values = np.array([body[key][word] for body in bodies.values()])
+        return float({"min": values.min, "max": values.max}.get(word, lambda: np.average(values, weights=weights))())
+
+    patches = [body["patch_size_m"] for body in bodies.values() if body["patch_size_m"] is not None]
+    return {
+        "elements": int(weights.sum()),
+        "nodes": sum(body["nodes"] for body in bodies.values()),
+        "memory_bytes": sum(body["memory_bytes"] for body in bodies.values()),
+        "scaled_jacobian": {word: over("scaled_jacobian", word) for word in ("min", "mean")},
+        "aspect": {word: over("aspect", word) for word in ("max", "mean")},
+        "skew": {word: over("skew", word) for word in ("max", "mean")},
+        "element_size_m": {word: over("element_size_m", word) for word in ("min", "mean", "max")},
+        "patch_size_m": _widest(patches),
+        "bodies": {name: dict(body) for name, body in bodies.items()},
+    }
+
+
+def _body(mesh: HexMesh) -> Tables:
+    measures = _quality(mesh)
+    least, total, largest = np.inf, 0.0, 0.0
+    for first in range(0, len(mesh.cells), BLOCK):
+        length = _edges(mesh, mesh.cells[first : first + BLOCK])
+        least, largest, total = min(least, length.min()), max(largest, length.max()), total + length.sum()
+    sizes = {"min": float(least), "mean": float(total / (12 * len(mesh.cells))), "max": float(largest)}
+    patches = [_patch(mesh, name) for name in _PATCHES if len(mesh.facet_sets.get(name, ()))]
+    return {
+        "elements": len(mesh.cells),
+        "nodes": len(mesh.points),
+        "memory_bytes": mesh.memory_bytes,
+        "scaled_jacobian": {"min": float(measures.scaled_jacobian.min()), "mean": float(measures.scaled_jacobian.mean())},
+        "aspect": {"max": float(measures.aspect.max()), "mean": float(measures.aspect.mean())},
+        "skew": {"max": float(measures.skew.max()), "mean": float(measures.skew.mean())},
+        "element_size_m": sizes,
+        "patch_size_m": _widest(patches),
+    }
+
+
+def _patch(mesh: HexMesh, name: str) -> dict[str, dict[str, float]]:
+    a, b, c, d = np.moveaxis(mesh.points[mesh.facet_nodes(name)], 1, 0)
+    sides = [
+        0.5 * (np.linalg.norm(b - a, axis=1) + np.linalg.norm(c - d, axis=1)),
+        0.5 * (np.linalg.norm(d - a, axis=1) + np.linalg.norm(c - b, axis=1)),
+    ]
+    area = mesh.facet_areas(name)
+    depth = HexMesh(mesh.points, mesh.cells[mesh.facets(name)[:, 0]]).cell_volumes() / area
+    values = {"short": np.minimum(*sides), "long": np.maximum(*sides), "depth": depth}
+    return {word: {"min": float(v.min()), "max": float(v.max())} for word, v in values.items()}
+
+
+def _widest(patches: list[dict[str, dict[str, float]]]) -> dict[str, dict[str, float]] | None:
+    if not patches:
+        return None
+    return {
+        word: {"min": min(p[word]["min"] for p in patches), "max": max(p[word]["max"] for p in patches)}
+        for word in patches[0]
+    }
+
+
+def _edges(mesh: HexMesh, cells: np.ndarray) -> np.ndarray:
+    ends = mesh.points[cells[:, EDGES]]
+    return np.asarray(np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2))
+
+
+def _congruent(mesh: HexMesh, twin: HexMesh) -> bool:
+    """Whether a sample of edges is as long in both: a rigid motion of the same cells."""
+    sample = mesh.cells[:: max(len(mesh.cells) // 1000, 1)]
+    size = float(np.ptp(mesh.points, axis=0).max())
+    return np.allclose(_edges(mesh, sample), _edges(twin, sample), rtol=0.0, atol=1e-9 * size)

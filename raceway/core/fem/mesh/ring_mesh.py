@@ -1,0 +1,533 @@
+"""A ring as a solid of revolution: profile with the true groove arc, shoulders and bore, swept uniformly in azimuth.
+
+The profile is one mapped block: lines along the surface of lands and groove, from side face to side face, times layers
+from there to the seat (bore, or outer cylinder).  x is the axis of the bearing, the azimuth runs from +y to +z.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from math import acos, asin, atan2, ceil, cos, pi, sin, sqrt
+from typing import Any
+
+import attrs
+import numpy as np
+
+from raceway.core import columns
+from raceway.core.fem.mesh.hex_mesh import HexMesh, nodes_of
+from raceway.errors import MeshError
+from raceway.storage.tables import Tables
+
+
+@attrs.frozen(eq=False)
+class _Outline:
+    """Lines (k, 2) of x and radius [m], x strictly increasing.
+
+    left, right : race side, from the left side face to the groove, and from the groove to the right side face
+    seat : seat side, from face to face
+    edges : angles of the groove's left and right edge [rad], from its bottom towards +x
+
+    The section is what lies between two lines over x: the seat's side (bore of the inner ring, outer cylinder of the outer
+    one) and the race's side, out of which the groove's circle is cut. Chamfers, steps that lean, unequal shoulders and
+    hollow sides are all such lines; an undercut is not, and is refused.
+    """
+
+    left: np.ndarray
+    right: np.ndarray
+    seat: np.ndarray
+    edges: tuple[float, float]
+
+    def shares(self, side: str, size: float) -> np.ndarray:
+        """(n,) Points 0 to 1 along x of "left" or "right", at most ``size`` [m] apart, one on each corner of it.
+
+        The corners of the seat side below it are met, too, where they are farther than a tenth of ``size`` from others.
+        """
+        line = self.left if side == "left" else self.right
+        marks = list(line[:, 0])
+        for x in self.seat[1:-1, 0]:
+            if line[0, 0] < x < line[-1, 0] and min(abs(x - mark) for mark in marks) > 0.1 * size:
+                marks.append(x)
+        marks.sort()
+        parts = [np.linspace(a, b, ceil((b - a) / size - 1e-9) + 1)[1:] for a, b in zip(marks[:-1], marks[1:], strict=True)]
+        x = np.concatenate([[marks[0]], *parts])
+        return np.asarray((x - marks[0]) / (marks[-1] - marks[0]))
+
+    def top(self, side: str, shares: np.ndarray) -> np.ndarray:
+        """(n, 2) x and radius at shares from 0 to 1 along x of "left" or "right"."""
+        line = self.left if side == "left" else self.right
+        x = line[0, 0] + shares * (line[-1, 0] - line[0, 0])
+        return np.column_stack([x, np.interp(x, *line.T)])
+
+
+def _polygon_outline(
+    key: str, polygon: Sequence[Sequence[float]], inner: bool, groove: float, centre_x: float, centre_r: float
+) -> _Outline:
+    """The outline that a polygon of the whole section, groove not yet cut, stands for.
+
+    key : the scene's key, for messages
+    polygon : [x, radius] of the corners in their order around the section [m]
+    groove, centre_x, centre_r : radius of the groove and its centre
+    MeshError: what is no section, or cannot be filled with quadrilaterals between two lines.
+    """
+    points = np.asarray(polygon, dtype=float)
+    if len(points) < 4:
+        raise MeshError(f"`{key}` has {len(points)} points: a section needs at least 4, [x, radius] around it")
+    if points[:, 1].min() <= 0.0:
+        raise MeshError(f"`{key}`: the radius {points[:, 1].min():g} m must be greater than 0")
+    # The lines between the left and the right side face, at small and at large radius.
+    x = points[:, 0]
+    size = np.ptp(x)
+    count = len(points)
+    lines = []
+    faces = []
+    for end in (x.min(), x.max()):
+        on = np.flatnonzero(np.abs(x - end) <= 1e-9 * size)
+        if len(on) != 2 or (on[1] - on[0]) % count not in (1, count - 1):
+            raise MeshError(
+                f"`{key}` has {len(on)} points at x = {1e3 * end:.4g} mm: each end of a ring is a side face, two neighbouring "
+                "points with the same x"
+            )
+        faces.append(on)
+    for first in faces[0]:
+        step = 1 if (first + 1) % count not in faces[0] else -1
+        walk = [int(first)]
+        while walk[-1] not in faces[1]:
+            walk.append((walk[-1] + step) % count)
+        lines.append(points[walk])
+    for line in lines:
+        bad = np.flatnonzero(np.diff(line[:, 0]) <= 1e-9 * size)
+        if len(bad):
+            at = line[bad[0]]
+            raise MeshError(
+                f"`{key}` does not go on in x after [{at[0]:g}, {at[1]:g}]: a vertical step or an undercut cannot be meshed: "
+                "incline or remove it"
+            )
+    lines.sort(key=lambda line: float(np.interp(0.5 * (x.min() + x.max()), line[:, 0], line[:, 1])))
+    every = np.union1d(lines[0][:, 0], lines[1][:, 0])
+    wall = np.interp(every, *lines[1].T) - np.interp(every, *lines[0].T)
+    if wall.min() <= 0.0:
+        raise MeshError(f"`{key}` crosses itself near x = {1e3 * every[np.argmin(wall)]:.4g} mm")
+    low, high = lines[0], lines[1]
+    race, seat = (high, low) if inner else (low, high)
+    side = -1.0 if inner else 1.0
+    left, right = _cut(key, race, groove, np.array([centre_x, centre_r]))
+    angles = [atan2(p[0] - centre_x, side * (p[1] - centre_r)) for p in (left[-1], right[0])]
+    if max(abs(a) for a in angles) >= 0.5 * pi:
+        raise MeshError(
+            f"`{key}`: the shoulder at x = {1e3 * left[-1, 0]:.4g} or {1e3 * right[0, 0]:.4g} mm closes over the groove: it "
+            "must lie between the groove's bottom and its centre"
+        )
+    return _Outline(left, right, seat, (angles[0], angles[1]))
+
+
+def _cut(key: str, race: np.ndarray, groove: float, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The race side left and right of the groove's circle, both ending on it."""
+    places: list[tuple[int, float]] = []
+    for i, (a, b) in enumerate(zip(race[:-1], race[1:], strict=True)):
+        d, e = b - a, a - centre
+        roots = np.roots([d @ d, 2.0 * d @ e, e @ e - groove**2])
+        places += [(i, float(t)) for t in sorted(roots.real) if np.isreal(roots).all() and 0.0 <= t < 1.0]
+    if len(places) != 2:
+        raise MeshError(
+            f"`{key}`: the groove's circle meets the race side {len(places)} times; it must cut it twice, once on each "
+            f"shoulder (centre x = {1e3 * centre[0]:.4g}, r = {1e3 * centre[1]:.4g} mm, radius {1e3 * groove:.4g} mm)"
+        )
+    (i, t), (j, s) = places
+    first, last = race[i] + t * (race[i + 1] - race[i]), race[j] + s * (race[j + 1] - race[j])
+    if np.hypot(*(race[0] - centre)) <= groove or np.hypot(*(race[-1] - centre)) <= groove:
+        raise MeshError(f"`{key}`: a side face lies within the groove's circle: the ring is too narrow")
+    return np.concatenate([race[: i + 1], [first]]), np.concatenate([[last], race[j + 1 :]])
+
+
+#: Gauss points along the axis in each of three parts, and along the radius: more change growth and moments by 2e-15.
+_ALONG, _ACROSS = 20, 10
+#: Of the polynomials of the rotating ring; finite elements differ by 1 % (tests/depth/test_growth.py).
+_DEGREE = 8
+
+
+@attrs.frozen(eq=False)
+class RingSection:
+    """Places and areas to integrate over.
+
+    Attributes
+    ----------
+    x, r : (n,) place along the axis, 0 in the balls' plane, and radius [m];  area : (n,) [m2]
+    contact : x and radius of the groove at the free contact angle [m]
+    """
+
+    x: np.ndarray
+    r: np.ndarray
+    area: np.ndarray
+    contact: tuple[float, float]
+
+    @classmethod
+    def of(cls, bearing: Any, shoulder_height: float) -> RingSection:
+        """From bore, width and groove of a scene's [bearing]; where these are columns, arrays have an axis of points before."""
+        b = bearing
+        offset, alpha = (b.conformity_inner - 0.5) * b.ball_diameter, b.contact_angle
+        groove = b.conformity_inner * b.ball_diameter
+        centre_x, centre_r = offset * columns.sin(alpha), 0.5 * b.pitch_diameter + offset * columns.cos(alpha)
+        bore, land = 0.5 * b.bore, 0.5 * (b.pitch_diameter - b.ball_diameter) + shoulder_height
+        half = columns.sqrt(columns.largest(groove**2 - (centre_r - land) ** 2, 0.0))
+        # Where the groove meets the land, or a side face before that.
+        ends = centre_x - half, centre_x + half
+        left, right = (columns.least(columns.largest(x, -0.5 * b.width), 0.5 * b.width) for x in ends)
+        sines = (columns.largest(columns.least((x - centre_x) / groove, 1.0), -1.0) for x in (left, right))
+        low, high = (columns.per_ball(columns.asin(sine)) for sine in sines)
+        contact = centre_x - groove * columns.sin(alpha), centre_r - groove * columns.cos(alpha)
+        numbers = (centre_x, centre_r, groove, bore, land, b.width, left, right)
+        centre_x, centre_r, groove, bore, land, width, left, right = map(columns.per_ball, numbers)
+        at, weight = _rule(_ALONG)
+        angle = 0.5 * (low + high) + 0.5 * (high - low) * at
+        tops = [
+            (
+                centre_x + groove * np.sin(angle),
+                centre_r - groove * np.cos(angle),
+                0.5 * (high - low) * groove * np.cos(angle),
+            )
+        ]
+        for first, last in ((-0.5 * width, left), (right, 0.5 * width)):
+            x = 0.5 * (first + last) + 0.5 * (last - first) * at
+            tops.append((x, land, 0.5 * (last - first)))
+        shape = np.broadcast_shapes(*(np.shape(part) for parts in tops for part in parts))
+        x, top, slope = (
+            np.concatenate([np.broadcast_to(part, shape) for part in parts], axis=-1) for parts in zip(*tops, strict=True)
+        )
+        along = slope * np.tile(weight, len(tops))
+        up, share = _rule(_ACROSS)
+        wall = 0.5 * (top - bore)
+        r = np.expand_dims(bore, -1) + wall[..., None] * (1.0 + up)
+        area = along[..., None] * wall[..., None] * share
+        r, area = (part.reshape(*part.shape[:-2], -1) for part in (r, area))
+        return cls(np.repeat(x, _ACROSS, axis=-1), r, area, contact)
+
+    @property
+    def moments(self) -> tuple[columns.Number, columns.Number, columns.Number]:
+        """Volume [m3], transverse inertia about x = 0 and polar inertia over density [m5]."""
+        volume = 2.0 * pi * self.r * self.area
+        by = 0.5 * self.r**2 + self.x**2, self.r**2
+        return volume.sum(axis=-1), *(np.squeeze(volume[..., None, :] @ square[..., None], (-2, -1)) for square in by)
+
+    def growth(self, young: float, poisson: float) -> float:
+        """Radial growth of the raceway at the contact when a free ring turns [m], for 1 kg/m3 and 1 rad/s.
+
+        Notes
+        -----
+        Ritz' method on the section: u_r and u_x are polynomials in x and r up to degree 8 that minimise the elastic energy less
+        the work of the centrifugal force.  The groove's shoulders bend with it: an annulus from bore to land grows by 5 % more.
+        """
+        middle, high, wide = 0.5 * (self.r.max() + self.r.min()), 0.5 * np.ptp(self.r), 0.5 * np.ptp(self.x)
+        x, r = _legendre(self.x / wide), _legendre((self.r - middle) / high)
+        at_x, at_r = _legendre(np.array([self.contact[0] / wide])), _legendre(np.array([(self.contact[1] - middle) / high]))
+        powers = [(i, j) for i in range(_DEGREE + 1) for j in range(_DEGREE + 1 - i)]
+        radial, axial = [], []  # strains (4, n): radial, hoop, axial, shear
+        none = np.zeros_like(self.r)
+        for i, j in powers:
+            value, by_r, by_x = r[0][i] * x[0][j], r[1][i] * x[0][j] / high, r[0][i] * x[1][j] / wide
+            radial.append((by_r, value / self.r, none, by_x))
+            if i or j:  # a shift along the axis strains nothing
+                axial.append((none, none, by_x, by_r))
+        strain = np.array(radial + axial)
+        lame, shear = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))
+        elastic = np.diag([2.0 * shear] * 3 + [shear])
+        elastic[:3, :3] += lame
+        weight = self.r * self.area
+        stress = np.matmul(elastic, strain)
+        # In parts of a size that libraries of linear algebra give one thread: two wait for each other longer than they compute.
+        left, right = (part.reshape(len(strain), -1, 3 * _ACROSS) for part in (strain * weight, stress))
+        stiffness = (left.transpose(1, 0, 2) @ right.transpose(1, 2, 0)).sum(axis=0)
+        work = np.zeros(len(strain))
+        work[: len(powers)] = [(r[0][i] * x[0][j] * self.r) @ weight for i, j in powers]
+        amount = np.linalg.solve(stiffness, work)[: len(powers)]
+        return float(amount @ [at_r[0][i, 0] * at_x[0][j, 0] for i, j in powers])
+
+
+def _legendre(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Legendre's polynomials to ``_DEGREE`` at z (n,), (degree + 1, n), and their derivatives."""
+    identity = np.eye(_DEGREE + 1)
+    slopes = np.polynomial.legendre.legder(identity, axis=1)
+    value = np.polynomial.legendre.legvander(z, _DEGREE).T
+    return value, slopes @ value[:-1]
+
+
+@cache
+def _rule(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points and weights on [-1, 1]; nobody writes into them."""
+    at, weight = np.polynomial.legendre.leggauss(points)
+    at.flags.writeable = weight.flags.writeable = False
+    return at, weight
+
+
+@attrs.frozen
+class RingShape:
+    """Profile of a ring, lengths in metres.
+
+    Attributes
+    ----------
+    inner : whether it is the inner ring (groove on its outside)
+    seat, land : radius of bore or outer cylinder, and of the shoulders
+    width : between the side faces at -width/2 and width/2
+    groove : radius of the groove
+    centre_x, centre_r : axial place and radius of the circle of groove centres
+    contact : angle from the groove's radial direction to the free contact [rad], along increasing x
+    profile : what a user's polygon gives in place of seat, land and width; these three are then its extremes
+    """
+
+    inner: bool
+    seat: float
+    land: float
+    width: float
+    groove: float
+    centre_x: float
+    centre_r: float
+    contact: float
+    profile: _Outline | None = None
+
+    def __attrs_post_init__(self) -> None:
+        name = "inner ring" if self.inner else "outer ring"
+        if self.profile is None:
+            self._check_plain(name)
+        if self.wall <= 0.0:
+            raise MeshError(f"{name}: no wall is left below the groove ({1e3 * self.wall:.4g} mm)")
+        low, high = self.edges
+        if not low < self.contact < high:
+            raise MeshError(
+                f"{name}: the contact angle of {abs(self.contact) * 180 / pi:.3g} deg lies outside the groove, which ends at "
+                f"{-low * 180 / pi:.3g} and {high * 180 / pi:.3g} deg: give a larger `bearing.shoulder_height`"
+            )
+
+    def _check_plain(self, name: str) -> None:
+        over = self.sign * (self.land - self.centre_r)
+        if not 0.0 < over < self.groove:
+            raise MeshError(
+                f"{name}: the shoulder at radius {1e3 * self.land:.4g} mm does not cut the groove between its bottom and its "
+                "centre: change `bearing.shoulder_height`"
+            )
+        half = self.groove * sin(self.edge)
+        if abs(self.centre_x) + half >= 0.5 * self.width:
+            raise MeshError(
+                f"{name}: a width of {1e3 * self.width:.4g} mm does not hold the groove, which reaches to "
+                f"{1e3 * (abs(self.centre_x) + half):.4g} mm from its middle: give a larger `bearing.width`"
+            )
+
+    @property
+    def sign(self) -> float:
+        """-1 for the inner ring, whose groove bottom lies below its centre, 1 for the outer one."""
+        return -1.0 if self.inner else 1.0
+
+    @property
+    def edge(self) -> float:
+        """Angle from the groove's bottom to its edge, of unequal shoulders to the lower one's [rad]."""
+        if self.profile is not None:
+            return min(-self.profile.edges[0], self.profile.edges[1])
+        return acos(self.sign * (self.land - self.centre_r) / self.groove)
+
+    @property
+    def edges(self) -> tuple[float, float]:
+        """Angles of the groove's edges at smaller and larger x [rad]."""
+        return self.outline.edges
+
+    @property
+    def outline(self) -> _Outline:
+        """The section without its groove."""
+        if self.profile is not None:
+            return self.profile
+        reach = self.groove * sin(self.edge)
+        # A hollow cylinder: radii of seat and land, width between its faces, and the groove's ends on the land [m].
+        ends = (self.centre_x - reach, self.centre_x + reach)
+        half = 0.5 * self.width
+        return _Outline(
+            np.array([[-half, self.land], [ends[0], self.land]]),
+            np.array([[ends[1], self.land], [half, self.land]]),
+            np.array([[-half, self.seat], [half, self.seat]]),
+            (-self.edge, self.edge),
+        )
+
+    @property
+    def wall(self) -> float:
+        """Least thickness under the groove [m]; plain rings: under its bottom."""
+        if self.profile is None:
+            return self.sign * (self.seat - (self.centre_r + self.sign * self.groove))
+        x, r = self.surface(np.linspace(*self.profile.edges, 181)).T
+        return float((self.sign * (np.interp(x, *self.profile.seat.T) - r)).min())
+
+    @property
+    def thickness(self) -> float:
+        """Thickness at the shoulders [m]."""
+        return abs(self.seat - self.land)
+
+    @property
+    def volume(self) -> float:
+        """Exact volume [m3]: hollow cylinder less the groove's circular segment (Pappus)."""
+        if self.profile is not None:
+            return self.moments[0]
+        away = abs(self.centre_r - self.land)
+        half = sqrt(self.groove**2 - away**2)
+        area = self.groove**2 * asin(half / self.groove) - half * away
+        radius = self.centre_r + self.sign * 2.0 * half**3 / (3.0 * area)
+        tube = pi * abs(self.land**2 - self.seat**2) * self.width
+        return tube - 2.0 * pi * radius * area
+
+    @property
+    def raceway_area(self) -> float:
+        """Exact area of the groove [m2]: its arc swept at the radius of the arc's centroid (Pappus)."""
+        low, high = self.edges
+        radius = self.centre_r + self.sign * self.groove * (sin(high) - sin(low)) / (high - low)
+        return 2.0 * pi * radius * self.groove * (high - low)
+
+    @property
+    def moments(self) -> tuple[float, float, float]:
+        """Volume [m3], and the integrals of r^2 / 2 + x^2 and r^2 over it [m5]: inertia about y and x over density."""
+        at, weights = np.polynomial.legendre.leggauss(48)
+        out = np.zeros(3)
+
+        def add(x: np.ndarray, r: np.ndarray, slope: np.ndarray, side: float) -> None:
+            # Between the axis and the line, so that the section is the difference of its two lines.
+            for k, part in enumerate((r**2, r**4 / 4.0 + x**2 * r**2, r**4 / 2.0)):
+                out[k] += side * pi * float(weights @ (part * slope))
+
+        def along(line: np.ndarray, side: float) -> None:
+            for a, b in zip(line[:-1], line[1:], strict=True):
+                half = 0.5 * (b - a)
+                point = 0.5 * (a + b) + at[:, None] * half
+                add(point[:, 0], point[:, 1], np.full(len(at), half[0]), side)
+
+        outline, race = self.outline, -self.sign
+        along(outline.seat, -race)
+        along(outline.left, race)
+        along(outline.right, race)
+        low, high = outline.edges
+        angle = 0.5 * (low + high) + 0.5 * (high - low) * at
+        x, r = self.surface(angle).T
+        add(x, r, 0.5 * (high - low) * self.groove * np.cos(angle), race)
+        return float(out[0]), float(out[1]), float(out[2])
+
+    def surface(self, angles: np.ndarray) -> np.ndarray:
+        """(n, 2) x and radius of points of the groove, angle from its bottom towards +x [rad]."""
+        return np.column_stack(
+            [self.centre_x + self.groove * np.sin(angles), self.centre_r + self.sign * self.groove * np.cos(angles)]
+        )
+
+
+def ring_mesh(
+    shape: RingShape,
+    left: np.ndarray,
+    arc: np.ndarray,
+    right: np.ndarray,
+    layers: np.ndarray,
+    azimuths: np.ndarray,
+    band: tuple[float, float] | None = None,
+) -> HexMesh:
+    """The swept mesh.
+
+    Parameters
+    ----------
+    left, right : (n,) points 0 to 1 on the lands, left from the side face to the groove, right from the groove
+    arc : (n,) angles of points on the groove [rad], from edge to edge
+    layers : (n,) points 0 to 1 from the raceway to the seat
+    azimuths : (n,) of the nodes around the ring, ascending within one turn [rad]
+    band : angles between which facets belong to the set "band", the refined zone of the raceway
+
+    Notes
+    -----
+    Sets of facets and of nodes: raceway, band, land, seat, face_negative, face_positive.
+    """
+    divisions = len(azimuths)
+    if divisions < 3:
+        raise MeshError(f"a ring needs at least 3 cells around it, not {divisions}")
+    outline = shape.outline
+    top = np.concatenate([outline.top("left", left)[:-1], shape.surface(arc), outline.top("right", right)[1:]])
+    seat = np.interp(top[:, 0], *outline.seat.T)
+    ni, nj = len(top), len(layers)
+    # Radius outward with j: the inner ring's layers begin at its bore.
+    depth = 1.0 - layers[::-1] if shape.inner else layers
+    inside, outside = (seat, top[:, 1]) if shape.inner else (top[:, 1], seat)
+    radius = inside[None, :] + depth[:, None] * (outside - inside)[None, :]
+    psi = np.asarray(azimuths)
+    x = np.broadcast_to(top[:, 0], (divisions, nj, ni))
+    points = np.stack([x, np.cos(psi)[:, None, None] * radius, np.sin(psi)[:, None, None] * radius], axis=-1)
+    k, j, i = np.meshgrid(np.arange(divisions), np.arange(nj - 1), np.arange(ni - 1), indexing="ij")
+    near, far = (k * nj + j) * ni + i, ((k + 1) % divisions * nj + j) * ni + i
+    cells = np.stack([n + o for n in (near, far) for o in (0, 1, ni + 1, ni)], axis=-1).reshape(-1, 8)
+    facets = _facets(shape.inner, (ni, nj, divisions), (len(left) - 1, len(right) - 1), arc, band)
+    return HexMesh(points.reshape(-1, 3), cells, {name: nodes_of(cells, f) for name, f in facets.items()}, facets)
+
+
+def _facets(
+    inner: bool, nodes: tuple[int, int, int], ends: tuple[int, int], arc: np.ndarray, band: tuple[float, float] | None
+) -> dict[str, np.ndarray]:
+    """Facets of the named surfaces; local faces: 2 towards the axis, 4 away from it, 5 at -x, 3 at +x.
+
+    nodes : along the axis, across the wall and around;  ends : cells of the two lands beside the groove
+    arc : (i,) places along the groove;  band : part of them that may touch
+    """
+    (ni, nj, nk), (left, right) = nodes, ends
+    number = np.arange(nk * (nj - 1) * (ni - 1)).reshape(nk, nj - 1, ni - 1)
+    raceway, seat = (number[:, -1], number[:, 0]) if inner else (number[:, 0], number[:, -1])
+    up, down = (4, 2) if inner else (2, 4)
+
+    def facets(cells: np.ndarray, face: int) -> np.ndarray:
+        return np.column_stack([cells.ravel(), np.full(cells.size, face)])
+
+    groove = raceway[:, left : ni - 1 - right]
+    out = {
+        "raceway": facets(groove, up),
+        "land": facets(np.concatenate([raceway[:, :left], raceway[:, ni - 1 - right :]], axis=1), up),
+        "seat": facets(seat, down),
+        "face_negative": facets(number[:, :, 0], 5),
+        "face_positive": facets(number[:, :, -1], 3),
+    }
+    if band is not None:
+        middle = 0.5 * (arc[1:] + arc[:-1])
+        out["band"] = facets(groove[:, (middle > band[0]) & (middle < band[1])], up)
+    return out
+
+
+def ring_shape(bearing: Any, inner: bool) -> RingShape:
+    """Profile of a ring of a row with side +1, from the dimensions of the scene's [bearing] table.
+
+    Raises
+    ------
+    MeshError
+        Dimensions that are missing, or that do not fit together.
+    """
+    key = "inner_profile" if inner else "outer_profile"
+    if getattr(bearing, key, None) is not None:
+        # A ring whose section the user gives.
+        groove = _groove(bearing, inner)
+        outline = _polygon_outline(
+            f"bearing.{key}", getattr(bearing, key), inner, groove["groove"], groove["centre_x"], groove["centre_r"]
+        )
+        radii, lands = outline.seat[:, 1], np.r_[outline.left[-1, 1], outline.right[0, 1]]
+        seat, land = (radii.min(), lands.max()) if inner else (radii.max(), lands.min())
+        word, diameter = ("bore", bearing.bore) if inner else ("outer_diameter", bearing.outer_diameter)
+        if diameter is not None and abs(2.0 * seat - diameter) > 1e-6 * diameter:
+            raise MeshError(
+                f"`bearing.{key}` has a seat diameter of {2.0 * seat:g} m, `bearing.{word}` = {diameter:g} m: give the same"
+            )
+        width = float(outline.seat[-1, 0] - outline.seat[0, 0])
+        return RingShape(inner, float(seat), float(land), width, **groove, profile=outline)
+    for key in ("bore", "outer_diameter", "width"):
+        if getattr(bearing, key, None) is None:
+            raise MeshError.at(f"bearing.{key}", None, "is missing: rings of hexahedra need bore, outer_diameter and width")
+    middle, depth = 0.5 * bearing.pitch_diameter, bearing.shoulder_height or 0.2 * bearing.ball_diameter
+    return RingShape(
+        inner=inner,
+        seat=0.5 * (bearing.bore if inner else bearing.outer_diameter),
+        land=middle + (-1.0 if inner else 1.0) * (0.5 * bearing.ball_diameter - depth),
+        width=bearing.width,
+        **_groove(bearing, inner),
+    )
+
+
+def _groove(bearing: Any, inner: bool) -> Tables:
+    alpha, sense = bearing.contact_angle, 1.0 if inner else -1.0
+    conformity = bearing.conformity_inner if inner else bearing.conformity_outer
+    offset = sense * (conformity - 0.5) * bearing.ball_diameter
+    return {
+        "groove": conformity * bearing.ball_diameter,
+        "centre_x": offset * sin(alpha),
+        "centre_r": 0.5 * bearing.pitch_diameter + offset * cos(alpha),
+        "contact": -sense * alpha,
+    }

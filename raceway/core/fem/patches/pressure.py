@@ -1,0 +1,565 @@
+"""One ball against one race: resultant, tangent and pressures for a given place of the ball in the groove."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import attrs
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg.lapack import dpotrf, dpotrs
+
+from raceway.core.contact.hertz import Ellipse
+from raceway.core.fem.patches.friction import Friction, Traction, only_largest
+from raceway.core.fem.patches.gap import between, derivatives, displaced, sphere_in_torus
+from raceway.core.fem.patches.patch import Patch
+from raceway.errors import ConvergenceError, RacewayError
+
+if TYPE_CHECKING:
+    from raceway.core.jit import Kernel
+
+
+_BORDER = 0.08
+
+
+class _Factor:
+    """Solves C x = r over a set of points, C the compliance of ball and race together.
+
+    patch : where the points are
+    extra : compliance of the law at every point, on the diagonal [m/N]
+
+    Sets of neighbouring iterations differ in a few points.  With the factor of a set B, the solution on another set A comes
+    by bordering: points that joined are unknowns of their own, points that left get a multiplier that keeps them at zero;
+    both together make a small dense system (the Schur complement of the factor).  Beyond ``_BORDER`` of the set it is
+    cheaper to factorise anew.
+    """
+
+    def __init__(self, patch: Patch, extra: float = 0.0) -> None:
+        self._patch = patch
+        self._extra = extra
+        self._base = np.zeros(0, dtype=np.int64)
+        self._lower = np.zeros((0, 0), order="F")
+        self._nodes: np.ndarray | None = None
+        self.factorisations = 0
+
+    def block(self, to: np.ndarray, of: np.ndarray) -> np.ndarray:
+        """(len(to), len(of)) compliance without the law's own [m/N]."""
+        out = np.empty((len(to), len(of)))
+        between(self._patch.ball.compliance, self._patch.race.compliance, to, of, out)
+        return out
+
+    def displacement(self, to: np.ndarray, of: np.ndarray, load: np.ndarray) -> np.ndarray:
+        """(len(to),) displacement by loads [m], without the law's own."""
+        out = np.empty(len(to))
+        displaced(self._patch.ball.compliance, self._patch.race.compliance, to, of, np.ascontiguousarray(load), out)
+        return out
+
+    def solve(self, nodes: np.ndarray, right: np.ndarray) -> np.ndarray:
+        """x (n,) or (n, k) with C x = right on the points ``nodes`` (n,), ascending."""
+        self._prepare(nodes)
+        if not len(nodes):
+            return np.zeros_like(right)
+        columns = right.reshape(len(nodes), -1)
+        if self._same:
+            return self._plain(columns).reshape(right.shape)
+        spread = np.zeros((len(self._base), columns.shape[1]))
+        spread[self._kept_base] = columns[self._kept]
+        first = self._plain(spread)
+        small = np.concatenate([columns[self._joined] - self._cross.T @ first, -first[self._left]])
+        border = np.linalg.solve(self._schur, small)
+        first -= self._reach @ border
+        out = np.empty_like(columns)
+        out[self._kept], out[self._joined] = first[self._kept_base], border[: self._cross.shape[1]]
+        return out.reshape(right.shape)
+
+    def _plain(self, right: np.ndarray) -> np.ndarray:
+        return dpotrs(self._lower, right, lower=1)[0]
+
+    def _prepare(self, nodes: np.ndarray) -> None:
+        """Make the factor, or the border, of a set of points."""
+        if self._nodes is not None and np.array_equal(nodes, self._nodes):
+            return
+        joined = np.isin(nodes, self._base, assume_unique=True, invert=True)
+        leaving = np.isin(self._base, nodes, assume_unique=True, invert=True)
+        changed = int(joined.sum() + leaving.sum())
+        self._nodes = nodes.copy()
+        if not len(self._base) or changed > max(2, _BORDER * len(nodes)):
+            self._factorise(nodes)
+            return
+        self._same = changed == 0
+        if self._same:
+            return
+        self._joined, self._left = np.flatnonzero(joined), np.flatnonzero(leaving)
+        self._kept, self._kept_base = np.flatnonzero(~joined), np.flatnonzero(~leaving)
+        new = nodes[self._joined]
+        self._cross = self.block(self._base, new)
+        count = len(self._joined)
+        sides = np.zeros((len(self._base), changed))
+        sides[:, :count] = self._cross
+        sides[self._left, count + np.arange(len(self._left))] = 1.0
+        self._reach = self._plain(sides)
+        schur = -sides.T @ self._reach
+        schur[:count, :count] += self.block(new, new) + self._extra * np.eye(count)
+        self._schur = schur
+
+    def _factorise(self, nodes: np.ndarray) -> None:
+        matrix = self.block(nodes, nodes)
+        matrix[np.diag_indices(len(nodes))] += self._extra
+        self._lower, status = dpotrf(matrix, lower=1)
+        if status != 0:
+            raise ConvergenceError(
+                "the compliance of a contact is not positive definite: its mesh is too coarse or distorted"
+            )
+        self._base = nodes.copy()
+        self._same = True
+        self.factorisations += 1
+
+
+_LIMIT = 60
+#: Residual of the gaps that counts as none, of the deepest overlap.
+_TOLERANCE = 1e-11
+
+
+@attrs.frozen(eq=False)
+class PointLaw:
+    """A law without memory at the points of one contact.
+
+    Attributes
+    ----------
+    kernel : compiled ``LAW``;  params : (k,) of this contact;  area : of a point [m2]
+    """
+
+    kernel: Kernel
+    params: np.ndarray
+    area: float
+
+    def __call__(self, gap: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Forces of points (n,) [N] and their derivatives by gap and by gap rate."""
+        n = len(gap)
+        none = np.zeros((n, 0))
+        pressure, by_gap, by_rate = np.empty(n), np.empty(n), np.empty(n)
+        params = np.tile(self.params, (n, 1))  # a broadcast of a single row would be read-only, which no kernel takes
+        self.kernel(np.ascontiguousarray(gap), rate, params, none, none.copy(), 0.0, pressure, by_gap, by_rate)
+        return self.area * pressure, self.area * by_gap, self.area * by_rate
+
+
+@attrs.frozen(eq=False)
+class _LawState:
+    """Points that carry something.
+
+    nodes, load : (n,) [N];  gap : (n,) left open by the law: its penetration [m]
+    lower : factor of C + 1/D;  viscous : (n,) the law's rate derivative over D [s]
+    """
+
+    nodes: np.ndarray
+    load: np.ndarray
+    gap: np.ndarray
+    lower: tuple[np.ndarray, bool] | None
+    viscous: np.ndarray
+    iterations: int
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """(C + 1/D)^-1 right."""
+        return cho_solve(self.lower, right, check_finite=False) if len(self.nodes) else np.zeros_like(right)
+
+
+def _by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, factor: _Factor) -> _LawState:
+    """Pressures at gaps (rows * columns,) that change at rates of the same shape.
+
+    start : (rows * columns,) penetrations w of a similar state, zeros when there is none; overwritten by those found
+    ConvergenceError: Newton stalls.
+
+    With D = -A dp/dw the loads change by t with (1/D + C) t = w - g - C f over the points with D > 0: symmetric and positive
+    definite for every law that grows with the approach. All gaps then become w = g + C (f + t). The step is halved where the
+    residual grew.
+    """
+    near = np.flatnonzero(gap < 0.0)
+    if not len(near):
+        return _LawState(near, np.zeros(0), np.zeros(0), None, np.zeros(0), 0)
+    compliance = factor.block(near, near)
+    g, v = gap[near], np.ascontiguousarray(rate[near])
+    depth = abs(g.min())
+    w = np.minimum(start[near], 0.0)
+    if not (w < 0.0).any():
+        w = np.where(g < -0.5 * depth, 0.02 * g, 0.0)
+    before, count = np.inf, 0
+    while count < _LIMIT:
+        count += 1
+        load, by_gap, by_rate = law(w, v)
+        residual = g + compliance @ load - w
+        now = float(np.abs(residual).max())
+        if now <= _TOLERANCE * depth:
+            break
+        active = np.flatnonzero(by_gap < 0.0)
+        more = np.zeros(len(near))
+        if len(active):
+            more[active] = -cho_solve(_factor(compliance, active, -by_gap[active]), residual[active], check_finite=False)
+        step = residual + compliance @ more
+        part = 1.0 if now < before else 0.5
+        w = w + part * step
+        before = now
+    else:
+        raise ConvergenceError(f"the pressures of the contact law did not converge in {_LIMIT} iterations")
+    start[:] = 0.0
+    start[near] = np.minimum(w, 0.0)
+    active = np.flatnonzero((load > 0.0) & (by_gap < 0.0))
+    stiff = -by_gap[active]
+    lower = _factor(compliance, active, stiff) if len(active) else None
+    return _LawState(near[active], load[active], w[active], lower, by_rate[active] / stiff, count)
+
+
+def _factor(compliance: np.ndarray, active: np.ndarray, stiff: np.ndarray) -> tuple[np.ndarray, bool]:
+    matrix = compliance[np.ix_(active, active)]
+    matrix[np.diag_indices(len(active))] += 1.0 / stiff
+    factor: tuple[np.ndarray, bool] = cho_factor(matrix, lower=True, check_finite=False)
+    return factor
+
+
+#: Iterations with whole exchanges, after which only the worst point is exchanged, and their largest number.
+_WHOLE, _UNILATERAL_LIMIT = 25, 400
+#: Penetration that counts as none, of the deepest overlap.
+_ROUNDING = 1e-10
+
+
+def _active_set(gap: np.ndarray, start: np.ndarray, factor: _Factor) -> tuple[np.ndarray, np.ndarray, int]:
+    """Points in contact (n,), ascending, their loads (n,) [N], and the number of iterations.
+
+    gap : (rows * columns,) without elastic displacement [m]
+    start : points that were in contact in a similar state, or none
+    ConvergenceError: the sets repeat themselves.
+
+    Points that pull leave the set, points that penetrate join it, all at once; near the solution the sets of successive
+    iterations are the same.  Entries of C are positive between points of a patch: only points with g < 0 can touch.
+    """
+    near = np.flatnonzero(gap < 0.0)
+    if not len(near):
+        return near, np.zeros(0), 0
+    deepest = gap[near].min()
+    nodes = start[gap[start] < 0.0] if len(start) else start
+    if not len(nodes):
+        nodes = near[gap[near] < 0.5 * deepest]  # Hertz: half the overlap's area carries
+    allowed = _ROUNDING * abs(deepest)
+    for iteration in range(1, _UNILATERAL_LIMIT + 1):
+        load = factor.solve(nodes, -gap[nodes])
+        free = gap < 0.0
+        free[nodes] = False
+        outside = np.flatnonzero(free)
+        depth = gap[outside] + factor.displacement(outside, nodes, load)
+        pulls, joins = load < 0.0, depth < -allowed
+        if not (pulls.any() or joins.any()):
+            return nodes, load, iteration
+        if iteration > _WHOLE:
+            pulls, joins = only_largest(pulls, -load), only_largest(joins & ~pulls.any(), -depth)
+        nodes = np.sort(np.concatenate([nodes[~pulls], outside[joins]]))
+    raise ConvergenceError(f"the points in contact were not determined in {_UNILATERAL_LIMIT} exchanges")
+
+
+class BeyondPatch(RacewayError):
+    """Points in contact at the end of a patch that could be larger: what it must reach.
+
+    Attributes
+    ----------
+    sense : of the race, -1 inner, 1 outer;  angle : contact angle of the resultant [rad];  load : of the contact [N]
+    across : whether it left along the rolling direction
+    """
+
+    def __init__(self, sense: float, angle: float, load: float, across: bool) -> None:
+        race = "inner" if sense < 0.0 else "outer"
+        way = "the rolling direction" if across else "the groove"
+        super().__init__(
+            f"the contact on the {race} race, {load:.4g} N at {np.degrees(angle):.2f} deg, exceeds its patch of surface points along {way}"
+        )
+        self.sense, self.angle, self.load, self.across = sense, angle, load, across
+
+
+@attrs.frozen(eq=False)
+class ContactState:
+    """A contact's answer.
+
+    Attributes
+    ----------
+    force : (2,) on the ball, axial and radial [N];  stiffness : (2, 2) minus its derivative by the ball's place [N/m]
+    viscous : (2, 2) minus its derivative by the ball's velocity [N s/m]
+    nodes, load : (n,) points that carry and their forces [N], number k * columns + i
+    penetration : largest one that a law leaves [m]
+    truncated : whether points at the groove's edge carry
+    along : (2, 2) what friction adds to ``stiffness``
+    couple : of friction on the section of the ring, derivative of its work by the section's turn [N m]
+    by_turn : (2,) minus the derivative of the force by that turn [N];  couple_by_place : (2,) [N];  couple_by_turn [N m]
+    traction_state : tractions along the groove; None without friction
+    normal : (2,) the part of ``force`` that pressures make, where there is friction [N]
+    """
+
+    force: np.ndarray
+    stiffness: np.ndarray
+    viscous: np.ndarray
+    nodes: np.ndarray
+    load: np.ndarray
+    penetration: float = 0.0
+    truncated: bool = False
+    along: np.ndarray = attrs.field(factory=lambda: np.zeros((2, 2)))
+    couple: float = 0.0
+    by_turn: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
+    couple_by_place: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
+    couple_by_turn: float = 0.0
+    traction_state: Traction | None = None
+    normal: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
+
+
+@attrs.frozen(eq=False)
+class SlipState:
+    """State of friction at a contact: the turn of the ring's section [rad], slips (rows * columns,) [m]."""
+
+    turn: float
+    slip: np.ndarray
+
+
+#: Places of the points over which a mean is taken.
+_PLACES = 8
+_NONE = np.zeros(0, dtype=np.int64)
+
+
+class Contact:
+    """One ball-race pair with the memory that makes the next solution cheap: points in contact and their factor.
+
+    Parameters
+    ----------
+    patch : Patch
+    law : what gives the pressure at a point; None for no penetration
+    friction : coefficient of Coulomb friction; the patch has compliances along the groove where it is not 0
+    """
+
+    def __init__(self, patch: Patch, law: PointLaw | None, friction: float = 0.0) -> None:
+        self.patch, self.law = patch, law
+        self.friction = Friction(patch, friction) if friction > 0.0 else None
+        self._factor = _Factor(patch)
+        self._nodes = _NONE
+        self._depth = np.zeros(patch.rows * patch.columns)
+        self._gap = np.empty((patch.rows, patch.columns))
+        self.iterations = 0
+
+    def press(self, position: np.ndarray, rate: np.ndarray, slipping: SlipState | None = None) -> ContactState:
+        """Solve for a place (2,) and a velocity (2,) of the ball's centre, seen from the groove's centre.
+
+        Friction acts where ``slipping`` is given.
+
+        Raises
+        ------
+        BeyondPatch
+            Contact at the end of the patch, short of the groove's edge.
+        """
+        patch = self.patch
+        axial, radial = float(position[0]), float(position[1])
+        sphere_in_torus(axial, radial, patch.points, self._gap)
+        gap = self._gap.reshape(-1)
+        if not (gap < 0.0).any():
+            return self._open(position, slipping)
+        if self.law is None:
+            nodes, load, count = _active_set(gap, self._nodes, self._factor)
+            solve = lambda right: self._factor.solve(nodes, right)  # noqa: E731
+            state, penetration = None, 0.0
+        else:
+            every = np.arange(len(gap))
+            speed = self._derivatives(every, np.zeros(len(gap)), axial, radial)[0] @ rate
+            state = _by_law(gap, speed, self.law, self._depth, self._factor)
+            nodes, load, count, solve = state.nodes, state.load, state.iterations, state.solve
+            penetration = float(-state.gap.min(initial=0.0))
+        self.iterations += count
+        self._nodes = nodes
+        if not len(nodes):
+            return self._open(position, slipping)
+        slope, curved = self._derivatives(nodes, load, axial, radial)
+        force = slope.T @ load
+        carried = solve(slope)
+        stiffness = slope.T @ carried - curved
+        viscous = self._viscous(state, slope, carried)
+        truncated = self._ends(nodes, force)
+        normal = ContactState(force, stiffness, viscous, nodes, load, penetration, truncated)
+        return normal if slipping is None else self._rubbed(normal, position, slipping, -carried)
+
+    def mean_stiffness(self, position: np.ndarray) -> np.ndarray:
+        """(2, 2) stiffness as ``press`` gives it, the mean over all places of the points under the ellipse [N/m].
+
+        Notes
+        -----
+        A set of points changes in steps as the ellipse slides over it, and the stiffness of the set with it, by some percent.
+        Turned about the groove's centre by one distance of rows the ellipse meets the same points again: the mean over
+        that distance has no ripple.
+        """
+        pitch = self.patch.race.angle[1] - self.patch.race.angle[0]
+        memory = self._nodes, self._depth.copy()
+        total = np.zeros((2, 2))
+        for angle in pitch * ((np.arange(_PLACES) + 0.5) / _PLACES - 0.5):
+            c, s = np.cos(angle), np.sin(angle)
+            turn = np.array([[c, s], [-s, c]])
+            total += turn.T @ self.press(turn @ position, np.zeros(2)).stiffness @ turn
+        self._nodes, self._depth = memory
+        return total / _PLACES
+
+    def _open(self, position: np.ndarray, slipping: SlipState | None) -> ContactState:
+        self._nodes = _NONE
+        zero = np.zeros((2, 2))
+        open_ = ContactState(np.zeros(2), zero, zero, _NONE, np.zeros(0))
+        return open_ if slipping is None else self._rubbed(open_, position, slipping, np.zeros((0, 2)))
+
+    def along(self, position: np.ndarray, turn: float = 0.0) -> float:
+        """Place of the contact along the groove [m]: all points of the ball move so far over the race."""
+        race = self.patch.race
+        angle = np.arctan2(race.sense * position[0], race.sense * position[1])
+        return float((race.groove - self.patch.ball.radius) * angle - (race.groove * turn if race.sense < 0.0 else 0.0))
+
+    def _rubbed(
+        self, normal: ContactState, position: np.ndarray, slipping: SlipState, load_by_place: np.ndarray
+    ) -> ContactState:
+        """With friction; load_by_place (n, 2): derivatives of the points' forces by the ball's place [N/m]."""
+        assert self.friction is not None
+        race = self.patch.race
+        traction_state = self.friction.pull(normal.nodes, normal.load, self.along(position, slipping.turn), slipping.slip)
+        length = float(np.hypot(*position))
+        n = race.sense * position / length
+        t = np.array([n[1], -n[0]])
+        lever = (race.groove - self.patch.ball.radius) / length
+        ahead = race.sense * lever * t  # derivative of the place along the groove by the ball's
+        tau = traction_state.force
+        by_place = traction_state.by_place * ahead + traction_state.by_load @ load_by_place
+        along = np.outer(ahead, by_place) - tau * lever / length * (np.outer(t, n) + np.outer(n, t))
+        arm = race.groove if race.sense < 0.0 else 0.0
+        return attrs.evolve(
+            normal, force=normal.force - tau * ahead, stiffness=normal.stiffness + along, along=along, traction_state=traction_state, normal=normal.force,
+            couple=-arm * tau, by_turn=-arm * traction_state.by_place * ahead, couple_by_place=-arm * by_place,
+            couple_by_turn=arm * arm * traction_state.by_place,
+        )  # fmt: skip
+
+    def _derivatives(
+        self, nodes: np.ndarray, load: np.ndarray, axial: float, radial: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        slope, curved = np.empty((len(nodes), 2)), np.empty(3)
+        derivatives(axial, radial, self.patch.points, nodes, np.ascontiguousarray(load), slope, curved)
+        return slope, curved[[0, 1, 1, 2]].reshape(2, 2)
+
+    @staticmethod
+    def _viscous(state: _LawState | None, slope: np.ndarray, held: np.ndarray) -> np.ndarray:
+        if state is None or not state.viscous.any():
+            return np.zeros((2, 2))
+        return -held.T @ (state.viscous[:, None] * slope)
+
+    def _ends(self, nodes: np.ndarray, force: np.ndarray) -> bool:
+        """Whether the contact is cut off by the groove's edge."""
+        patch = self.patch
+        row, column = nodes // patch.columns, nodes % patch.columns
+        low, high = row[0] == 0, row[-1] == patch.rows - 1
+        first, last = patch.race.ends
+        sense = patch.race.sense
+        wide = bool((column == 0).any() or (column == patch.columns - 1).any())
+        if wide or (low and not first) or (high and not last):
+            angle = float(np.arctan2(-sense * force[0], -sense * force[1]))
+            raise BeyondPatch(sense, angle, float(np.hypot(*force)), wide)
+        return bool(low or high)
+
+
+@attrs.frozen(eq=False)
+class PressureField:
+    """Pressures on a ball's surface.
+
+    Attributes
+    ----------
+    along : (m,) place along the groove, from the contact angle of zero [m];  across : (n,) along the rolling direction [m]
+    angle : (m,) of the rows on the ball, as contact angles [rad]
+    pressure : (m, n) [Pa], zero where nothing carries
+    """
+
+    along: np.ndarray
+    across: np.ndarray
+    angle: np.ndarray
+    pressure: np.ndarray
+
+
+def pressure_field(patch: Patch, pressed: ContactState) -> PressureField:
+    """Pressures of a contact at all points of its patch."""
+    pressure = np.zeros(patch.rows * patch.columns)
+    pressure[pressed.nodes] = pressed.load / patch.area
+    radius = patch.ball.radius
+    return PressureField(
+        radius * patch.phi, radius * patch.ball.latitude, patch.phi, pressure.reshape(patch.rows, patch.columns)
+    )
+
+
+#: Room on each side of a window [rad], and around an ellipse, of its semi-axes.
+MARGIN, AROUND = np.deg2rad(0.7), 1.15
+
+Window = tuple[float, float]
+
+
+@attrs.frozen
+class Reach:
+    """Extent that patches have to cover.
+
+    Attributes
+    ----------
+    inner, outer : lowest and highest angle of points in contact [rad]
+    widest : largest minor semi-axis, with room [m]
+    mean_load, largest_load : of the balls that carry, on the inner race, and of all contacts [N]
+    """
+
+    inner: Window
+    outer: Window
+    widest: float
+    mean_load: float
+    largest_load: float
+
+    def grown(self, beyond: BeyondPatch, ellipse: Ellipse, radius: float, room: float) -> Reach:
+        """One that holds a contact which left this one, by a clear step at least.
+
+        Raises
+        ------
+        ConvergenceError
+            A contact as large as the ball: what runs away is not meshed.
+        """
+        load = max(self.largest_load, beyond.load) * (room if beyond.across else 1.0)
+        a, b = ellipse.semi_axes(load)
+        if not max(a, b) < radius:
+            raise ConvergenceError(f"the balls leave the races: {beyond}, on an ellipse as large as the ball")
+        old = self.inner if beyond.sense < 0.0 else self.outer
+        half = AROUND * float(a) / radius + 3.0 * MARGIN
+        window = _rounded(min(old[0], beyond.angle - half), max(old[1], beyond.angle + half))
+        if not beyond.across and window == old:
+            window = (old[0] - 3.0 * MARGIN, old[1] + 3.0 * MARGIN)
+        widest = max(self.widest, AROUND * float(b))
+        if beyond.across and widest == self.widest:
+            widest *= room
+        inner, outer = (window, self.outer) if beyond.sense < 0.0 else (self.inner, window)
+        return Reach(inner, outer, widest, self.mean_load, load)
+
+
+def _rounded(low: float, high: float) -> Window:
+    """Outwards to whole degrees, so that states near each other share their compliances."""
+    return float(np.deg2rad(np.floor(np.rad2deg(low) + 1e-6))), float(np.deg2rad(np.ceil(np.rad2deg(high) - 1e-6)))
+
+
+def reach_of(
+    inner: tuple[np.ndarray, np.ndarray],
+    outer: tuple[np.ndarray, np.ndarray],
+    ellipses: tuple[Ellipse, Ellipse],
+    radius: float,
+    free: float,
+    room: float,
+) -> Reach:
+    """Reach of known contacts.
+
+    Parameters
+    ----------
+    inner, outer : angles (n,) [rad] and loads (n,) [N]
+    radius : of the ball [m];  free : contact angle where nothing carries [rad];  room : more load than known, as a factor
+    """
+    windows, widest, largest = [], 0.0, 0.0
+    for (angle, load), ellipse in zip((inner, outer), ellipses, strict=True):
+        heaviest = max(float(load.max()), 1.0)
+        a, b = ellipse.semi_axes(room * heaviest)
+        carrying = load > 1e-3 * heaviest
+        angles = angle[carrying] if carrying.any() else np.array([free])
+        half = AROUND * float(a) / radius + MARGIN
+        windows.append(_rounded(float(angles.min()) - half, float(angles.max()) + half))
+        widest, largest = max(widest, AROUND * float(b)), max(largest, heaviest)
+    carrying = inner[1] > 0.1 * max(float(inner[1].max()), 1.0)
+    mean = float(inner[1][carrying].mean()) if carrying.any() else largest
+    return Reach(windows[0], windows[1], widest, mean, largest)

@@ -1,0 +1,5 @@
+"""Executors of many points.
+
+processes   on this machine
+dask        workers of a scheduler
+"""

@@ -1,0 +1,233 @@
+"""Pictures of one run: orbit, spectrum and ball loads, on given axes, new ones, or as PNG files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import attrs
+
+from raceway.answers.picture import given_axes, label_axes, new_figure, save_figure, wrapped
+from raceway.errors import RacewayError, extra
+from raceway.framework.options import between, nearest, option
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from raceway.pipeline.result import Result
+    from raceway.pipeline.simulate import Simulation
+
+
+_USED, _OTHER, _STATIC, _GRID = "#0b5fa5", "#b9c4cf", "#c8501e", "#d8dee4"
+_MICRO = 1e6
+#: Lines of a spectrum from which on their tops are joined.
+_DENSE = 400
+
+
+@attrs.frozen
+class Pictures:
+    """Orbit and 1x spectrum of the displacement, and the ball loads round the bearing.
+
+    Figures are drawn on their own canvas: a caller's backend and settings of matplotlib stay as they are.
+    """
+
+    name: ClassVar[str] = "pictures"
+    suffixes: ClassVar[tuple[str, ...]] = (".png",)
+    of_results: ClassVar[bool] = True
+
+    dots_per_inch: int = option(150, help="resolution of the PNG files", rule=between(30, 1200))
+
+    def write(self, folder: Path, result: Result) -> list[Path]:
+        """Write the pictures that the result has data for.
+
+        Parameters
+        ----------
+        folder : path, made when it is missing
+        result : raceway.pipeline.result.Result
+
+        Returns
+        -------
+        list of Path : orbit.png and spectrum.png where motion was recorded, ball-loads.png always
+
+        Raises
+        ------
+        RacewayError
+            matplotlib is missing, or the folder cannot be written.
+        """
+        figures = {name.replace("_", "-"): picture(result, name) for name in _available(result)}
+        return [save_figure(figure, Path(folder) / f"{name}.png", self.dots_per_inch) for name, figure in figures.items()]
+
+
+def picture(result: Result, name: str) -> Figure:
+    """A figure of one drawing, "orbit", "spectrum" or "ball_loads", with its legend below."""
+    drawing = _DRAWINGS[name]
+    figure = new_figure(*drawing.size)
+    drawing.draw(figure.add_subplot(projection=drawing.projection), result)
+    figure.legend(loc="outside lower center", ncols=drawing.columns, fontsize=drawing.legend, frameon=False)
+    return figure
+
+
+def plot(result: Result, what: str | None, ax: Axes | None) -> Axes | tuple[Axes, ...]:
+    """Draw one picture, or all that the result has data for.
+
+    Parameters
+    ----------
+    what : "orbit", "spectrum" or "ball_loads"; None: all, side by side
+    ax : axes of matplotlib for one picture, polar ones for the ball loads; None: new ones of pyplot
+
+    Returns
+    -------
+    Axes, or a tuple of them where ``what`` is None
+
+    Raises
+    ------
+    RacewayError
+        matplotlib is missing; no such picture, or no data for it; axes that it cannot be drawn on.
+    """
+    available = _available(result)
+    if what is not None and what not in _DRAWINGS:
+        raise RacewayError(f"`what` = {what!r}: must be one of {', '.join(_DRAWINGS)}{nearest(str(what), _DRAWINGS)}")
+    if what is not None and what not in available:
+        raise RacewayError(f"`what` = {what!r}: no motion was recorded; available: {', '.join(available)}")
+    if ax is not None and what is None:
+        raise RacewayError(f"`ax` is for one picture: choose it by `what`, {', '.join(available)}")
+    names = available if what is None else (what,)
+    axes = _new_axes(names) if ax is None else (given_axes(ax),)
+    for name, frame in zip(names, axes, strict=True):
+        polar = _DRAWINGS[name].projection == "polar"
+        if polar and frame.name != "polar":
+            raise RacewayError(f"`ax`: {name} needs polar axes: pyplot.subplots(subplot_kw={{'projection': 'polar'}})")
+        _DRAWINGS[name].draw(frame, result)
+        beside: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.08), "ncols": 2} if polar else {}
+        frame.legend(fontsize=9, frameon=False, **beside)
+    return axes[0] if what is not None else axes
+
+
+def _available(result: Result) -> tuple[str, ...]:
+    return tuple(_DRAWINGS) if result.simulation is not None else ("ball_loads",)
+
+
+def _new_axes(names: tuple[str, ...]) -> tuple[Axes, ...]:
+    try:
+        from matplotlib import pyplot
+    except ImportError:
+        raise RacewayError(f"pictures need matplotlib, which is not installed: {extra('pictures')}") from None
+    figure = pyplot.figure(figsize=(6.4 * len(names), 6.0), layout="constrained")
+    frames = [{"projection": _DRAWINGS[name].projection} for name in names]
+    return tuple(figure.add_subplot(1, len(names), k, **frame) for k, frame in enumerate(frames, 1))
+
+
+def _draw_orbit(axes: Axes, result: Result) -> None:
+    """Path of the inner ring's reference point in the radial plane."""
+    motion = _motion(result)
+    record, used = motion.whole, motion.record
+    shortened = len(record.time) > len(used.time)
+    turns = round(len(used.time) * used.schedule.stride / used.schedule.steps_per_turn)
+    if shortened:
+        label = f"all {_turns(record.schedule.turns)}"
+        axes.plot(*(_MICRO * record.displacement[:, 1:3].T), color=_OTHER, linewidth=0.8, label=label)
+    import numpy as np
+
+    label, path = f"last {_turns(turns)}, used" if shortened else _turns(turns), used.displacement[:, 1:3]
+    if motion.model.problem.integrator.method.steady and not shortened:  # closed
+        path = np.vstack([path, path[:1]])
+    axes.plot(*(_MICRO * path.T), color=_USED, linewidth=1.4, label=label)
+    still = _MICRO * result.equilibrium.displacement[1:3]
+    axes.plot(*still, "+", color=_STATIC, markersize=11, label="static equilibrium")
+    axes.set_aspect("equal", adjustable="datalim")
+    label_axes(axes, f"Orbit of the inner ring\n{_subtitle(result)}", "displacement y [µm]", "displacement z [µm]")
+
+
+def _draw_spectrum(axes: Axes, result: Result) -> None:
+    """Amplitude of the displacement against multiples of the excitation's frequency."""
+    import numpy as np
+
+    record, z = _motion(result).record, result.identification
+    frequency = result.model.excitation.frequency_hz if z is None else z.frequency_hz
+    motion = record.displacement[:, 1:3] - record.displacement[:, 1:3].mean(axis=0)
+    lines = 2.0 * np.abs(np.fft.rfft(motion, axis=0)) / len(motion) * _MICRO
+    order = np.fft.rfftfreq(len(motion), record.time[1] - record.time[0]) / frequency
+    shown = (order > 0.0) & (order <= 10.05)
+    peak = max(lines[shown].max(), 1e-12)
+    apart, width = (0.4 * order[1], 1.0) if order[1] < 0.2 else (0.06, 2.0)
+    for lane, (name, colour) in enumerate((("y", _USED), ("z", _STATIC))):
+        # Beside each other, since both directions of a turning force have the same line.
+        x = order[shown] + (lane - 0.5) * apart
+        tops = np.maximum(lines[shown, lane], peak * 1e-9)
+        if len(x) > _DENSE:
+            axes.plot(x, tops, color=colour, linewidth=width, label=f"displacement {name}")
+        else:
+            axes.vlines(x, peak * 1e-9, tops, color=colour, linewidth=width, label=f"displacement {name}")
+    first = float(lines[shown].max(axis=1)[np.argmin(np.abs(order[shown] - 1.0))])
+    text = f"1x: {first:.4g} µm at {frequency:.4g} Hz"
+    axes.annotate(text, (1.0, first), xytext=(12, 2), textcoords="offset points", fontsize=10)
+    axes.set_yscale("log")
+    axes.set_xlim(0.0, 10.4)
+    axes.set_ylim(peak * 1e-9, peak * 10.0)
+    axes.set_xticks(range(11))
+    title = f"Spectrum of the displacement, mean removed\n{_subtitle(result)}"
+    label_axes(axes, title, "frequency / excitation frequency [-]", "amplitude [µm]")
+
+
+def _draw_ball_loads(axes: Any, result: Result) -> None:
+    """Inner contact load of each ball on polar axes: static, and its range over the recorded turns."""
+    import numpy as np
+
+    azimuth, row = result.model.azimuth, result.model.basis.row
+    count, z = result.model.geometry.ball_count, len(azimuth)
+    static = result.equilibrium.contact_force[:z]
+    top = max(static.max(), 1e-12) * 1.2
+    if result.simulation is not None:
+        loads = result.simulation.record.contact_force[:, :z]
+        low, high = loads.min(axis=0), loads.max(axis=0)
+        axes.vlines(azimuth, low, high, color=_USED, linewidth=6.0, alpha=0.45, label="range over the orbit")
+        top = max(top, high.max() * 1.2)
+    for k in range(row[-1] + 1):
+        balls = np.flatnonzero(row == k)
+        closed, style = np.append(balls, balls[0]), ("o-", "s--", "^-.", "v:")[k % 4]
+        label = "static" if z == count else f"static, row {k + 1}"
+        axes.plot(azimuth[closed], static[closed], style, color=_STATIC, linewidth=1.6, markersize=5, label=label)
+    for k in range(count):
+        axes.text(azimuth[k], top * 0.94, str(k), ha="center", va="center", fontsize=9, color="#5a6570")
+    axes.set_ylim(0.0, top)
+    axes.set_rlabel_position(90.0 + 180.0 / max(count, 1))
+    axes.set_xticks(np.radians(np.arange(0, 360, 30)))
+    axes.set_xticklabels(["0° (+y)", "30°", "60°", "90° (+z)", *(f"{a}°" for a in range(120, 360, 30))])
+    axes.tick_params(labelsize=10, pad=6)
+    title = f"Ball loads on the inner race [N] by azimuth; grey: ball number\n{_subtitle(result)}"
+    axes.set_title(title, fontsize=12, pad=14)
+    axes.grid(color=_GRID, linewidth=0.7)
+
+
+def _motion(result: Result) -> Simulation:
+    if result.simulation is None:
+        raise ValueError("the scene is static: no motion was recorded")
+    return result.simulation
+
+
+def _turns(count: int) -> str:
+    return f"{count} turn{'' if count == 1 else 's'}"
+
+
+def _subtitle(result: Result) -> str:
+    """The title, and what was changed of the scene, in lines that fit."""
+    return wrapped(result.title, 64)
+
+
+class _Drawing(NamedTuple):
+    """What draws on axes of a projection, the figure's size [inch], columns and font size of its legend."""
+
+    draw: Callable[[Any, Result], None]
+    projection: str | None
+    size: tuple[float, float]
+    columns: int
+    legend: float
+
+
+_DRAWINGS = {
+    "orbit": _Drawing(_draw_orbit, None, (6.4, 6.8), 3, 9.5),
+    "spectrum": _Drawing(_draw_spectrum, None, (7.2, 4.6), 3, 9.5),
+    "ball_loads": _Drawing(_draw_ball_loads, "polar", (7.0, 6.4), 2, 10.0),
+}

@@ -1,0 +1,4 @@
+"""Meshers.
+
+structured   hexahedra of a whole bearing
+"""

@@ -1,0 +1,124 @@
+"""Ball-pass frequencies of each row at the loaded contact angle.
+
+Notes
+-----
+With g = D cos(a) / d_m at the loaded contact angle a, over the shaft's frequency: FTF = (1 - g) / 2 (cage), BPFO = Z (1 - g) / 2 and
+BPFI = Z (1 + g) / 2 (balls over a place of the outer and of the inner race), BSF = d_m (1 - g^2) / (2 D) (turns of a ball about its own
+axis).  Balls roll without slip and cos(a) is the mean over both races of all loaded balls of a row: at speed the races' angles differ.
+Forces know one cage speed, that of the free contact angle (``BallBearing.cage_speed``), stated beside FTF as ``ftf_in_forces``.
+
+References
+----------
+Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter 10.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import acos, cos, degrees, pi
+from typing import TYPE_CHECKING, ClassVar
+
+import attrs
+
+from raceway.answers.quantities import Quantity
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from raceway.framework.contracts import Problem, SolvedPoints
+    from raceway.framework.shown import Fact
+    from raceway.storage.tables import ReadTables, Tables
+
+
+def _over_shaft(name: str, words: str) -> Quantity:
+    return Quantity(
+        name, "1", f"{words}, over the shaft's frequency", f"ball_pass.{name}", symbol=name.upper(), dims=("row",)
+    )
+
+
+_NUMBERS = (
+    _over_shaft("ftf", "turns of the cage"),
+    _over_shaft("bpfo", "balls passing a point of the outer race"),
+    _over_shaft("bpfi", "balls passing a point of the inner race"),
+    _over_shaft("bsf", "spin of a ball about its axis"),
+)
+
+
+@attrs.frozen
+class BallPass:
+    """Frequencies of cage, balls and ball passes of each row."""
+
+    name: ClassVar[str] = "ball_pass"
+    numbers: ClassVar[tuple[Quantity, ...]] = _NUMBERS
+
+    def why_not(self, problem: Problem) -> str:
+        return ""
+
+    def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:
+        import numpy as np
+
+        cosines, rows = _cosines(points), points.problem.bearing.of_rows
+        each = [ball_pass(b.ball_count, b.ball_diameter, b.pitch_diameter, cosines[:, k]) for k, b in enumerate(rows)]
+        return {number.name: np.stack([row[number.name] for row in each], axis=1) for number in self.numbers}
+
+    def table(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> Tables:
+        """``speed_rpm``, and for each row its contact angle and frequencies, over the shaft's and in Hz where the shaft turns."""
+        speed, rows = float(points.speed[0]) / (2.0 * pi), []
+        for k, cosine in enumerate(_cosines(points)[0].tolist()):
+            times = {name: float(value[0, k]) for name, value in values.items()}
+            hertz = {f"{name}_hz": speed * number if speed else None for name, number in times.items()}
+            free = points.problem.bearing.of_rows[k]
+            in_forces = 0.5 * (1.0 - free.ball_diameter * cos(free.contact_angle) / free.pitch_diameter)
+            rows.append({"contact_angle_deg": degrees(acos(cosine)), **times, **hertz, "ftf_in_forces": in_forces})
+        return {"speed_rpm": 60.0 * speed, "rows": rows}
+
+    @staticmethod
+    def rows(table: ReadTables) -> list[Fact]:
+        """Of each row that differs."""
+        words, facts = ("contact_angle_deg", "ftf", "bsf", "bpfo", "bpfi"), []
+        texts = [tuple(f"{row[word]:.4g}" for word in words) for row in table["rows"]]
+        different = dict.fromkeys(texts)
+        for angle, cage, spin, outer, inner in different:
+            k = texts.index((angle, cage, spin, outer, inner))
+            of_row = f" of row {k + 1}" if len(different) > 1 else ""
+            hertz = {name: _hertz(table, k, name) for name in words[1:]}
+            facts.append((f"FTF, BSF x shaft{of_row}", f"{cage}, {spin}", _together(hertz["ftf"], hertz["bsf"])))
+            inner_outer = f"{_together(hertz['bpfo'], hertz['bpfi'])} at {angle} deg".strip()
+            facts.append((f"BPFO, BPFI x shaft{of_row}", f"{outer}, {inner}", inner_outer))
+        return facts
+
+
+def _hertz(table: ReadTables, row: int, name: str) -> str:
+    return f"{table['rows'][row][f'{name}_hz']:.5g}" if table["speed_rpm"] else ""
+
+
+def _together(*hertz: str) -> str:
+    return f"{', '.join(hertz)} Hz" if all(hertz) else ""
+
+
+def ball_pass(ball_count: int, ball_diameter: float, pitch_diameter: float, cosine: float | np.ndarray) -> Tables:
+    """FTF, BPFO, BPFI and BSF over the shaft's frequency, of numbers or columns (n,).
+
+    Parameters
+    ----------
+    ball_diameter, pitch_diameter : [m];  cosine : of the loaded contact angle
+    """
+    g = ball_diameter * cosine / pitch_diameter
+    cage = 0.5 * (1.0 - g)
+    spin = 0.5 * pitch_diameter / ball_diameter * (1.0 - g * g)
+    return {"ftf": cage, "bpfo": ball_count * cage, "bpfi": ball_count * (1.0 - cage), "bsf": spin}
+
+
+def _cosines(points: SolvedPoints) -> np.ndarray:
+    """(n, rows) of the mean contact angle of the balls that both races load; of the free angle in rows without any."""
+    import numpy as np
+
+    cosine, free = np.cos(0.5 * np.abs(points.contact_angle).sum(axis=1)), points.problem.bearing.of_rows
+    columns = []
+    for k, bearing in enumerate(free):
+        of_row = cosine[:, points.row == k]
+        loaded = np.isfinite(of_row)
+        count = loaded.sum(axis=1)
+        mean = np.where(loaded, of_row, 0.0).sum(axis=1) / np.maximum(count, 1)
+        columns.append(np.where(count > 0, mean, np.cos(bearing.contact_angle)))
+    return np.stack(columns, axis=1)
