@@ -19,7 +19,7 @@ demo: $(VENV)/.base ## the main job on a fresh clone: needs python3 (3.11 or lat
 	$(BIN)/raceway run $(SCENE)
 
 test: $(VENV)/.all ## everything installed, the quick tests: some minutes
-	$(BIN)/python -m pytest -n 2 -q -m "not slow and not night and not release and not ross"
+	$(BIN)/python -m pytest -n 2 -q -m "not slow and not docs and not night and not release and not ross"
 
 test-all: $(VENV)/.all ## the long proofs too
 	$(BIN)/python -m pytest -n 2 -q -m "not release and not ross"
@@ -34,6 +34,7 @@ docs: $(VENV)-docs/.installed ## the site in docs/_build/html, its tutorials and
 	rm -rf docs/api/generated docs/gallery docs/_build
 	$(VENV)-docs/bin/sphinx-build -W --keep-going -E -q -b html docs docs/_build/html
 	$(VENV)-docs/bin/python -m pytest -q docs/test_site.py
+	$(VENV)-docs/bin/python -m pytest -q -m "docs and not slow" tests/test_documents.py
 	@echo "open docs/_build/html/index.html"
 
 ross: $(VENV)-docs/.installed ## the tests under the rotor program ROSS

@@ -137,7 +137,7 @@ def neighbours(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_
 
 @njit(void(float64[:], float64[:], float64[:, :]))
 def other_signature(gap, force, params):
-    force[:] = gap
+    pass
 
 
 def plain_python(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):

@@ -2,28 +2,14 @@
 
 from __future__ import annotations
 
-from itertools import combinations
 from typing import Any
 
-import attrs
 import pytest
 from matplotlib.figure import Figure
 
 from raceway import build_model, scene_from_dict
 from raceway.testing import Model, b7206c, default_registry
 from tests.figures import outside
-
-
-@pytest.hookimpl(tryfirst=True)  # before tests are chosen by their marks
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Of the matrix of all kinds the quick tests are those that meet two kinds together for the first time."""
-    met = set()
-    for item in items:
-        if isinstance(item, pytest.Function) and item.originalname == "test_combination":
-            pairs = set(combinations(enumerate(attrs.astuple(item.callspec.params["cell"])), 2))
-            if pairs <= met:
-                item.add_marker(pytest.mark.slow)
-            met |= pairs
 
 
 @pytest.fixture

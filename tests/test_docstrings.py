@@ -7,6 +7,7 @@ import builtins
 import re
 import subprocess
 from collections import Counter
+from functools import cache, cached_property
 from pathlib import Path
 
 import attrs
@@ -17,7 +18,7 @@ import raceway
 ROOT = Path(__file__).resolve().parents[1]
 
 
-@attrs.frozen
+@attrs.frozen(slots=False)
 class Source:
     """A module: its place, its path below ``raceway`` or beside it, text and syntax tree."""
 
@@ -26,7 +27,7 @@ class Source:
     text: str
     tree: ast.Module
 
-    @property
+    @cached_property
     def docstrings(self) -> list[str]:
         """Of the module, its classes and functions."""
         nodes = [
@@ -36,7 +37,7 @@ class Source:
         ]
         return [text for node in nodes if (text := ast.get_docstring(node, clean=False))]
 
-    @property
+    @cached_property
     def words(self) -> set[str]:
         """Names in the code, of the module itself too, and words of strings that are no docstrings."""
         words, documents = set(self.path.with_suffix("").parts), set(self.docstrings)
@@ -49,6 +50,7 @@ class Source:
         return words
 
 
+@cache
 def source(path: Path) -> Source:
     text = path.read_text(encoding="utf-8")
     own = ROOT / "raceway"
@@ -57,8 +59,6 @@ def source(path: Path) -> Source:
 
 
 PATHS = [*sorted((ROOT / "raceway").rglob("*.py")), *sorted(ROOT.glob("packages/*/raceway_*/**/*.py"))]
-MODULES = [source(path) for path in PATHS]
-WORDS = {module.path.as_posix(): module.words for module in MODULES}
 #: In a docstring: ``word``, ``module.name``.
 NAME = re.compile(r"``([A-Za-z_]\w*(?:\.\w+)*)``")
 #: Of other programs, columns of tables, meshes that users name.
@@ -67,20 +67,29 @@ FOREIGN = {"nohup", "Dw_mm", "ball_0"}
 ENTRY = re.compile(r"^((?:\w+, )*\w+)(?=  +\S)|;  ((?:\w+, )*\w+):", re.MULTILINE)
 
 
+@cache
+def words() -> dict[str, set[str]]:
+    """Of each module, by its path."""
+    return {source(path).path.as_posix(): source(path).words for path in PATHS}
+
+
 def missing(name: str) -> bool:
     """Whether ``raceway.module.thing`` does not exist."""
     parts = name.split(".")[1:]
     for count in range(len(parts), -1, -1):
         for path in ("/".join(parts[:count]) + ".py", "/".join([*parts[:count], "__init__.py"])):
-            if path in WORDS:
-                return not set(parts[count:]) <= {*WORDS[path], *(raceway.__all__ if count == 0 else ())}
+            if path in words():
+                return not set(parts[count:]) <= {*words()[path], *(raceway.__all__ if count == 0 else ())}
     return True
 
 
 def test_names_in_docstrings_are_there():
-    known = set().union(*WORDS.values(), dir(builtins), raceway.__all__, FOREIGN)
+    known = set().union(*words().values(), dir(builtins), raceway.__all__, FOREIGN)
     names = [
-        (module.path.as_posix(), name) for module in MODULES for text in module.docstrings for name in NAME.findall(text)
+        (module.path.as_posix(), name)
+        for module in map(source, PATHS)
+        for text in module.docstrings
+        for name in NAME.findall(text)
     ]
     assert len(names) > 1000
     gone = [
@@ -92,9 +101,10 @@ def test_names_in_docstrings_are_there():
 
 
 @pytest.mark.parametrize(
-    "module", [module for module in MODULES if module.path.name == "__init__.py"], ids=lambda module: str(module.path)
+    "place", [path for path in PATHS if path.name == "__init__.py"], ids=lambda path: str(path.relative_to(ROOT))
 )
-def test_a_package_lists_its_modules_once_each_and_names_what_is_in_it(module):
+def test_a_package_lists_its_modules_once_each_and_names_what_is_in_it(place):
+    module = source(place)
     folder, text = module.path.parent, module.docstrings[0]
     listed = Counter(name for heads in ENTRY.findall(text) for name in "".join(heads).split(", "))
     present = {
@@ -102,14 +112,14 @@ def test_a_package_lists_its_modules_once_each_and_names_what_is_in_it(module):
     }
     public = {"data", *raceway.__all__} if folder == Path() else {"data"}
     assert set(listed) - public == present - {"__init__", "__main__"} and max(listed.values()) == 1
-    own = set().union(*(words for path, words in WORDS.items() if Path(path).parent == folder), raceway.__all__)
+    own = set().union(*(found for path, found in words().items() if Path(path).parent == folder), raceway.__all__)
     names = [name for name in NAME.findall(text) if not name.startswith("raceway.")]
     assert [name for name in names if not set(name.split(".")) <= own | {"raceway", *listed}] == []
 
 
 def test_no_module_of_several_plug_ins_is_called_by_the_name_of_one():
     several = 0
-    for module in MODULES:
+    for module in map(source, PATHS):
         names = [
             name.replace("_", " ") for name in re.findall(r'^    name: ClassVar\[str\] = "(\w+)"', module.text, re.MULTILINE)
         ]

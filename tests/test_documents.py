@@ -63,6 +63,8 @@ SLOW = {
     "nodal_contact", "plotting", "precision", "rig",
 }  # fmt: skip
 SLOW |= {"film", "fit", "follow", "measurements", "ross", "sensitivities", "stability", "sweep", "view", "warm_spindle"}
+#: Pages of seconds: the site's job runs them, the quick tests have the others.
+SITE = {"README", "catalogue", "fmu", "plugins", "points", "sets"}
 #: Listings of Python in other hands: tests/test_docs.py; ROSS is in the environment of make docs, whose tutorial does the same.
 ELSEWHERE = {"plugins": "", "ross": "ross"}
 #: Languages of listings that nothing runs: text, and what the site reads.
@@ -76,6 +78,10 @@ def runs(page: Path) -> bool:
     return any(listing.commands() or listing.language in ("python", "toml") for listing in LISTINGS[page])
 
 
+def marks(page: Path) -> list[pytest.MarkDecorator]:
+    return [pytest.mark.slow] * (page.stem in SLOW) + [pytest.mark.docs] * (page.stem in SLOW | SITE)
+
+
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """A folder as the root of a checkout looks to the commands."""
@@ -85,9 +91,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize(
-    "page", [pytest.param(p, id=p.stem, marks=[pytest.mark.slow] * (p.stem in SLOW)) for p in PAGES if runs(p)]
-)
+@pytest.mark.parametrize("page", [pytest.param(p, id=p.stem, marks=marks(p)) for p in PAGES if runs(p)])
 def test_commands_and_listings_run_in_their_order(page, folder):
     namespace = {}
     for listing in LISTINGS[page]:
@@ -131,7 +135,7 @@ def run(command: str) -> str:
 
 def test_what_is_not_run_is_listed_and_the_list_holds_nothing_else():
     assert not [command for command in NOT_RUN if command not in ASKED]
-    assert {page.stem for page in PAGES if runs(page)} >= SLOW
+    assert {page.stem for page in PAGES if runs(page)} >= SLOW | SITE
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import attrs
-import numba
 import numpy as np
 import pytest
 
@@ -154,7 +153,7 @@ def test_sound_excitations_pass_and_wrong_parameters_do_not():
         probe_excitation(excitation, excitation.kernel(), excitation.parameters()[None])
 
 
-@numba.njit(LAW)
+@jit(LAW)
 def negative_when_deep(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
     for i in range(gap.size):
         depth = max(-gap[i], 0.0)
@@ -163,7 +162,7 @@ def negative_when_deep(gap, gap_rate, params, state_old, state_new, dt, force, d
         d_rate[i] = 0.0
 
 
-@numba.njit(LAW)
+@jit(LAW)
 def beyond_its_columns(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
     for i in range(gap.size):
         depth = max(-gap[i], 0.0)

@@ -20,11 +20,11 @@ from checks.mutants.kernels import carry_over
 LIMIT_S = 600.0
 #: What the tests need of the sources.
 COPIED = (
-    "raceway", "packages", "tests", "benchmarks", "validation", "examples", "docs", "README.md", "CHANGELOG.md",
+    "raceway", "packages", "tests", "checks", "examples", "docs", "README.md", "CHANGELOG.md",
     "pyproject.toml", "Makefile", "conftest.py",
 )  # fmt: skip
 #: What `make test` runs.
-QUICK = "not slow and not night and not release and not ross"
+QUICK = "not slow and not docs and not night and not release and not ross"
 _FAILED, _NONE_LEFT = 1, 5
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from functools import cache
+from itertools import combinations as chosen
 from itertools import product
 from typing import Any
 
@@ -40,6 +41,16 @@ def combinations() -> Iterator[Combination]:
     excitations, laws, integrators, identifiers, bodies = (default_registry().names(kind) for kind in KINDS)
     for cell in product(excitations, laws, DISCRETISATIONS, integrators, identifiers, TILTS, bodies):
         yield Combination(*cell)
+
+
+def together(kinds: int) -> Iterator[Combination]:
+    """Those in which so many of the kinds meet for the first time: all that they do to each other, in a small part of the product."""
+    met = set[tuple[Any, ...]]()
+    for cell in combinations():
+        groups = set(chosen(enumerate(attrs.astuple(cell)), kinds))
+        if not groups <= met:
+            met |= groups
+            yield cell
 
 
 #: Rigid bodies run in every combination.  Of the cells of condensed bodies that the plan accepts, those run that differ from
