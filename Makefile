@@ -24,11 +24,12 @@ test: $(VENV)/.all ## everything installed, the quick tests: some minutes
 test-all: $(VENV)/.all ## the long proofs too
 	$(BIN)/python -m pytest -n 2 -q -m "not release and not ross"
 
-lint: $(VENV)/.all ## ruff, import-linter, mypy
+lint: $(VENV)/.all ## ruff, import-linter, mypy, measures of structure
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
 	$(BIN)/mypy
+	$(BIN)/python -m checks.structure --gate
 
 docs: $(VENV)-docs/.installed ## the site in docs/_build/html, its tutorials and gallery run; in an environment of its own, which has ROSS
 	rm -rf docs/api/generated docs/gallery docs/_build

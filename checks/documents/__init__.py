@@ -6,6 +6,7 @@ and examples/k_over_speed.py (here).
 
 commands  docs/command_line.md: the help of every command
 versions  the table of docs/installation.md, from pyproject.toml
+reading   docs/pictures/reading.svg: the files that a run enters, in their order
 drawing   docs/pictures/parameters.svg: what the keys of [bearing] mean
 promises  docs/pictures/stability.svg: from its report
 """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from checks import documents
 from checks import reports as files
-from checks.documents import commands, drawing, packages, promises, versions
+from checks.documents import commands, drawing, packages, promises, reading, versions
 
 
 def main() -> None:
@@ -17,6 +17,7 @@ def main() -> None:
     text = documents.README.read_text(encoding="utf-8")
     documents.README.write_text(documents.with_screen(text, documents.screen()), encoding="utf-8")
     drawing.draw(documents.DRAWING)
+    reading.draw()
     reports = files.read()
     promises.draw_stability(reports["stability"], documents.STABILITY)
 
