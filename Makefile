@@ -39,7 +39,7 @@ docs: $(VENV)-docs/.installed ## the site in docs/_build/html, its tutorials and
 	@echo "open docs/_build/html/index.html"
 
 ross: $(VENV)-docs/.installed ## the tests under the rotor program ROSS
-	$(VENV)-docs/bin/python -m pytest -q -m ross tests/test_ross_inside.py tests/rig/test_against_ross.py
+	$(VENV)-docs/bin/python -m pytest -q -m ross packages/raceway-rotor/tests/test_ross_inside.py packages/raceway-rotor/tests/test_against_ross.py
 
 wheel: $(VENV)/.all ## a wheel in dist, installed into an empty environment without extras, which runs a scene
 	rm -rf dist build/wheel

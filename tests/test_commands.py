@@ -20,7 +20,8 @@ import pytest
 from rich.console import Console
 
 import raceway as rw
-from checks.validation.command_line import ARTICLE, EXAMPLES, LAW, MINIMAL, invoke, raceway
+from checks.validation.article_study import SMALL
+from checks.validation.command_line import ARTICLE, COARSE, EXAMPLES, LAW, MINIMAL, invoke, raceway
 from raceway.answers.progress import ProgressBar
 from raceway.cli import frame
 from raceway.cli.main import main
@@ -50,12 +51,6 @@ FIVE = (
 FAST = ("--set", "identifier.kind=tangent")
 SPEEDS = ("--grid", "kinematics.spin_speed_rpm=2000:18000:5", "--grid", "load.axial=400,1000")
 RIG = ("--set", "rig.speeds_rpm=[13000.0]", "--set", "rig.axial_loads=[2000.0]", "--set", "rig.signals.duration=0.25")
-#: Far from resonances, so that a run takes milliseconds.
-SMALL = (
-    *("--bodies", "rigid", "--speeds", "11000,13000,15000", "--axial", "1600,1800,2000"),
-    *("--friction", "0", "--processes", "0", "--no-pictures"),
-)
-COARSE = ("--set", "mesh.kind=structured", "--set", "mesh.element_size=2e-3", "--set", "mesh.nodes_per_semi_axis=1")
 
 #: Words by command; OUT is its folder, STATIC a scene without excitation, DATA a table to fit, STORE and SIGNALS what other
 #: commands left.
@@ -237,7 +232,7 @@ def whole_files(folder):
 
 
 def test_every_command_is_looked_at():
-    served = {"app"}  # until Ctrl-C: tests/browser/test_app.py
+    served = {"app"}  # until Ctrl-C: packages/raceway-app/tests/test_app.py
     assert {name.partition(",")[0] for name in COMMANDS} | served == set(RUNNABLE)
 
 

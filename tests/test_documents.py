@@ -45,8 +45,8 @@ NOT_RUN = {
     "raceway study article": "a quarter of an hour; its report does it",
     "raceway study article --bodies rigid --friction 0": "minutes; the same report",
     "raceway study article examples/b7206.toml --set rotor.mass=1.5 --axial 400,1000,2000 --bodies rigid --friction 0": "more than "
-    "five minutes; tests/test_article_command.py runs the study with options",
-    "raceway study article --bodies elastic": "most of an hour and gigabytes; tests/test_article_elastic.py runs it on a tiny mesh",
+    "five minutes; packages/raceway-article/tests/test_article_command.py runs the study with options",
+    "raceway study article --bodies elastic": "most of an hour and gigabytes; packages/raceway-article/tests/test_article_elastic.py runs it on a tiny mesh",
     "raceway study article --bodies elastic --set mesh.element_size=1.6e-3 --set mesh.nodes_per_semi_axis=2": "minutes; the same test",
     "dask scheduler --host 127.0.0.1": _THREE,
     "OMP_NUM_THREADS=1 dask worker tcp://127.0.0.1:8786 --nworkers 2 --nthreads 1": _THREE,

@@ -8,8 +8,8 @@ import pytest
 from raceway_meshing.gmsh import Gmsh
 
 from checks.validation.command_line import EXAMPLES, invoke, python
+from checks.validation.solids import write
 from raceway import load_scene
-from tests.mesh.solids import write
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 SCENE = """

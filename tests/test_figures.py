@@ -25,6 +25,9 @@ from raceway_view.view import at_rest
 
 import raceway
 from checks.validation import article_study
+from checks.validation.figures import outside
+from checks.validation.records import made as a_record
+from checks.validation.stores import SPEEDS, as_list, made
 from raceway import scene_from_dict
 from raceway.answers.picture import readable
 from raceway.plugins.bodies.elastic_stress import below_contacts
@@ -41,9 +44,6 @@ from raceway.points.plot import layout, select
 from raceway.testing import b7206c, run
 from tests import test_compare
 from tests.elastic.test_below_contact import TINY
-from tests.figures import outside
-from tests.rig.test_orders import made as a_record
-from tests.stores import SPEEDS, as_list, made
 
 LOADS = np.linspace(200.0, 2000.0, 5)
 

@@ -13,13 +13,13 @@ TEST = re.compile(r"^ *def test_", re.MULTILINE)
 
 def test_marks_are_the_tiers():
     ours = {line.partition(":")[0] for line in _options()["markers"]}
-    assert ours == {"slow", "night", "release", "ross", "needs(name, ...)"}, (
+    assert ours == {"slow", "docs", "night", "release", "ross", "needs(name, ...)"}, (
         "a new mark needs a tier: see the Makefile and here"
     )
     make = (ROOT / "Makefile").read_text(encoding="utf-8")
     # Quick and night leave out what the next tiers run; ROSS has a line of its own.
     for line in (
-        '-m "not slow and not night and not release and not ross"', '-m "not release and not ross"', "-m ross ",
+        '-m "not slow and not docs and not night and not release and not ross"', '-m "not release and not ross"', "-m ross ",
         "python -m checks.night",
     ):  # fmt: skip
         assert line in make, line
@@ -46,7 +46,8 @@ def test_make_ross_names_each_file_of_its_tier():
     named = set(re.search(r"-m ross (.*)", make)[1].split())
     marked = {
         path.relative_to(ROOT).as_posix()
-        for path in (ROOT / "tests").rglob("test_*.py")
+        for folder in _options()["testpaths"]
+        for path in (ROOT / folder).rglob("test_*.py")
         if re.search(r"^(@|pytestmark = )pytest\.mark\.ross$", path.read_text(encoding="utf-8"), re.MULTILINE)
     }
     assert marked == named

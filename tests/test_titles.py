@@ -7,6 +7,7 @@ import json
 import pytest
 
 from checks.validation.command_line import EXAMPLES, invoke
+from checks.validation.stores import SPEEDS, made
 from raceway import load_scene, scene_from_dict
 from raceway.answers.page import Page
 from raceway.plugins.formats.pictures import picture
@@ -15,7 +16,6 @@ from raceway.points.store import row_key
 from raceway.scene.changes import parse_change, titled
 from raceway.storage.files import slug
 from raceway.testing import b7206c, default_registry, run
-from tests.stores import SPEEDS, made
 
 SCENE = EXAMPLES / "b7206.toml"
 FIRST = "B7206C, 1 kN axial, rig unbalance at 12 000 r/min"

@@ -23,7 +23,7 @@ from checks.validation.fmu import (
 
 TITLE = "FMUs for simulators: map, force, rotor's orbit, time of a step"
 COMMAND = "python -m checks fmu"
-TEST = "python -m pytest tests/test_fmu.py"
+TEST = "python -m pytest packages/raceway-fmu/tests/test_fmu.py"
 _RUNS = 20
 _TURNING = MAP | {"contact": {}, "excitation": MAP["excitation"] | {"force": 400.0}}
 #: Samples of a turn of the orbit whose steps are timed.

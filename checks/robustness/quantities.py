@@ -17,7 +17,7 @@ from raceway.core.rolling_friction import measured_factors
 
 COMMAND = "python -m checks quantities"
 _PAGE = "docs/measurements.md"
-TEST = "python -m pytest tests/test_life.py tests/test_infer.py tests/test_rolling_friction.py tests/test_warm.py"
+TEST = "python -m pytest tests/test_life.py packages/raceway-catalogue/tests/test_infer.py tests/test_rolling_friction.py tests/test_warm.py"
 _PUBLISHED = {"radial": 0, "radial, 10 um of clearance": 2, "radial and axial, 10 um": 4}
 #: Viscosity ratios and e_C C_u / P.
 _CHART = tuple(product((0.1, 0.4, 1.0, 4.0), (0.05, 0.2, 0.5)))

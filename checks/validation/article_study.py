@@ -15,6 +15,11 @@ from raceway.scene.inputs import read_toml
 from raceway.storage.tables import Tables
 
 SPEEDS, LOADS = "10980:15000:5", "400,1000,2000"
+#: Far from resonances, so that a run takes milliseconds.
+SMALL = (
+    *("--bodies", "rigid", "--speeds", "11000,13000,15000", "--axial", "1600,1800,2000"),
+    *("--friction", "0", "--processes", "0", "--no-pictures"),
+)
 
 
 def row(speed: float, load: float, k: float | None, status: str = "completed", reason: str = "") -> dict[str, Any]:

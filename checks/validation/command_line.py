@@ -15,6 +15,8 @@ from raceway.cli.main import main
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 ARTICLE, MINIMAL = str(EXAMPLES / "b7206.toml"), str(EXAMPLES / "minimal.toml")
+#: A mesh of a second.
+COARSE = ("--set", "mesh.kind=structured", "--set", "mesh.element_size=2e-3", "--set", "mesh.nodes_per_semi_axis=1")
 
 
 #: After which a process is taken as hung [s]: none is judged by it, and one that compiles on a busy machine takes minutes.

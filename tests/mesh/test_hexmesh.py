@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from checks.validation.cubes import block
+from checks.validation.solids import facet_normals
 from raceway import MeshError
 from raceway.core.fem.mesh.hex_mesh import HexMesh, merged
 from raceway.core.fem.mesh.quality import _quality, refuse_bad_cells, summary
-from tests.mesh.solids import facet_normals
 
 #: Sums of a few hundred terms in double precision.
 ROUNDING = 1e-12

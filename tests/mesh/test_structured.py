@@ -8,6 +8,7 @@ import pytest
 
 from checks.validation.command_line import EXAMPLES
 from checks.validation.quarter import quarter_groove
+from checks.validation.solids import facet_normals
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.core.fem.mesh import ball_mesh as sphere
 from raceway.core.fem.mesh.ball_mesh import ball_cells, ball_mesh
@@ -17,7 +18,6 @@ from raceway.core.fem.mesh.ring_mesh import ring_mesh, ring_shape
 from raceway.planning.resolve import resolve
 from raceway.plugins.bodies.mesh import mesh_bodies, mesher_of
 from raceway.plugins.meshers.structured import Structured
-from tests.mesh.solids import facet_normals
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 COARSE = Structured(element_size=1.5e-3, nodes_per_semi_axis=2, growth=1.6)

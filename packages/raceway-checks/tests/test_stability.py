@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import math
-from pathlib import Path
 
 import attrs
 import numpy as np
@@ -18,7 +17,7 @@ from raceway_checks.stability.scenes import _axial_displacement, _axial_force
 from raceway_checks.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, _rows_of, measured, stability
 from raceway_checks.stability.systems import Bench
 
-from checks.validation.command_line import ARTICLE, invoke
+from checks.validation.command_line import ARTICLE, EXAMPLES, invoke
 from raceway.core.ring.ring import Ring
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.registry import default_registry, registry_with
@@ -26,12 +25,12 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.points.store import written
 
 REGISTRY = default_registry()
-CUBIC, DAMPED = (Path(__file__).with_name(f"{name}.py") for name in ("cubic_law", "hunt_crossley"))
+CUBIC, DAMPED = (EXAMPLES.parent / "tests" / f"{name}.py" for name in ("cubic_law", "hunt_crossley"))
 CASES = catalogue(REGISTRY)
 
 
 def case(function, **arguments):
-    return Case(function, f"tests.stability_cases:{function}", arguments, arguments)
+    return Case(function, f"checks.validation.stability_cases:{function}", arguments, arguments)
 
 
 def rows_named(name, cases=CASES, registry=REGISTRY, **wanted):

@@ -13,12 +13,11 @@ from raceway_view.bodies import ball as solid_ball
 from raceway_view.pictures import LETTERS, _ball_labels, contacts
 from raceway_view.view import _at_peak, at_rest
 
-from checks.validation.command_line import EXAMPLES, MINIMAL, invoke, python
+from checks.validation.command_line import COARSE, EXAMPLES, MINIMAL, invoke, python
 from raceway import scene_from_dict
 from raceway.core.fem.mesh.ring_mesh import ring_shape
 from raceway.plugins.formats.pictures import picture
 from raceway.testing import b7206c, run
-from tests.test_commands import COARSE
 
 
 def volume(surface):

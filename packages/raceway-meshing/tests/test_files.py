@@ -13,12 +13,12 @@ from raceway_meshing.mesh_files import File
 
 from checks.validation.command_line import EXAMPLES
 from checks.validation.cubes import block
+from checks.validation.solids import write, write_msh
 from checks.validation.squeezed import squeezed
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.planning.resolve import resolve
 from raceway.plugins.bodies.mesh import check_sets, mesh_bodies
 from raceway.scene.tables import Supports
-from tests.mesh.solids import write, write_msh
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 

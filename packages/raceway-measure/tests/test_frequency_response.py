@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from instrument_files import DAMPING, MASS, NEWTONS_PER_VOLT, STIFFNESS, record, write
 from raceway_measure.fit.linear import fit_record
 from raceway_measure.fit.response import FrequencyResponse, response_of
 
 import raceway as rw
 from raceway import SceneError
-from tests.validation.instrument_files import DAMPING, MASS, NEWTONS_PER_VOLT, STIFFNESS, record, write
 
 pyuff = pytest.importorskip("pyuff")
 

@@ -11,8 +11,8 @@ import pytest
 import raceway as rw
 from checks.validation.command_line import invoke
 from checks.validation.rotor_files import COMBI214, DIGITS, apdl, by_direction, constants, entries, read_csv, tables
+from checks.validation.stores import SPEEDS, damping, made, scene, stiffness
 from raceway import RacewayError, SceneError
-from tests.stores import SPEEDS, damping, made, scene, stiffness
 
 SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
 HERTZ = SPEEDS / 60.0

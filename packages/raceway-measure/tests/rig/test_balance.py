@@ -10,9 +10,9 @@ from raceway_measure.fit.rig import invert, with_moment, with_tilt_of
 from raceway_rotor.shaft import _whirling_load, bearing, find_root, rotor, shaft
 
 from checks.validation.command_line import EXAMPLES
+from checks.validation.records import SPEED
 from raceway import ConvergenceError, SceneError, load_scene
 from raceway.testing import default_registry
-from tests.rig.conftest import SPEED
 
 
 def test_answers_of_the_compiled_loop_are_those_of_runs(monkeypatch):

@@ -14,13 +14,13 @@ from raceway_rotor.coefficients import Coefficients, coefficients
 from raceway_rotor.export import _ross_table
 from raceway_rotor.ross_file import NAMES, _smoothed, through_points
 
+from checks.validation.stores import MASS, SPEEDS, as_list, damping, made, scene, stiffness
 from raceway import RacewayError, SceneError
 from raceway.plugins.executors.processes import Serial
 from raceway.points.axes import grid
 from raceway.points.plot import select
 from raceway.points.sweep import fill_store, prepare
 from raceway.testing import b7206c
-from tests.stores import MASS, SPEEDS, as_list, damping, made, scene, stiffness
 
 SPEED, SPIN, DIRECTION = "excitation.speed_rpm", "kinematics.spin_speed_rpm", "excitation.direction_deg"
 RADIANS = np.pi / 30.0

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from matplotlib.figure import Figure
 
+from checks.validation.figures import outside
 from raceway import build_model, scene_from_dict
 from raceway.testing import Model, b7206c, default_registry
-from tests.figures import outside
 
 
 @pytest.fixture

@@ -15,10 +15,10 @@ from raceway_rotor.rig_table import Signals
 from raceway_rotor.shaft import balance, bearing, rotor
 
 from checks.validation.command_line import EXAMPLES, invoke
+from checks.validation.records import SPEED
 from raceway import ConvergenceError, RacewayError, load_scene
 from raceway.points.store import written
 from raceway.testing import default_registry
-from tests.rig.conftest import SPEED
 
 SCENE = EXAMPLES / "test_rig.toml"
 SHORT = ["--set", "rig.speeds_rpm=[13000.0]", "--set", "rig.axial_loads=[2000.0]", "--set", "rig.signals.duration=0.25"]

@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from instrument_files import DAMPING, FORMS, MASS, STIFFNESS, WORDS, write
 from raceway_measure.fit.column_headers import columns_of
 from raceway_measure.fit.signals import signals_of
 
@@ -13,7 +14,6 @@ import raceway as rw
 from checks.validation.command_line import invoke
 from raceway import SceneError
 from raceway.storage.number_table import read_numbers
-from tests.validation.instrument_files import DAMPING, FORMS, MASS, STIFFNESS, WORDS, write
 
 
 @pytest.mark.parametrize("instrument", [*FORMS, "tdms"])

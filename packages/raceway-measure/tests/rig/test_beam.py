@@ -10,7 +10,7 @@ from raceway_measure.rig.signals import critical_speed, readings
 from raceway_rotor.rig_table import Rig
 from raceway_rotor.shaft import _beam, shaft
 
-from tests.rig.conftest import SPEED
+from checks.validation.records import SPEED
 
 E, NU, RHO, D = 212e9, 0.29, 7810.0, 0.03
 SECOND_MOMENT, AREA = pi / 64.0 * D**4, pi / 4.0 * D**2

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from math import pi
-
 import pytest
 from raceway_rotor.rig_table import Rig
 from raceway_rotor.shaft import balance, bearing, rotor
 
 from checks.validation.command_line import EXAMPLES
+from checks.validation.records import SPEED
 from raceway import load_scene
 from raceway.testing import default_registry
-
-SPEED = 13000.0 * pi / 30.0
 
 
 @pytest.fixture(scope="session")

@@ -13,13 +13,12 @@ from raceway_article.design import ARTICLE, FRICTIONS, ROTATING, Setting, _shaft
 from raceway_article.figures import Picture, drawings
 from raceway_article.page import page
 
-from checks.validation.article_study import curves, row, study
+from checks.validation.article_study import SMALL, curves, row, study
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway.errors import ConvergenceError
 from raceway.framework.registry import default_registry
 from raceway.points.attractor import FAILED, Attractor
 from raceway.scene.inputs import read_toml
-from tests.test_commands import SMALL
 
 
 @pytest.fixture
