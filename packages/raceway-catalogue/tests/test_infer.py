@@ -92,10 +92,11 @@ def test_one_printed_angle_gives_the_same_balls(series):
         assert alone.ball_diameter.value == whole.ball_diameter.value, one.names
 
 
-def test_the_practice_need_not_be_said(series):
+@pytest.mark.parametrize("step", [12, pytest.param(3, marks=pytest.mark.slow)])
+def test_the_practice_need_not_be_said(series, step):
     """Measured: of all 249 single lines one is taken for the other practice with another ball count, and says that it is in doubt."""
     balls = {name: found.ball_count.value for found in series.values() for name in found.printed.names}
-    wrong = [x for x in map(infer_printed, printed_by("nsk")[::3]) if x.ball_count.value != balls[x.printed.names[0]]]
+    wrong = [x for x in map(infer_printed, printed_by("nsk")[::step]) if x.ball_count.value != balls[x.printed.names[0]]]
     assert len(wrong) <= 1
     assert all(x.share < 0.6 for x in wrong)
 
@@ -161,25 +162,19 @@ def test_the_bearing_of_an_answer_runs():
 # --- deep groove
 
 
-@pytest.fixture(scope="module")
-def deep_groove():
-    """The printed sizes of deep-groove bearings by designation; one of 256 is refused."""
-    sizes = {}
-    for one in printed_by("nsk_deep_groove"):
-        with suppress(SceneError):
-            sizes[one.names[0]] = infer_printed(one, "NSK")
-    return sizes
-
-
-def test_the_printed_f0_gives_the_same_z_d2(deep_groove):
+@pytest.mark.parametrize("step", [32, pytest.param(1, marks=pytest.mark.slow)])
+def test_the_printed_f0_gives_the_same_z_d2(step):
     """C0 / f_0 = Z D^2 whatever the pitch diameter is; f_0 is printed to 0.1, C0 to 0.5 %: 1 % of both, but for 6808 and 6809."""
-    beyond = {}
-    for name, found in deep_groove.items():
+    sizes, beyond, printed = {}, {}, printed_by("nsk_deep_groove")
+    for one in [*printed[::step], *(one for one in printed if one.names[0] in ("6808", "6809"))]:
+        with suppress(SceneError):  # one of 256 is refused
+            sizes[one.names[0]] = infer_printed(one, "NSK")
+    for name, found in sizes.items():
         rating = found.printed.ratings[0]
         if rating.static_factor is not None:
             balls = found.ball_count.value * (1e3 * found.ball_diameter.value) ** 2
             beyond[name] = abs(balls * rating.static_factor / rating.static - 1.0)
-    assert len(beyond) == 225
+    assert len(beyond) == 225 if step == 1 else len(beyond) > 5
     assert {name for name, error in beyond.items() if error > 0.01} == {"6808", "6809"}
     assert max(beyond.values()) < 0.015
 
