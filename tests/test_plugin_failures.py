@@ -1,5 +1,7 @@
 """A broken, blocked, missing or doubled plug-in is named, and never takes the others down."""
 
+import re
+import sys
 from importlib.metadata import entry_points
 
 import pytest
@@ -88,6 +90,55 @@ def test_a_broken_plugin_is_named_and_the_others_work(site, case):
         registry.find("contact_law", "no_such_law")
 
 
+#: What a hook says of the law ``lazy``, the file of its class, and the reason that it cannot be used.
+AT_PLACES = {
+    "no-module": ("lazy_gone:Law", "", "contact law 'lazy' fails to import from `lazy_gone:Law`: ModuleNotFoundError"),
+    "no-class": ("{file}:Gone", "", "fails to import from `{file}:Gone`: AttributeError"),
+    "raises": ("{file}:Law", "raise OSError('no licence')", "fails to import from `{file}:Law`: OSError: no licence"),
+    "another-name": ("{file}:Law", LAW.format(name="x", cls="Law"), "has the name 'x', its hook says 'lazy'"),
+    "duties": ("{file}:Law", BROKEN["duties"][0].replace("Half", "Law"), "contact law `Law` has no `discretisations`"),
+}
+AT_PLACE = "from raceway import hookimpl\n@hookimpl\ndef raceway_contact_laws(): return {{'lazy': '{place}'}}"
+
+
+@pytest.mark.parametrize("case", AT_PLACES)
+def test_a_class_that_is_not_what_its_hook_says_is_told_when_it_is_named(site, case):
+    (place, source, reason), file = AT_PLACES[case], f"lazy_{case.replace('-', '_')}"
+    (site.folder / f"{file}.py").write_text(source)
+    site.install("lazily", AT_PLACE.format(place=place.format(file=file)))
+    registry = Registry()
+    assert not registry.faults and "lazy" in registry.names("contact_law") and file not in sys.modules
+    (entry,) = (each for each in registry.all() if each.name == "lazy")
+    told = f"plug-in `lazily`: .*{re.escape(reason.format(file=file))}"
+    with pytest.raises(PluginError, match=f"{told}.*RACEWAY_DISABLE"):
+        entry.plugin  # noqa: B018
+    with pytest.raises(PluginError, match=f"no contact law named 'lazy'.*Not loaded: {told}"):
+        registry.find("contact_law", "lazy")
+    assert [re.match(told, str(fault)) is None for fault in registry.faults] == [False]
+    assert "hertz" in [entry.name for entry in registry.of_kind("contact_law")]
+
+
+def test_a_class_at_a_place_is_imported_when_its_name_or_its_kind_is_asked_for(site):
+    for name in ("named", "asked"):
+        (site.folder / f"lazy_{name}.py").write_text(LAW.format(name=name, cls="Law"))
+    places = {name: f"lazy_{name}:Law" for name in ("named", "asked")}
+    site.install("lazily", f"from raceway import hookimpl\n@hookimpl\ndef raceway_contact_laws(): return {places}")
+    registry = Registry()
+    assert not {"lazy_named", "lazy_asked"} & set(sys.modules)
+    assert registry.find("contact_law", "named").plugin.__module__ == "lazy_named" and "lazy_asked" not in sys.modules
+    assert {"named", "asked", "hertz"} <= {entry.plugin.name for entry in registry.of_kind("contact_law")}
+    assert not registry.faults
+
+
+@pytest.mark.parametrize("given", [{"lazy": "no_colon"}, {"lazy": 3}, {1: "module:Law"}, {"lazy": ":Law"}], ids=str)
+def test_a_mapping_that_names_no_place_is_a_fault(site, given):
+    site.install("lazily", f"from raceway import hookimpl\n@hookimpl\ndef raceway_contact_laws(): return {given}")
+    registry = Registry()
+    (fault,) = map(str, registry.faults)
+    assert "plug-in `lazily`: `raceway_contact_laws` maps " in fault and 'a name, then "module:Class"' in fault
+    assert "lazy" not in registry.names("contact_law")
+
+
 def test_a_distribution_that_was_half_removed_takes_nothing_down(site):
     """Its entry points are there, its METADATA is not."""
     site.install("gone", "import a_module_that_was_removed")
@@ -120,6 +171,18 @@ def test_a_built_in_cannot_be_replaced_silently(site):
     site.install("other", LAW.format(name="hertz", cls="OtherHertz"))
     with pytest.raises(PluginError, match="`Hertz` of raceway and `OtherHertz` of other"):
         Registry().find("contact_law", "hertz")
+
+
+def test_names_of_places_shadow_each_other_and_one_class_in_two_forms_is_one(site):
+    site.install("other", AT_PLACE.format(place="nowhere:Law").replace("lazy", "hertz"))
+    same = "from raceway import hookimpl\nfrom raceway.contact_laws.line import Line\n@hookimpl\ndef raceway_contact_laws(): return [Line]"
+    site.install("same", same)
+    registry = Registry()
+    with pytest.raises(PluginError, match="`Hertz` of raceway and `Law` of other"):
+        registry.find("contact_law", "hertz")
+    assert (
+        registry.shadowed() == [("contact_law", "hertz")] and registry.find("contact_law", "line").distribution == "raceway"
+    )
 
 
 def test_equal_entry_point_names_of_two_distributions_both_load(site):

@@ -115,12 +115,12 @@ def scene_page() -> str:
             parts += _tables(TABLES[name], name, f"[{name}]", shown)
         if kind is None:
             continue
-        for entry in (e for e in registry.all() if e.kind == kind):
+        for entry in registry.of_kind(kind):
             sentence = (entry.plugin.__doc__ or "").strip().partition("\n\n")[0].replace("\n    ", " ")
             parts.append(f'### {name}.kind = "{entry.name}"\n\n{sentence}\n')
             parts += _tables(entry.plugin, name, f"`{entry.name}`", shown)
     parts += ["## [quantities]\n", _NOTES["quantities"] + "\n"]
-    for entry in (e for e in registry.all() if e.kind == "quantity" and attrs.fields(e.plugin)):
+    for entry in (e for e in registry.of_kind("quantity") if attrs.fields(e.plugin)):
         path = f"quantities.{entry.name}"
         parts += [f"### [{path}]\n", *_tables(entry.plugin, path, f"[{path}]", shown)]
     for name, place in registry.mapping("raceway_tables").items():

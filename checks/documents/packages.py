@@ -24,7 +24,8 @@ def declared() -> dict[Path, str]:
         own, commands = (getattr(plugin, f"raceway_{hook}", dict)() for hook in ("names", "commands"))
         listed = {about.name: f"{heading}: {about.summary}" for heading, several in commands.items() for about in several}
         listed |= {word: "" for several in commands.values() for about in several for word in about.aliases}
-        plugins = [f"{kind}:{one.name}" for kind, (hook, _) in KINDS.items() for one in getattr(plugin, hook, list)()]
+        found = ((kind, one) for kind, (hook, _) in KINDS.items() for one in getattr(plugin, hook, list)())
+        plugins = [f"{kind}:{getattr(one, 'name', one)}" for kind, one in found]
         packages[distribution] = {"names": own, "commands": listed, "plugins": sorted(plugins)}
         names |= {name: module for name, module in own.items() if "." not in name}
     own_names = (FOLDER / "names.pyi").read_text(encoding="utf-8").partition("\n")[2]

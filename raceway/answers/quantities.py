@@ -244,7 +244,7 @@ def plugin_quantities(registry: Registry) -> dict[str, tuple[str, Quantity]]:
         A name that is another quantity's.
     """
     numbers: dict[str, tuple[str, Quantity]] = {}
-    for entry in (each for each in registry.all() if each.kind == "quantity"):
+    for entry in registry.of_kind("quantity"):
         for quantity in entry.plugin.numbers:
             if quantity.name in numbers or quantity.name in KNOWN or quantity.name in OF_ORBITS:
                 raise PluginError(f"{entry}: its number '{quantity.name}' has the name of another quantity: rename it")

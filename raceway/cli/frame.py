@@ -107,7 +107,7 @@ def faults(registry: Registry) -> list[str]:
     """Plug-ins that could not be loaded, and names that two of them claim; a sentence each."""
     sentences = [str(fault) for fault in registry.faults]
     for kind, name in registry.shadowed():
-        owners = " and ".join(f"{e.plugin.__qualname__} of {e.distribution}" for e in registry.entries[kind, name])
+        owners = " and ".join(f"{e.title} of {e.distribution}" for e in registry.entries[kind, name])
         sentences.append(
             f"{kind.replace('_', ' ')} '{name}' is claimed by two plug-ins: {owners}. Remove one, or name it in "
             "RACEWAY_DISABLE"

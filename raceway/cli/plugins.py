@@ -41,7 +41,7 @@ def plugins(plugins: tuple[Path, ...], as_json: bool) -> int:
       raceway dev plugins --plugin my_law.py
     """
     registry = registry_with(plugins)
-    rows = _plugin_rows(registry.all())
+    rows = _plugin_rows(registry.of_kind(*KINDS))
     broken = faults(registry)
     if as_json:
         print_json({"plugins": rows, "errors": [{"path": None, "value": None, "message": text} for text in broken]})

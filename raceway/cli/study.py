@@ -27,7 +27,7 @@ class Studies(Commands):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         registry = default_registry()
-        entries = [entry for entry in registry.all() if entry.kind == "study"]
+        entries = registry.of_kind("study")
         with formatter.section("Commands"):
             formatter.write_dl([(entry.name, entry.plugin.help) for entry in entries])
         for fault in registry.faults:

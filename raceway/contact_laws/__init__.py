@@ -8,13 +8,15 @@ film      Hertz behind an elastohydrodynamic film; viscosity of the lubricant at
 
 from __future__ import annotations
 
-from raceway.contact_laws.film import Film
-from raceway.contact_laws.hertz import Hertz
-from raceway.contact_laws.line import Line
-from raceway.contact_laws.penalty import Penalty, Unilateral
 from raceway.framework.hookspecs import hookimpl
 
 
 @hookimpl
-def raceway_contact_laws() -> list[type]:
-    return [Hertz, Penalty, Unilateral, Film, Line]
+def raceway_contact_laws() -> dict[str, str]:
+    return {
+        "hertz": "raceway.contact_laws.hertz:Hertz",
+        "penalty": "raceway.contact_laws.penalty:Penalty",
+        "unilateral": "raceway.contact_laws.penalty:Unilateral",
+        "film": "raceway.contact_laws.film:Film",
+        "line": "raceway.contact_laws.line:Line",
+    }

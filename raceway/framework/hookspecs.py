@@ -1,16 +1,28 @@
-"""Every hook that a plug-in may implement.  None of them is called inside a time loop."""
+"""Every hook that a plug-in may implement.  None of them is called inside a time loop.
+
+A hook of classes may also return a mapping of their names to "module:Class": a class is then imported when a scene or a command
+names it, or when somebody asks for all of its kind.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
+import click
 import pluggy
 
-if TYPE_CHECKING:
-    from raceway.cli.command import Command
-    from raceway.cli.commands import Later
-    from raceway.pipeline.result import Result
-    from raceway.planning.plan import ScenePlan
+Classes = list[type] | dict[str, str]
+
+
+class NamedCommand(Protocol):
+    """A ``raceway.Command``, or what else makes a command when its name is called."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def summary(self) -> str: ...
+    def click(self) -> click.Command: ...
+
 
 # A specification has no body: pluggy never calls it.  Mypy misses the return of those that declare one: empty-body.
 hookspec = pluggy.HookspecMarker("raceway")
@@ -18,57 +30,57 @@ hookimpl = pluggy.HookimplMarker("raceway")
 
 
 @hookspec
-def raceway_contact_laws() -> list[type]:  # type: ignore[empty-body]
+def raceway_contact_laws() -> Classes:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.ContactLaw``."""
 
 
 @hookspec
-def raceway_excitations() -> list[type]:  # type: ignore[empty-body]
+def raceway_excitations() -> Classes:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.Excitation``."""
 
 
 @hookspec
-def raceway_integrators() -> list[type]:  # type: ignore[empty-body]
+def raceway_integrators() -> Classes:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.Integrator``."""
 
 
 @hookspec
-def raceway_identifiers() -> list[type]:  # type: ignore[empty-body]
+def raceway_identifiers() -> Classes:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.Identifier``."""
 
 
 @hookspec
-def raceway_bodies() -> list[type]:  # type: ignore[empty-body]
+def raceway_bodies() -> Classes:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.BodiesKind``."""
 
 
 @hookspec
-def raceway_meshers() -> list[type]:  # type: ignore[empty-body]
+def raceway_meshers() -> Classes:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.Mesher``."""
 
 
 @hookspec
-def raceway_formats() -> list[type]:  # type: ignore[empty-body]
+def raceway_formats() -> Classes:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.Format``."""
 
 
 @hookspec
-def raceway_quantities() -> list[type]:  # type: ignore[empty-body]
+def raceway_quantities() -> Classes:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.Quantities``."""
 
 
 @hookspec
-def raceway_executors() -> list[type]:  # type: ignore[empty-body]
+def raceway_executors() -> Classes:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.Executor``."""
 
 
 @hookspec
-def raceway_studies() -> list[type]:  # type: ignore[empty-body]
+def raceway_studies() -> Classes:  # type: ignore[empty-body]
     """Classes that follow ``raceway.framework.contracts.Study``."""
 
 
 @hookspec
-def raceway_commands() -> dict[str, tuple[Command | Later, ...]]:  # type: ignore[empty-body]
+def raceway_commands() -> dict[str, tuple[NamedCommand, ...]]:  # type: ignore[empty-body]
     """Commands beside ``raceway run``, by their heading in ``raceway --help``."""
 
 
@@ -83,8 +95,8 @@ def raceway_tables() -> dict[str, str]:  # type: ignore[empty-body]
 
 
 @hookspec
-def raceway_plan_made(plan: ScenePlan) -> None:
-    """A plan is ready; nothing has been built yet."""
+def raceway_plan_made(plan: Any) -> None:
+    """A plan, a ``raceway.planning.plan.ScenePlan``, is ready; nothing has been built yet."""
 
 
 @hookspec
@@ -93,8 +105,8 @@ def raceway_chunk_done(done: int, total: int) -> None:
 
 
 @hookspec
-def raceway_run_finished(result: Result) -> None:
-    """A run ended with a result."""
+def raceway_run_finished(result: Any) -> None:
+    """A run ended with a ``raceway.Result``."""
 
 
 @hookspec

@@ -1,7 +1,8 @@
 """The plug-in manager: loads plug-ins one by one and finds them by kind and name.
 
-A plug-in that cannot be loaded is remembered with its reason and takes nothing else down.  Two plug-ins of one kind and
-name shadow each other: the name cannot be used until one of them goes.
+A hook gives classes, or the places of classes by their names, which are imported when a name is asked for.  A plug-in that
+cannot be loaded is remembered with its reason and takes nothing else down.  Two plug-ins of one kind and name shadow each
+other: the name cannot be used until one of them goes.
 
 ``Registry.load_file`` adds one-off plug-ins from a file; ``Registry.notify`` calls life-cycle hooks and says whose failed.
 
@@ -12,8 +13,8 @@ exact set of third-party plug-ins to load), ``RACEWAY_TRACE`` (set: every hook c
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
-from functools import cache
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache, cached_property
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,28 +26,13 @@ from raceway.errors import PluginError, RacewayError
 from raceway.framework import hookspecs
 from raceway.framework.doors import reader
 from raceway.framework.options import nearest
-from raceway.framework.packages import missing_package
+from raceway.framework.packages import missing_package, named
 from raceway.framework.sources import chosen_entry_points, foreign_words, import_file, is_foreign_fault, owner
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 _BUILT_IN = ("raceway.contact_laws", "raceway.integrators", "raceway.plugins")
-
-
-@attrs.frozen
-class Entry:
-    """One registered class."""
-
-    kind: str
-    name: str
-    plugin: type[Any]
-    distribution: str
-    version: str
-    source: str = ""  # entry point, module or file
-
-    def __str__(self) -> str:
-        return f"{self.kind.replace('_', ' ')} '{self.name}' of {self.distribution}"
 
 
 @attrs.frozen
@@ -58,6 +44,80 @@ class Fault:
 
     def __str__(self) -> str:
         return f"plug-in `{self.source}`: {self.reason}"
+
+
+@attrs.frozen
+class Entry:
+    """One registered plug-in.
+
+    Attributes
+    ----------
+    place : "module:Class"
+    source : entry point, module or file
+    """
+
+    kind: str
+    name: str
+    place: str
+    distribution: str
+    version: str
+    source: str = ""
+    _given: type[Any] | None = attrs.field(default=None, repr=False)
+
+    def __str__(self) -> str:
+        return f"{self.kind.replace('_', ' ')} '{self.name}' of {self.distribution}"
+
+    @property
+    def title(self) -> str:
+        """The name of the class."""
+        return self.place.rpartition(":")[2]
+
+    @property
+    def label(self) -> str:
+        """Who brings it, as faults say."""
+        return _label(self.source, self.distribution)
+
+    @property
+    def fault(self) -> Fault | None:
+        """Why the class cannot be used; it is imported to know."""
+        return self._imported if self._given is None and isinstance(self._imported, Fault) else None
+
+    @property
+    def plugin(self) -> type[Any]:
+        """The class, imported when it is first asked for.
+
+        Raises
+        ------
+        PluginError
+            A class that is not at its place, has another name, or breaks a duty of its kind.
+        """
+        found = self._imported if self._given is None else self._given
+        if isinstance(found, Fault):
+            raise PluginError(f"{found}. Name it in RACEWAY_DISABLE to run without it")
+        return found
+
+    @cached_property
+    def _imported(self) -> type[Any] | Fault:
+        """The class at the place, or why there is none."""
+        kind = self.kind.replace("_", " ")
+        try:
+            with foreign_words():
+                plugin: type[Any] = named(self.place)
+        except BaseException as why:  # whatever a third party's import raises
+            if not is_foreign_fault(why):
+                raise
+            reason = f"{kind} '{self.name}' fails to import from `{self.place}`: {type(why).__name__}: {why}"
+            return Fault(self.label, reason)
+        reason = _fault_of(self.kind, plugin)
+        if not reason and plugin.name != self.name:
+            reason = f"{kind} `{self.place}` has the name '{plugin.name}', its hook says '{self.name}'"
+        return Fault(self.label, reason) if reason else plugin
+
+    def is_of(self, other: Entry) -> bool:
+        """Whether both are the same class."""
+        if self._given is not None and other._given is not None:
+            return self._given is other._given
+        return self.place == other.place
 
 
 class Registry:
@@ -133,11 +193,7 @@ class Registry:
     def _remove(self, plugin: object, entries: list[Entry]) -> None:
         if self.manager.is_registered(plugin):
             self.manager.unregister(plugin)
-        for entry in entries:
-            same = self.entries[entry.kind, entry.name]
-            same.remove(entry)
-            if not same:
-                del self.entries[entry.kind, entry.name]
+        self._forget(entries)
 
     def notify(self, hook: str, **arguments: object) -> None:
         """Call a life-cycle hook of every plug-in, in the order of registration.
@@ -209,7 +265,7 @@ class Registry:
         raise PluginError(message)
 
     def find(self, kind: str, name: str) -> Entry:
-        """The plug-in of a kind and name.
+        """The plug-in of a kind and name, imported.
 
         Raises
         ------
@@ -217,10 +273,10 @@ class Registry:
             Unknown name (with the nearest one), or a name that two plug-ins claim.
         """
         entries = self.entries.get((kind, name), [])
-        if len(entries) == 1:
+        if len(entries) == 1 and not self._drop_broken(entries[0]):
             return entries[0]
-        if entries:
-            owners = " and ".join(f"`{e.plugin.__qualname__}` of {e.distribution}" for e in entries)
+        if len(entries) > 1:
+            owners = " and ".join(f"`{e.title}` of {e.distribution}" for e in entries)
             raise PluginError(
                 f"two plug-ins claim the name '{name}' as {kind.replace('_', ' ')}: {owners}. Rename or "
                 "remove one: leave its --plugin file out, or name its distribution in RACEWAY_DISABLE."
@@ -244,12 +300,8 @@ class Registry:
             No format has the ending (lists those that there are), or two have it.
         """
         name = Path(path).name.lower()
-        endings = [
-            (ending, entry)
-            for entry in self.all()
-            if entry.kind == "format" and hasattr(entry.plugin, "read")
-            for ending in entry.plugin.suffixes
-        ]
+        readers = [entry for entry in self.of_kind("format") if hasattr(entry.plugin, "read")]
+        endings = [(ending, entry) for entry in readers for ending in entry.plugin.suffixes]
         fitting = [(ending, entry) for ending, entry in endings if name.endswith(ending)]
         if not fitting:
             suffixes = ", ".join(sorted({ending for ending, _ in endings}))
@@ -265,9 +317,28 @@ class Registry:
         return sorted(name for k, name in self.entries if k == kind)
 
     def all(self) -> Iterator[Entry]:
-        """Every entry, shadowed ones too, by kind and name."""
+        """Every entry, shadowed ones too, by kind and name; no class is imported."""
         for key in sorted(self.entries):
             yield from self.entries[key]
+
+    def of_kind(self, *kinds: str) -> list[Entry]:
+        """Entries of some kinds, shadowed ones too, by kind and name, their classes imported; one that breaks is a fault, and gone."""
+        return [entry for entry in list(self.all()) if entry.kind in kinds and not self._drop_broken(entry)]
+
+    def _drop_broken(self, entry: Entry) -> bool:
+        """Whether the class of an entry cannot be used, which is then remembered as if it had been imported at once."""
+        if entry.fault is None:
+            return False
+        self.faults.append(entry.fault)
+        self._forget([entry])
+        return True
+
+    def _forget(self, entries: list[Entry]) -> None:
+        for entry in entries:
+            same = self.entries[entry.kind, entry.name]
+            same.remove(entry)
+            if not same:
+                del self.entries[entry.kind, entry.name]
 
     def shadowed(self) -> list[tuple[str, str]]:
         """(kind, name) that more than one plug-in claims."""
@@ -286,7 +357,7 @@ class Registry:
         self._register(plugin, point.name, distribution, version)
 
     def _register(self, plugin: object, source: str, distribution: str, version: str) -> None:
-        label = source if source == distribution else f"{source} ({distribution})"
+        label = _label(source, distribution)
         try:
             hash(plugin)  # pluggy keeps plug-ins in sets
             self.manager.register(plugin, name=label)
@@ -313,34 +384,57 @@ class Registry:
                     raise
                 self.faults.append(Fault(label, f"`{hook_name}` raises {type(why).__name__}: {why}"))
                 continue
-            for classes in lists:
-                if not isinstance(classes, list | tuple):
-                    self.faults.append(
-                        Fault(label, f"`{hook_name}` returns {_shown(classes)}, which is not a list of classes")
+            for given in lists:
+                if not isinstance(given, list | tuple | Mapping):
+                    reason = (
+                        f'returns {_shown(given)}, which is not a list of classes or a mapping of names to "module:Class"'
                     )
-                    continue
-                for plugin_class in classes:
-                    self._add(kind, plugin_class, label, distribution, version, source)
+                    self.faults.append(Fault(label, f"`{hook_name}` {reason}"))
+                elif isinstance(given, Mapping):
+                    for name, place in given.items():
+                        if _is_place(name, place):
+                            self._enter(Entry(kind, name, place, distribution, version, source))
+                        else:
+                            reason = f'maps {_shown(name)} to {_shown(place)}: a name, then "module:Class"'
+                            self.faults.append(Fault(label, f"`{hook_name}` {reason}"))
+                else:
+                    for plugin_class in given:
+                        self._add(kind, plugin_class, label, distribution, version, source)
 
     def _add(self, kind: str, plugin: Any, label: str, distribution: str, version: str, source: str) -> None:
-        from raceway.framework.contracts import broken_duties
-
-        try:
-            faults = broken_duties(kind, plugin)
-            entry = Entry(kind, str(getattr(plugin, "name", "?")), plugin, distribution, version, source)
-        except BaseException as why:  # an attribute of a metaclass, or a name, that raises
-            if not is_foreign_fault(why):
-                raise
-            reason = f"looking at {kind.replace('_', ' ')} {_shown(plugin)} raises {type(why).__name__}: {why}"
+        if reason := _fault_of(kind, plugin):
             self.faults.append(Fault(label, reason))
-            return
-        if faults:
-            title = getattr(entry.plugin, "__qualname__", _shown(entry.plugin))
-            self.faults.append(Fault(label, f"{entry.kind.replace('_', ' ')} `{title}` " + ", ".join(faults)))
-            return
+        else:
+            place = f"{plugin.__module__}:{plugin.__qualname__}"
+            self._enter(Entry(kind, plugin.name, place, distribution, version, source, plugin))
+
+    def _enter(self, entry: Entry) -> None:
         same = self.entries.setdefault((entry.kind, entry.name), [])
-        if all(e.plugin is not entry.plugin for e in same):
+        if not any(entry.is_of(other) for other in same):
             same.append(entry)
+
+
+def _label(source: str, distribution: str) -> str:
+    return source if source == distribution else f"{source} ({distribution})"
+
+
+def _is_place(name: object, place: object) -> bool:
+    return isinstance(name, str) and isinstance(place, str) and all(place.partition(":"))
+
+
+def _fault_of(kind: str, plugin: Any) -> str:
+    """Duties that a class breaks, in words; empty where it breaks none."""
+    from raceway.framework.contracts import broken_duties
+
+    words = kind.replace("_", " ")
+    try:
+        faults, title = broken_duties(kind, plugin), getattr(plugin, "__qualname__", None) or _shown(plugin)
+        getattr(plugin, "name", "")
+    except BaseException as why:  # an attribute of a metaclass, or a name, that raises
+        if not is_foreign_fault(why):
+            raise
+        return f"looking at {words} {_shown(plugin)} raises {type(why).__name__}: {why}"
+    return f"{words} `{title}` {', '.join(faults)}" if faults else ""
 
 
 REGISTRY = reader("a registry of plug-ins", Registry)

@@ -6,9 +6,14 @@ methods  Newmark's method, generalised-alpha, central differences, series of equ
 from __future__ import annotations
 
 from raceway.framework.hookspecs import hookimpl
-from raceway.integrators.methods import CentralDifference, GeneralizedAlpha, Newmark, Periodic, QuasiStatic
 
 
 @hookimpl
-def raceway_integrators() -> list[type]:
-    return [Newmark, GeneralizedAlpha, CentralDifference, QuasiStatic, Periodic]
+def raceway_integrators() -> dict[str, str]:
+    return {
+        "newmark": "raceway.integrators.methods:Newmark",
+        "generalized_alpha": "raceway.integrators.methods:GeneralizedAlpha",
+        "central_difference": "raceway.integrators.methods:CentralDifference",
+        "quasi_static": "raceway.integrators.methods:QuasiStatic",
+        "periodic": "raceway.integrators.methods:Periodic",
+    }

@@ -640,7 +640,7 @@ def tolerance_rows(band: Tables | None) -> list[Fact]:
     """
     if not band:
         return []
-    plugins = (entry.plugin for entry in default_registry().all() if entry.kind == "quantity")
+    plugins = (entry.plugin for entry in default_registry().of_kind("quantity"))
     leading = {plugin.numbers[0].name: plugin.numbers[0].label for plugin in plugins}
     rows: list[Fact] = [("Tolerances, 95 % to first order", "", band["why"])]
     for name, quantity in band["quantities"].items():

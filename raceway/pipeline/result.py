@@ -513,7 +513,7 @@ def chosen_reports(names: Iterable[str], registry: Registry) -> list[Chosen]:
         A name that no format of results has, or two; a format whose options have no defaults.
     """
     reports = []
-    writing = sorted({each.name for each in registry.all() if each.kind == "format" and of_results(each.plugin)})
+    writing = sorted({each.name for each in registry.of_kind("format") if of_results(each.plugin)})
     for name in dict.fromkeys(names):
         if name not in writing:
             raise PluginError(

@@ -153,8 +153,8 @@ def _mounted(found: ReadTables) -> list[Row]:
 def quantity_rows(result: ReadTables) -> list[Row]:
     """A section for each plug-in of quantities whose table the result has, of those that are installed."""
     rows: list[Row] = []
-    for entry in default_registry().all():
-        if entry.kind == "quantity" and result.get(entry.name):
+    for entry in default_registry().of_kind("quantity"):
+        if result.get(entry.name):
             try:
                 rows += quantity_screen(entry.plugin, result)
             except PluginError as why:  # its numbers are in the result

@@ -13,56 +13,65 @@ system_libraries   system libraries that packages for meshes and pictures need
 from __future__ import annotations
 
 from raceway.framework.hookspecs import hookimpl
-from raceway.plugins.excitations.harmonic import Bidirectional, RunUp, Unidirectional
-from raceway.plugins.excitations.measured_force import Measured
-from raceway.plugins.executors.dask import Dask
-from raceway.plugins.executors.processes import Processes, Serial
-from raceway.plugins.formats.pictures import Pictures
-from raceway.plugins.identifiers.one_frequency import Fft1x, ImpedanceFit, SineFit, Tangent
-from raceway.plugins.identifiers.order_tracking import OrderTracking
-from raceway.plugins.meshers.structured import Structured
-from raceway.plugins.quantities.ball_pass import BallPass
-from raceway.plugins.quantities.film import FilmParameter, FilmThickness
-from raceway.plugins.quantities.friction import Friction
-from raceway.plugins.quantities.heat import Temperatures
-from raceway.plugins.quantities.life import Life
 
 
 @hookimpl
-def raceway_excitations() -> list[type]:
-    return [Unidirectional, Bidirectional, RunUp, Measured]
+def raceway_excitations() -> dict[str, str]:
+    return {
+        "unidirectional": "raceway.plugins.excitations.harmonic:Unidirectional",
+        "bidirectional": "raceway.plugins.excitations.harmonic:Bidirectional",
+        "run_up": "raceway.plugins.excitations.harmonic:RunUp",
+        "measured": "raceway.plugins.excitations.measured_force:Measured",
+    }
 
 
 @hookimpl
-def raceway_identifiers() -> list[type]:
-    return [Fft1x, SineFit, Tangent, ImpedanceFit, OrderTracking]
+def raceway_identifiers() -> dict[str, str]:
+    return {
+        "fft_1x": "raceway.plugins.identifiers.one_frequency:Fft1x",
+        "sine_fit": "raceway.plugins.identifiers.one_frequency:SineFit",
+        "tangent": "raceway.plugins.identifiers.one_frequency:Tangent",
+        "impedance_fit": "raceway.plugins.identifiers.one_frequency:ImpedanceFit",
+        "order_tracking": "raceway.plugins.identifiers.order_tracking:OrderTracking",
+    }
 
 
 @hookimpl
-def raceway_bodies() -> list[type]:
-    from raceway.plugins.bodies.condensed import Condensed
-    from raceway.plugins.bodies.elastic import Elastic
-    from raceway.plugins.bodies.rigid import Rigid
-    from raceway.plugins.bodies.rollers import CylindricalRollers
-
-    return [Rigid, Condensed, Elastic, CylindricalRollers]
-
-
-@hookimpl
-def raceway_meshers() -> list[type]:
-    return [Structured]
+def raceway_bodies() -> dict[str, str]:
+    return {
+        "rigid": "raceway.plugins.bodies.rigid:Rigid",
+        "condensed": "raceway.plugins.bodies.condensed:Condensed",
+        "elastic": "raceway.plugins.bodies.elastic:Elastic",
+        "cylindrical_rollers": "raceway.plugins.bodies.rollers:CylindricalRollers",
+    }
 
 
 @hookimpl
-def raceway_formats() -> list[type]:
-    return [Pictures]
+def raceway_meshers() -> dict[str, str]:
+    return {"structured": "raceway.plugins.meshers.structured:Structured"}
 
 
 @hookimpl
-def raceway_quantities() -> list[type]:
-    return [BallPass, FilmThickness, FilmParameter, Friction, Life, Temperatures]
+def raceway_formats() -> dict[str, str]:
+    return {"pictures": "raceway.plugins.formats.pictures:Pictures"}
 
 
 @hookimpl
-def raceway_executors() -> list[type]:
-    return [Serial, Processes, Dask]
+def raceway_quantities() -> dict[str, str]:
+    return {
+        "ball_pass": "raceway.plugins.quantities.ball_pass:BallPass",
+        "film": "raceway.plugins.quantities.film:FilmThickness",
+        "film_parameter": "raceway.plugins.quantities.film:FilmParameter",
+        "friction": "raceway.plugins.quantities.friction:Friction",
+        "life": "raceway.plugins.quantities.life:Life",
+        "heat": "raceway.plugins.quantities.heat:Temperatures",
+    }
+
+
+@hookimpl
+def raceway_executors() -> dict[str, str]:
+    return {
+        "serial": "raceway.plugins.executors.processes:Serial",
+        "processes": "raceway.plugins.executors.processes:Processes",
+        "dask": "raceway.plugins.executors.dask:Dask",
+    }

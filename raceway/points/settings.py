@@ -154,7 +154,7 @@ def _default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]
     """Family and values of every setting of the default design that has a meaning for the scene."""
     points: list[tuple[str, Tables]] = []
     if needs_motion(scene):
-        methods: Tables = {name: registry.find("integrator", name).plugin for name in registry.names("integrator")}
+        methods: Tables = {entry.name: entry.plugin for entry in registry.of_kind("integrator")}
         steady = [name for name, method in methods.items() if method.steady]
         for name, steps in product((n for n, m in methods.items() if m.inertial and n not in steady), STEPS):
             points.append(("time step", {"integrator.kind": name, "integrator.steps_per_turn": steps}))
@@ -351,8 +351,7 @@ def _equilibria(first: Setting, steps: int, runner: Runner, extra: Tables) -> Re
 def _direct(first: Setting, extra: Tables, runner: Runner) -> Reference | None:
     """The steady orbit solved for directly, by whatever integrator is made for that."""
     registry = runner.registry
-    for name in registry.names("integrator"):
-        method = registry.find("integrator", name).plugin
+    for name, method in ((entry.name, entry.plugin) for entry in registry.of_kind("integrator")):
         if not method.steady:
             continue
         options = {field.name for field in attrs.fields(method)}

@@ -10,12 +10,12 @@ import hashlib
 import io
 import json
 import sqlite3
-import sys
 import warnings
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple, Self
 
@@ -351,7 +351,7 @@ def program_key(registry: Registry, used: Collection[tuple[str, str]] | None = N
     for entry in registry.all():
         if entry.distribution != "raceway" and (used is None or (entry.kind, entry.name) in used):
             digest.update(f"{entry.kind}:{entry.name}:{entry.version}".encode())
-            digest.update(_sources_of(entry.plugin.__module__).encode())
+            digest.update(_sources_of(entry.place.partition(":")[0]).encode())
     return digest.hexdigest()
 
 
@@ -364,12 +364,13 @@ def _own_sources() -> str:
 @cache
 def _sources_of(name: str) -> str:
     """Hash of a plug-in's module, or of its whole package."""
-    module = sys.modules.get(name)
-    file = getattr(module, "__file__", None)
-    if file is None:
+    spec = None
+    with suppress(ImportError, ValueError):  # no such module, or one that was made by a program
+        spec = find_spec(name)
+    if spec is None or spec.origin is None:
         return name
-    path = Path(file)
-    return _row_hash(tuple(sorted(path.parent.rglob("*.py")))) if getattr(module, "__package__", "") else _row_hash((path,))
+    path = Path(spec.origin)
+    return _row_hash(tuple(sorted(path.parent.rglob("*.py")))) if spec.parent else _row_hash((path,))
 
 
 def _row_hash(paths: tuple[Path, ...]) -> str:

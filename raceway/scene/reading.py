@@ -329,12 +329,12 @@ def _plugin_table(
         return None
     options = {key: value for key, value in table.items() if key not in core_keys and key != "kind"}
     keys = [*core_keys, *(a.name for a in attrs.fields(plugin))]
-    if name in SWAPPED_TABLES:
-        elsewhere = {a.name for e in registry.all() if e.kind == kind for a in attrs.fields(e.plugin)}
+    if name in SWAPPED_TABLES and not set(options) <= set(keys):
+        elsewhere = {a.name for e in registry.of_kind(kind) for a in attrs.fields(e.plugin)}
         options = {key: value for key, value in options.items() if key in keys or key not in elsewhere}
     for key in [k for k in options if k not in keys]:
         rule = f"unknown key{nearest(key, keys)}; known for kind '{word}': {', '.join(k for k in keys if k != 'kind')}"
-        holders = [e.name for e in registry.all() if e.kind == kind and key in attrs.fields_dict(e.plugin)]
+        holders = [e.name for e in registry.of_kind(kind) if key in attrs.fields_dict(e.plugin)]
         if plugin is AutoIntegrator and holders:
             rule = f"belongs to a method, which kind 'auto' chooses: say kind = {' or '.join(map(repr, holders))} with it"
         mistakes.append(Mistake(f"{name}.{key}", options.pop(key), rule))

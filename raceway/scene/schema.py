@@ -68,7 +68,7 @@ def _table(cls: type) -> Tables:
 def _plugin_table(name: str, kind: str, default: str | None, registry: Registry) -> Tables:
     """One branch for each installed plug-in, told apart by ``kind``."""
     shadowed = registry.shadowed()
-    usable = {e.name: e.plugin for e in registry.all() if e.kind == kind and (e.kind, e.name) not in shadowed}
+    usable = {e.name: e.plugin for e in registry.of_kind(kind) if (e.kind, e.name) not in shadowed}
     if default == AutoIntegrator.name:
         usable = {default: AutoIntegrator, **usable}
     branches = []

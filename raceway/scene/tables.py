@@ -257,7 +257,5 @@ def _quantities(plugins: tuple[type, ...]) -> type:
 
 def quantities_table(registry: Registry) -> type:
     """The table [quantities]: a table of options for each plug-in of quantities."""
-    entries = registry.all()
-    return _quantities(
-        tuple(e.plugin for e in entries if e.kind == "quantity" and len(registry.entries[e.kind, e.name]) == 1)
-    )
+    entries = registry.of_kind("quantity")
+    return _quantities(tuple(e.plugin for e in entries if len(registry.entries[e.kind, e.name]) == 1))

@@ -6,16 +6,14 @@ from raceway import hookimpl
 
 
 @hookimpl
-def raceway_meshers() -> list[type]:
-    from raceway_meshing.gmsh import Gmsh
-    from raceway_meshing.mesh_files import File
-
-    return [File, Gmsh]
+def raceway_meshers() -> dict[str, str]:
+    return {"file": "raceway_meshing.mesh_files:File", "gmsh": "raceway_meshing.gmsh:Gmsh"}
 
 
 @hookimpl
-def raceway_formats() -> list[type]:
-    from raceway_meshing.abaqus import Abaqus
-    from raceway_meshing.formats import Msh, Vtu
-
-    return [Vtu, Abaqus, Msh]
+def raceway_formats() -> dict[str, str]:
+    return {
+        "vtu": "raceway_meshing.formats:Vtu",
+        "abaqus": "raceway_meshing.abaqus:Abaqus",
+        "msh": "raceway_meshing.formats:Msh",
+    }

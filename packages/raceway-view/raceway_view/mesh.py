@@ -209,7 +209,7 @@ def mesh(
 
 def _format(registry: Registry, word: str) -> Entry:
     """The format of a name, or of the ending of its files; refused where it needs a package that is missing."""
-    plugins = {name: registry.find("format", name).plugin for name in registry.names("format")}
+    plugins = {entry.name: entry.plugin for entry in registry.of_kind("format")}
     names = [name for name, plugin in plugins.items() if hasattr(plugin, "write") and not of_results(plugin)]
     of_ending = [name for name in names if f".{word}" in plugins[name].suffixes]
     form = registry.find("format", of_ending[0] if word not in names and len(of_ending) == 1 else word)

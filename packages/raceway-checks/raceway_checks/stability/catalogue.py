@@ -39,7 +39,7 @@ _EXCITED: Tables = {"excitation.kind": "bidirectional", "excitation.speed_rpm": 
 
 def transient_integrators(registry: Registry) -> list[Entry]:
     """Integrators that march through time with inertia.  One that finds a steady orbit instead says ``steady = True``."""
-    integrators = [entry for entry in registry.all() if entry.kind == "integrator"]
+    integrators = registry.of_kind("integrator")
     return [entry for entry in integrators if entry.plugin.inertial and not entry.plugin.steady]
 
 
@@ -50,7 +50,7 @@ def transient(registry: Registry) -> list[str]:
 
 def _laws_with(registry: Registry, *discretisations: str) -> list[str]:
     """Names of the laws of ball contacts that know these discretisations."""
-    laws = [entry for entry in registry.all() if entry.kind == "contact_law" and not line_contact(entry.plugin)]
+    laws = [entry for entry in registry.of_kind("contact_law") if not line_contact(entry.plugin)]
     return [law.name for law in laws if set(discretisations) <= set(law.plugin.discretisations)]
 
 
