@@ -19,9 +19,9 @@ from typing import Any
 
 from checks import calculix
 from checks.validation.groove import HERTZ, MODULUS, POISSON, YOUNG, meshes, solve
+from raceway import RacewayError, SceneError
 from raceway.core.fem.elastic.contact import penalty_stiffness
-from raceway.errors import RacewayError, SceneError
-from raceway.planning.resolve import resolve
+from raceway.extend import resolve
 
 #: Meshes of about 10 000 elements at 4 elements per semi-axis and 300 N.
 MESH = {"growth": 1.35, "coarse": 0.8e-3}
@@ -111,8 +111,8 @@ def groove_deck(load: float, nodes: float, approach: float, element: str = "C3D8
 def scene_deck(path: Path) -> str:
     """CalculiX's input for the bearing of a scene with [mesh]: its loads, tilt locked, seats rigid."""
     from raceway import load_scene
-    from raceway.core.contact.hertz import contact_modulus
-    from raceway.plugins.bodies.mesh import mesh_bodies, mesher_of
+    from raceway.extend import contact_modulus, mesh_bodies
+    from raceway.plugins.bodies.mesh import mesher_of
 
     scene = load_scene(path)
     if scene.mesh is None or scene.mesh.name != "structured":

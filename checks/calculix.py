@@ -14,7 +14,7 @@ from pathlib import Path
 import attrs
 import numpy as np
 
-from raceway.core.fem.mesh.hex_mesh import HexMesh
+from raceway.extend import HexMesh
 
 #: Debian's package.
 PACKAGE = "calculix-ccx"

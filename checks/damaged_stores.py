@@ -17,8 +17,8 @@ from typing import Any
 from checks.children import in_child
 from checks.validation import harm
 from checks.validation.sweeps import SCENE, rows_of
-from raceway.errors import RacewayError
-from raceway.points.dataset import open_store
+from raceway import RacewayError
+from raceway.extend import open_store
 from raceway.points.store import POINTS, SCHEMA
 
 #: What is acceptable: rows as undisturbed, or one message.

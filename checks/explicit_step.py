@@ -16,16 +16,14 @@ import numpy as np
 
 from checks.kernel import least
 from raceway import load_scene
-from raceway.bodies.basis import make_basis
 from raceway.core.contact.laws import linear
 from raceway.core.fem.elastic.bearing import ElasticBearing
 from raceway.core.fem.elastic.bearing_data import BearingData
 from raceway.core.fem.elastic.contact import penalty_stiffness
-from raceway.core.record import Recorder, Schedule, State
+from raceway.core.record import Recorder, State
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.core.time.stepped import central_difference
-from raceway.planning.resolve import resolve
-from raceway.plugins.bodies.mesh import mesh_bodies
+from raceway.extend import Schedule, make_basis, mesh_bodies, resolve
 
 #: The article's mesh.
 ARTICLE = "examples/b7206_article_mesh.toml"

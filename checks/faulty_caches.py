@@ -76,7 +76,8 @@ HARMS: dict[str, harm.Harm] = {
 
 def three_kernels() -> list[float]:
     """Force, slope and the rate's, of the three smallest laws."""
-    from raceway.core.contact.laws import linear, square, three_halves
+    from raceway.core.contact.laws import linear, square
+    from raceway.extend import three_halves
 
     found, none = [], np.zeros((1, 0))
     for law in (three_halves, square, linear):
@@ -88,8 +89,8 @@ def three_kernels() -> list[float]:
 
 def run_of(tables: dict[str, Any]) -> list[float]:
     """Tangent and dynamic stiffness of a scene."""
-    from raceway.pipeline.run import run
-    from raceway.scene.reading import scene_from_dict
+    from raceway import scene_from_dict
+    from raceway.extend import run
 
     result = run(scene_from_dict(tables))
     found = [float(value) for value in np.ravel(result.to_dict()["equilibrium"]["stiffness"])]
@@ -153,7 +154,7 @@ def kernels(count: int = 150, seed: int = 17) -> dict[str, int]:
 
 def arrays(count: int = 50, seed: int = 19) -> dict[str, int]:
     """Outcomes with kept compliances of condensed bodies, whose kernels are whole."""
-    from raceway.pipeline.run import run  # noqa: F401  # the command itself, for the same reason: each child would import it anew
+    from raceway.extend import run  # noqa: F401  # the command itself, for the same reason: each child would import it anew
 
     return tried(run_of, (_CONDENSED,), "*.arrays", count, 2, seed)
 

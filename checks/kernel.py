@@ -19,8 +19,7 @@ import numba
 import numpy as np
 
 from checks.validation.reference import hexahedron as reference
-from raceway.core.fem.hexahedron.operator import HexOperator
-from raceway.core.fem.mesh.hex_mesh import HexMesh
+from raceway.extend import HexMesh, HexOperator
 
 STEEL = (2.12e11, 0.29, 7810.0)
 SIZES = (100_000, 1_000_000)

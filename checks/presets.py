@@ -12,12 +12,12 @@ import attrs
 import raceway_catalogue
 from raceway_catalogue.deep_groove import GROOVES
 from raceway_catalogue.infer import _sizes_of
-from raceway_catalogue.inferred import Inferred, infer_printed
+from raceway_catalogue.inferred import infer_printed
 from raceway_catalogue.printed import printed_by
 from raceway_catalogue.rating_conventions import CONFORMITY, POISSON, YOUNG
 
-from raceway.errors import SceneError
-from raceway.scene.clearance import clearance_range
+from raceway import Inferred, SceneError
+from raceway.extend import clearance_range
 
 FOLDER = Path(__file__).resolve().parents[1] / "raceway" / "data" / "series"
 SERIES = ("70", "72", "79")

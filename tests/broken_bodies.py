@@ -7,7 +7,7 @@ import numpy as np
 
 from raceway import ConvergenceError, Mistake, make_plan
 from raceway.bodies.rigid_bearing import RigidBearing
-from raceway.core.ring.system import System
+from raceway.extend import System
 from raceway.framework.contracts import Cost, Traits
 from raceway.plugins.bodies.rigid import Rigid
 

@@ -7,7 +7,7 @@ import pytest
 
 import raceway as rw
 from checks.validation.several import article
-from raceway.points.function import function
+from raceway import function
 from raceway.testing import b7206c
 
 FORCE = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}

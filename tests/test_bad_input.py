@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from checks.validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, install, invoke, law, raceway
-from raceway.errors import SceneError
-from raceway.scene.inputs import read_toml
+from raceway import SceneError
+from raceway.extend import read_toml
 
 #: What is set; the path that is named; words of the message.
 SCENES = {

@@ -9,11 +9,9 @@ import pytest
 import raceway as rw
 from checks.validation.command_line import invoke
 from raceway import SceneError, scene_from_dict
-from raceway.framework.registry import default_registry
+from raceway.extend import default_registry, stated_columns, tolerances_of
 from raceway.pipeline.gradient import limits
 from raceway.points.band import design, indices
-from raceway.points.column_quantities import stated_columns
-from raceway.scene.tolerance import tolerances_of
 from raceway.testing import b7206c
 
 LOADED = b7206c(load={"axial": 500.0})

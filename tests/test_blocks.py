@@ -19,13 +19,13 @@ import pytest
 
 import raceway as rw
 from checks.validation.command_line import PATIENCE_S, invoke
-from raceway.answers.quantities import COLUMNS
+from raceway.extend import COLUMNS, open_store, tables_at
 from raceway.framework.contracts import Lost
 from raceway.planning.cost import column_time, slowness
 from raceway.plugins.executors.processes import Processes, Serial
 from raceway.points import sweep
-from raceway.points.axes import grid, listed_points, sampled, tables_at
-from raceway.points.dataset import open_store, values_of
+from raceway.points.axes import grid, listed_points, sampled
+from raceway.points.dataset import values_of
 from raceway.points.function import BLOCK
 from raceway.points.sweep import fill_store, prepare
 from raceway.testing import default_registry

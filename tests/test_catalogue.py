@@ -10,10 +10,9 @@ import numpy as np
 import pytest
 
 from raceway import SceneError, run, scene_from_dict
-from raceway.planning.resolve import resolve
-from raceway.scene.bearing import Bearing
-from raceway.scene.catalogue import _single_presets, catalogue, found_by, preset, preset_of
-from raceway.scene.clearance import CLASSES, clearance_range
+from raceway.extend import Bearing, clearance_range, found_by, resolve
+from raceway.scene.catalogue import _single_presets, catalogue, preset, preset_of
+from raceway.scene.clearance import CLASSES
 from raceway.scene.sets import RATINGS
 
 POUND = 4.4482216152605

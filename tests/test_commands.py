@@ -493,7 +493,7 @@ def test_verbose_leaves_standard_output_to_json_which_is_the_file(tmp_path):
     assert {"equilibrium", "identification", "error", "cost", "stability", "environment", "plan", "scene"} <= set(content)
     for told in ("plan: 27 degrees of freedom", "newmark, 4320 steps", "run finished in"):
         assert told in found.stderr
-    from raceway.framework.registry import default_registry
+    from raceway.extend import default_registry
 
     assert not default_registry().manager.has_plugin("raceway -v")
 

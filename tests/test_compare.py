@@ -9,11 +9,12 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway import Comparison, ConvergenceError, SceneError, scene_from_dict
+from raceway import Comparison, ConvergenceError, SceneError, compare, scene_from_dict
 from raceway.answers.answer import Interrupted
+from raceway.extend import points
 from raceway.points import compare as study
-from raceway.points.axes import MOST_POINTS, parse_axes, points
-from raceway.points.compare import compare, tables_at
+from raceway.points.axes import MOST_POINTS, parse_axes
+from raceway.points.compare import tables_at
 from raceway.points.effects import Row, percent
 from raceway.testing import default_registry, run
 

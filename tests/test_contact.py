@@ -13,7 +13,8 @@ from checks.validation.reference.ring import Ring
 from raceway import RacewayError, scene_from_dict
 from raceway.bodies.contacts import _approach_at
 from raceway.core.contact.geometry import BallBearing
-from raceway.core.contact.hertz import contact_modulus, ellipse, ellipticity
+from raceway.core.contact.hertz import ellipticity
+from raceway.extend import contact_modulus, ellipse
 from raceway.testing import run
 
 MODULUS = contact_modulus(212e9, 0.29, 212e9, 0.29)

@@ -9,11 +9,8 @@ import pytest
 
 from checks.validation.command_line import invoke
 from raceway import scene_from_dict
+from raceway.extend import Registry, read_toml, run, scene_schema
 from raceway.framework.contracts import KINDS
-from raceway.framework.registry import Registry
-from raceway.pipeline.run import run
-from raceway.scene.inputs import read_toml
-from raceway.scene.schema import scene_schema
 from raceway.testing import check
 
 ROOT = Path(__file__).parents[1]

@@ -19,10 +19,8 @@ import pytest
 import raceway as rw
 import raceway.core
 from raceway import at_least, positive
-from raceway.answers.progress import ShowProgress
-from raceway.framework.doors import DURATION, PATH, PATHS
-from raceway.points.dataset import open_store
-from raceway.storage.files import write_whole
+from raceway.extend import PATH, PATHS, ShowProgress, open_store, write_whole
+from raceway.framework.doors import DURATION
 
 SCENE = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
 SOFT = {"preset": "B7206C", "balls": {"young": 1e6}}

@@ -8,7 +8,8 @@ from itertools import product
 import numpy as np
 import pytest
 
-from raceway.points.effects import _Factorial, _factorial_effects, _whole_part, trend
+from raceway.extend import trend
+from raceway.points.effects import _Factorial, _factorial_effects, _whole_part
 
 ROUNDING = 1e-13  # a few additions of numbers of order 1
 

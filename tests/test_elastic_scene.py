@@ -12,7 +12,7 @@ import pytest
 from raceway import RacewayError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.core.fem.elastic.iterative_solver import LinearSolver
 from raceway.core.fem.elastic.ring import from_orbit
-from raceway.core.ring.orbit import steady_orbit
+from raceway.extend import steady_orbit
 from raceway.pipeline.run import _Allowance
 from raceway.scene.unused import unused
 from raceway.storage.memory import allowed_bytes

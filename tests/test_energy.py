@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from checks.validation.scenes import rotating
-from raceway.core.contact.damping import stored_energy
-from raceway.core.ring.energy import _cumulative, energy_balance
+from raceway.core.ring.energy import _cumulative
+from raceway.extend import energy_balance, stored_energy
 from raceway.testing import model_of, simulate, solve_equilibrium
 
 

@@ -7,9 +7,8 @@ from contextlib import closing
 import pytest
 
 from raceway import RacewayError
+from raceway.extend import Item, work_through, written
 from raceway.plugins.executors.processes import Processes, Serial
-from raceway.points.engine import Item, work_through
-from raceway.points.store import written
 from raceway.testing import Registry, default_registry
 
 REGISTRY = default_registry()

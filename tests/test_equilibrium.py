@@ -12,7 +12,7 @@ from checks.validation.scenes import imbalance, static
 from checks.validation.tangent import cases
 from raceway import ConvergenceError
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, DAMPING, SINE
-from raceway.planning.resolve import resolve
+from raceway.extend import resolve
 from raceway.testing import Model, model_of, settled, solve_equilibrium
 
 

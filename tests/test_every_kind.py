@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from checks.validation.command_line import MINIMAL, install, invoke, raceway
-from raceway.errors import PluginError
+from raceway import PluginError
+from raceway.extend import Registry
 from raceway.framework.contracts import KINDS
-from raceway.framework.registry import Registry
 from tests.test_docs import FILES
 
 ROOT = Path(__file__).parents[1]

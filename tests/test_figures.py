@@ -28,9 +28,9 @@ from checks.validation import article_study
 from checks.validation.figures import outside
 from checks.validation.records import made as a_record
 from checks.validation.stores import SPEEDS, as_list, made
-from raceway import scene_from_dict
+from raceway import law, scene_from_dict
 from raceway.answers.picture import readable
-from raceway.plugins.bodies.elastic_stress import below_contacts
+from raceway.extend import below_contacts, select
 from raceway.plugins.formats import pictures
 from raceway.points import band as band_picture
 from raceway.points import compare_picture as comparison
@@ -39,8 +39,7 @@ from raceway.points import law as law_picture
 from raceway.points import plot as store_picture
 from raceway.points import precision_picture as precision
 from raceway.points import sensitivities as bars
-from raceway.points.law import law
-from raceway.points.plot import layout, select
+from raceway.points.plot import layout
 from raceway.testing import b7206c, run
 from tests import test_compare
 from tests.elastic.test_below_contact import TINY

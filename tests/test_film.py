@@ -9,9 +9,9 @@ from checks.validation import film as published
 from raceway import make_plan
 from raceway.contact_laws.film import Film
 from raceway.core.contact.film import REGIMES, entraining_speed, film, thermal_reduction
+from raceway.extend import TIME_CONSTANTS
 from raceway.pipeline.result import DRY
 from raceway.scene.lubricant import GRADES, Walther, _mineral_thinning, pressure_viscosity
-from raceway.scene.tables import TIME_CONSTANTS
 from raceway.testing import run
 from raceway.testing.contact_law import _example_pairs
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from raceway import RacewayError
 from raceway.core.rolling_friction import measured_factors
-from raceway.errors import RacewayError
 from raceway.plugins.quantities.friction import PARTS, Friction
 from raceway.testing import run
 

@@ -16,8 +16,8 @@ import pytest
 
 import raceway as rw
 from checks.validation.command_line import EXAMPLES, invoke, python
+from raceway.extend import as_given
 from raceway.framework.shown import LINES, WIDTH, _as_html, _as_text
-from raceway.scene.inputs import as_given
 from raceway.testing import b7206c
 
 ROOT = EXAMPLES.parent

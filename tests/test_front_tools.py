@@ -11,7 +11,7 @@ from raceway_rotor.export import point_rows
 
 import raceway as rw
 from checks.validation.command_line import invoke
-from raceway.errors import ConvergenceError, PluginError, RacewayError, SceneError
+from raceway import ConvergenceError, PluginError, RacewayError, SceneError
 from raceway.plugins.executors.processes import Serial
 
 SCENE = {

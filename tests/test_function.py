@@ -10,8 +10,8 @@ import pytest
 
 import raceway as rw
 from checks.validation.columns import case, compare
-from raceway.errors import SceneError
-from raceway.storage.tables import Tables
+from raceway import SceneError
+from raceway.extend import Tables
 
 STATIC = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1.0}, "supports": {"tilt": "free"}}
 TURNING = {

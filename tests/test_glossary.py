@@ -8,8 +8,7 @@ import pytest
 
 from checks.validation.command_line import ARTICLE
 from raceway import load_scene
-from raceway.framework.registry import Registry
-from raceway.pipeline.run import run
+from raceway.extend import Registry, run
 from raceway.scene.schema import keys
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 

@@ -8,6 +8,7 @@ import raceway as rw
 from checks.validation.command_line import invoke
 from raceway import SceneError, build_model, scene_from_dict
 from raceway.bodies.columns import why_no_column
+from raceway.extend import continuous_keys, key_of, resolve, with_number
 from raceway.pipeline.gradient import (
     _FOURTH,
     _SECOND,
@@ -18,8 +19,6 @@ from raceway.pipeline.gradient import (
     derivatives,
     values,
 )
-from raceway.planning.resolve import resolve
-from raceway.scene.changes import continuous_keys, key_of, with_number
 from raceway.testing import b7206c, settled, solve_equilibrium
 
 LOADED = b7206c(load={"axial": 400.0, "radial": [120.0, 30.0]}, supports={"tilt": "free"})

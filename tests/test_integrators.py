@@ -12,12 +12,12 @@ from raceway_checks.stability.catalogue import BASE
 from checks.validation import orders
 from checks.validation.scenes import rotating
 from raceway import PluginError, SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
-from raceway.core.record import Schedule, State
-from raceway.core.ring.orbit import at_rest
+from raceway.core.record import State
 from raceway.core.ring.ring import Increment, _SteppedBearing
 from raceway.core.signatures import Outer
 from raceway.core.time.compiled import outer_force
-from raceway.core.time.schemes import Drivers, OneStep, integrate
+from raceway.core.time.schemes import Drivers, OneStep
+from raceway.extend import Schedule, at_rest, integrate
 from raceway.integrators.methods import Newmark
 from raceway.testing import Registry, model_of, settled, simulate, solve_equilibrium
 

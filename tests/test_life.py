@@ -16,7 +16,8 @@ from raceway.core.life import (
     set_rating,
     system_life,
 )
-from raceway.core.ratings import STEEL, BallRow
+from raceway.core.ratings import STEEL
+from raceway.extend import BallRow
 
 ANGULAR = BallRow(12, 9.525e-3, 46e-3, np.radians(15.0), 0.522, 0.53)
 

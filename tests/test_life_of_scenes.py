@@ -10,8 +10,9 @@ import pytest
 import raceway as rw
 from raceway import SceneError
 from raceway.core.life import equivalent_loads, life_factor, reliability_factor, system_life
+from raceway.extend import open_store
 from raceway.plugins.quantities.life import Life
-from raceway.points.dataset import open_store, write_csv
+from raceway.points.dataset import write_csv
 from raceway.scene.lubricant import Lubricant
 
 DGB7 = {"preset": "DGB7-MASTA", "tilt_arm": "pitch"}

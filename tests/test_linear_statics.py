@@ -8,8 +8,7 @@ import pytest
 from checks.validation.natural_modes import natural_modes
 from checks.validation.reference import annulus, elastic
 from raceway import ConvergenceError
-from raceway.core.fem.elastic.linear_statics import solve_static
-from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.extend import HexOperator, solve_static
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from raceway.pipeline.run import run
-from raceway.scene.reading import scene_from_dict
+from raceway import scene_from_dict
+from raceway.extend import run
 
 
 def test_the_arm_of_the_tilt_matters():

@@ -12,9 +12,9 @@ import xarray
 import raceway as rw
 from checks.validation.command_line import invoke
 from checks.validation.stores import as_list
+from raceway.extend import open_store, select
 from raceway.pipeline.equilibrium import race_of
-from raceway.points.dataset import open_store, write_netcdf
-from raceway.points.plot import select
+from raceway.points.dataset import write_netcdf
 
 FREE: dict[str, Any] = {
     "title": "names", "bearing": {"preset": "B7206C"}, "load": {"axial": 400.0, "radial": [60.0, 0.0]}, "supports": {"tilt": "free"},

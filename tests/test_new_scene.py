@@ -10,7 +10,7 @@ import pytest
 import raceway as rw
 from checks.validation.command_line import invoke
 from raceway.cli.new_scene import _scene_text
-from raceway.framework.registry import default_registry
+from raceway.extend import default_registry
 from raceway.scene.catalogue import _single_presets
 
 

@@ -13,10 +13,10 @@ from raceway_meshing.mesh_files import File
 from checks.validation.command_line import ARTICLE, MINIMAL, invoke
 from checks.validation.cubes import block
 from raceway import ConvergenceError, MeshError, SceneError, build_model, make_plan, scene_from_dict
-from raceway.core.fem.mesh.hex_mesh import HexMesh
+from raceway.extend import HexMesh, resolve
 from raceway.framework.estimate import Estimate
 from raceway.pipeline.error import no_error
-from raceway.planning.resolve import fits, record_bytes, recorded_per_turn, resolve
+from raceway.planning.resolve import fits, record_bytes, recorded_per_turn
 from raceway.testing import b7206c, run
 
 HOOK = """

@@ -8,7 +8,8 @@ from html.parser import HTMLParser
 import pytest
 from matplotlib.figure import Figure
 
-from raceway.answers.page import Cell, Page, data_uri, svg
+from raceway.answers.page import svg
+from raceway.extend import Cell, Page, data_uri
 
 PNG = b"\x89PNG\r\n\x1a\n" + b"0" * 8
 

@@ -12,8 +12,7 @@ import raceway as rw
 from checks.validation.browser.chromium import WIDTHS, Browser
 from checks.validation.browser.pages import PAGES
 from checks.validation.command_line import MINIMAL
-from raceway.answers.page import Page
-from raceway.answers.picture import new_figure
+from raceway.extend import Page, new_figure
 
 #: The page of `view` has pictures; those of studies take longest to write.
 MARKS = {

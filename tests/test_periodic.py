@@ -30,9 +30,7 @@ from raceway.core.periodic.search import (
     problem_of,
 )
 from raceway.core.periodic.steady import _equilibrium
-from raceway.core.record import Motion, Schedule
-from raceway.core.ring.orbit import steady_orbit
-from raceway.core.time.schemes import integrate
+from raceway.extend import Motion, Schedule, integrate, steady_orbit
 from raceway.integrators.methods import Periodic
 from raceway.pipeline.simulate import steady_record
 from raceway.testing import model_of, solve_equilibrium

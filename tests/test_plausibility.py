@@ -14,11 +14,11 @@ from rich.console import Console
 
 from checks.validation.command_line import EXAMPLES
 from raceway import ConvergenceError, SceneError, check, run, scene_from_dict
-from raceway.framework.options import nearest
+from raceway.extend import nearest, resolve
 from raceway.pipeline.plausible import inertia_warnings
 from raceway.pipeline.result import facts
 from raceway.pipeline.simulate import _stride
-from raceway.planning.resolve import _damped_limit, resolve, samples_per_turn
+from raceway.planning.resolve import _damped_limit, samples_per_turn
 from raceway.planning.rules import scene_warnings
 from raceway.testing import b7206c
 

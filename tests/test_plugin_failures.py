@@ -7,9 +7,9 @@ from importlib.metadata import entry_points
 import pytest
 
 from checks.validation.command_line import install, law
-from raceway.errors import PluginError
+from raceway import PluginError
+from raceway.extend import Registry
 from raceway.framework.packages import packages
-from raceway.framework.registry import Registry
 from raceway.scene.reading import _check_requires
 from tests.fake_site import LAW, FakeSite
 
@@ -384,7 +384,7 @@ def _three(site, monkeypatch):
 
 def test_a_hook_that_raises_ends_the_run_with_the_plugins_name(tmp_path):
     from raceway import scene_from_dict
-    from raceway.pipeline.run import run
+    from raceway.extend import run
 
     path = tmp_path / "watcher.py"
     path.write_text(LIFE_CYCLE + "\n@hookimpl\ndef raceway_meshers(): return []\n")

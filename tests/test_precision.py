@@ -12,15 +12,14 @@ import pytest
 
 from checks.validation import error_estimate as evidence
 from checks.validation.command_line import ARTICLE, invoke
-from raceway import RacewayError, SceneError, scene_from_dict
+from raceway import RacewayError, SceneError, precision, scene_from_dict
+from raceway.extend import Store, read_toml, row_key, written
 from raceway.pipeline.equilibrium import peak
 from raceway.pipeline.transient_error import _hann_line
 from raceway.points import precision as module
 from raceway.points.engine import measured
-from raceway.points.precision import THRESHOLDS, precision
+from raceway.points.precision import THRESHOLDS
 from raceway.points.settings import find_reference, make_design
-from raceway.points.store import Store, row_key, written
-from raceway.scene.inputs import read_toml
 from raceway.testing import b7206c, default_registry, run
 
 TABLES = read_toml(ARTICLE)

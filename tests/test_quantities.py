@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway import Quantity, hookimpl, option
-from raceway.errors import PluginError, SceneError
-from raceway.framework.registry import default_registry
+from raceway import PluginError, Quantity, SceneError, hookimpl, option
+from raceway.extend import default_registry
 
 SCENE = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "kinematics": {"spin_speed_rpm": 6000.0}}
 BALLS = {"ball_diameter": 9.5e-3, "pitch_diameter": 46e-3, "ball_count": 9, "width": 16e-3, "radial_clearance": 1e-5}

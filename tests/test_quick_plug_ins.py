@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.answers.quantities import K
-from raceway.framework.sources import blamed
+from raceway.extend import K, blamed
 from raceway.integrators.methods import Periodic
 from raceway.plugins.bodies.rigid import Rigid
 from raceway.plugins.identifiers.one_frequency import Fft1x

@@ -12,11 +12,9 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import raceway as rw
-from raceway import SceneError, scene_from_dict
-from raceway.bodies.model import build_model
+from raceway import SceneError, build_model, make_plan, scene_from_dict
 from raceway.contact_laws.line import Line
-from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.planning.plan import make_plan
+from raceway.extend import solve_equilibrium
 from raceway.plugins.bodies.rollers import CylindricalRollers
 
 N = 10.0 / 9.0

@@ -9,7 +9,7 @@ from jsonschema import Draft202012Validator
 
 from checks.validation.command_line import EXAMPLES
 from raceway import load_scene
-from raceway.scene.schema import scene_schema
+from raceway.extend import scene_schema
 from raceway.testing import Registry, b7206c, default_registry
 
 SCHEMA = scene_schema(default_registry())

@@ -12,11 +12,9 @@ from rich.console import Console
 
 import raceway as rw
 from checks.validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
-from raceway.answers.table import rows_table
-from raceway.answers.wrapping import Words
 from raceway.bodies.model import tilts_follow
+from raceway.extend import Words, duration, rows_table
 from raceway.framework.estimate import Estimate, short
-from raceway.framework.shown import duration
 from raceway.pipeline.run_parts import cost_row, equilibrium_rows
 
 PACKAGE = Path(__file__).parents[1] / "raceway"

@@ -13,8 +13,9 @@ from raceway_rotor import ross_file
 
 from checks.validation.command_line import invoke
 from checks.validation.stores import SPEEDS, as_list, made, stiffness
-from raceway.errors import RacewayError, SceneError
-from raceway.points.plot import LIST, _keys_of, draw, layout, parse_at, select
+from raceway import RacewayError, SceneError
+from raceway.extend import LIST, parse_at, select
+from raceway.points.plot import _keys_of, draw, layout
 
 SPEED, LOAD = "excitation.speed_rpm", "load.axial"
 MANY = np.linspace(200.0, 2000.0, 9)

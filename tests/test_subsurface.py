@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from checks.validation.reference.half_space import pressed_stress
-from raceway.core.contact.hertz import axis_shear, axis_stresses, largest_shear
+from raceway.core.contact.hertz import largest_shear
+from raceway.extend import axis_shear, axis_stresses
 
 NU = 0.3
 

@@ -21,16 +21,16 @@ import pytest
 from checks.validation.command_line import ARTICLE, EXAMPLES, PATIENCE_S, invoke
 from raceway import PluginError, RacewayError, SceneError, __version__, scene_from_dict
 from raceway import sweep as front
+from raceway.extend import open_store, read_toml, tables_at, written
 from raceway.framework.contracts import Lost, Refused
 from raceway.plugins.executors.dask import Dask
 from raceway.plugins.executors.processes import Processes, Serial
-from raceway.points.axes import Design, design_file, grid, listed_points, parse_axes, tables_at
-from raceway.points.dataset import open_store, values_of
+from raceway.points.axes import Design, design_file, grid, listed_points, parse_axes
+from raceway.points.dataset import values_of
 from raceway.points.engine import Work
-from raceway.points.store import facts_digest, written
+from raceway.points.store import facts_digest
 from raceway.points.sweep import Point, prepare
 from raceway.points.sweep import fill_store as study
-from raceway.scene.inputs import read_toml
 from raceway.testing import default_registry, run
 from tests.deadly_work import Deadly
 

@@ -9,12 +9,8 @@ import pytest
 from checks.validation.command_line import EXAMPLES, invoke
 from checks.validation.stores import SPEEDS, made
 from raceway import load_scene, scene_from_dict
-from raceway.answers.page import Page
-from raceway.plugins.formats.pictures import picture
-from raceway.points.plot import head, select
-from raceway.points.store import row_key
+from raceway.extend import Page, head, picture, row_key, select, slug
 from raceway.scene.changes import parse_change, titled
-from raceway.storage.files import slug
 from raceway.testing import b7206c, default_registry, run
 
 SCENE = EXAMPLES / "b7206.toml"

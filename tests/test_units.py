@@ -12,9 +12,8 @@ from jsonschema import Draft202012Validator
 import raceway as rw
 from checks.validation.command_line import ARTICLE, invoke
 from raceway import SceneError
-from raceway.scene.inputs import plain_tables
-from raceway.scene.schema import scene_schema
-from raceway.scene.units import number_in, unit_of
+from raceway.extend import number_in, plain_tables, scene_schema
+from raceway.scene.units import unit_of
 from raceway.testing import b7206c, default_registry
 
 #: Unit of the key, text, number: exactly the number that one types in the key's unit.

@@ -8,9 +8,8 @@ import attrs
 import pytest
 
 from checks.validation.command_line import ARTICLE, invoke
-from raceway import option
+from raceway import PluginError, option
 from raceway.contact_laws.hertz import Hertz
-from raceway.errors import PluginError
 from raceway.framework.options import unused_options
 from raceway.plugins.excitations.harmonic import Bidirectional, Unidirectional
 

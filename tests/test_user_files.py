@@ -20,13 +20,12 @@ from raceway_meshing.mesh_files import File
 
 from checks.validation.cubes import block
 from raceway import MeshError, RacewayError, SceneError, scene_from_dict
+from raceway.extend import memory_for, read_numbers, size_words
 from raceway.framework import sources as plugin_sources
 from raceway.framework.sources import import_file
 from raceway.points import axes as design
 from raceway.points.axes import design_file
 from raceway.storage import number_table
-from raceway.storage.files import memory_for, size_words
-from raceway.storage.number_table import read_numbers
 from raceway.testing import b7206c
 
 BEARING = scene_from_dict(b7206c()).bearing

@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 
 import raceway as rw
 from checks.validation import warm as published
+from raceway.extend import open_store
 from raceway.plugins.quantities.heat import Temperatures
-from raceway.points.dataset import open_store
 
 
 def test_infinite_conductances_give_the_isothermal_bearing():

@@ -23,8 +23,8 @@ from typing import Any
 
 import attrs
 
+from raceway.extend import Registry
 from raceway.framework.packages import named
-from raceway.framework.registry import Registry
 from raceway.scene.schema import keys
 from raceway.scene.structure import table_of_list
 from raceway.scene.tables import TABLES

@@ -37,10 +37,21 @@ def _module(path: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
+def _places() -> dict[str, str]:
+    """Names that ``raceway`` and ``raceway.extend`` hand out -> the modules that define them."""
+    found = {}
+    for door, stub in (("raceway", "names"), ("raceway.extend", "extend")):
+        for node in ast.parse((ROOT / "raceway" / f"{stub}.pyi").read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ImportFrom):
+                found |= {f"{door}.{alias.name}": f"raceway.{node.module}" for alias in node.names}
+    return found
+
+
 @cache
 def _imported() -> dict[Path, set[str]]:
     """The modules, and names taken from modules, that each file of the sources imports."""
     found: dict[Path, set[str]] = {}
+    places = _places()
     for path in [path for name in ("raceway", "packages", "tests", "checks") for path in (ROOT / name).rglob("*.py")]:
         names = found.setdefault(path, set())
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -49,6 +60,7 @@ def _imported() -> dict[Path, set[str]]:
             elif isinstance(node, ast.ImportFrom) and node.module:
                 names.add(node.module)
                 names.update(f"{node.module}.{alias.name}" for alias in node.names)
+        names |= {places[name] for name in names if name in places}
     return found
 
 

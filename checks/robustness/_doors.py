@@ -18,7 +18,8 @@ from matplotlib import pyplot
 
 import raceway as rw
 from checks.robustness._scenes import GARBAGE, Chance, Tables, example, scene, scene_keys
-from raceway.errors import RacewayError, short
+from raceway import RacewayError
+from raceway.errors import short
 
 
 def _raises(self: object, *_: object, **__: object) -> Any:

@@ -23,15 +23,11 @@ import numpy as np
 
 from checks.robustness._doors import called
 from checks.robustness._scenes import fill, scene
-from raceway import load_scene, scene_from_dict
-from raceway.errors import ConvergenceError, RacewayError
-from raceway.pipeline.result import Result
-from raceway.pipeline.run import run
+from raceway import ConvergenceError, RacewayError, Result, Scene, ScenePlan, load_scene, make_plan, scene_from_dict
+from raceway.extend import resolve, run
 from raceway.planning.cost import START_S
-from raceway.planning.plan import ScenePlan, make_plan
-from raceway.planning.resolve import record_bytes, resolve
+from raceway.planning.resolve import record_bytes
 from raceway.planning.rules import foreseen, scene_warnings
-from raceway.scene.scene import Scene
 
 #: Processor time [s] in which a scene is checked and planned, and run; and wall time that nothing may sleep through.
 CHECK_S, RUN_S, ASLEEP_S = 10.0, 60.0, 300.0

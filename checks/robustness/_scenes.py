@@ -20,7 +20,7 @@ import attrs
 import numpy as np
 from raceway_checks.stability.catalogue import TINY
 
-from raceway.scene.schema import scene_schema
+from raceway.extend import scene_schema
 
 Tables = dict[str, Any]
 _EXAMPLES = Path(__file__).parents[2] / "examples"

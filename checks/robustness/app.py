@@ -14,7 +14,7 @@ from raceway_app.worker import Job, News, Worker
 from checks.robustness import Row, below
 from checks.validation.browser.application import Application, Tab, hurry, proportional_memory
 from checks.validation.browser.chromium import Browser
-from raceway.scene.inputs import as_given
+from raceway.extend import as_given
 
 COMMAND = "python -m checks app"
 SCENE = "examples/b7206.toml"

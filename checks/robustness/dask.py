@@ -14,7 +14,7 @@ import attrs
 from checks.robustness import Row, below
 from checks.validation.cluster import POINTS, START_S, Cluster, installed, prepared
 from checks.validation.cluster import rows as rows_of
-from raceway.errors import PluginError
+from raceway import PluginError
 from raceway.plugins.executors.dask import Dask
 from raceway.plugins.executors.processes import Serial
 from raceway.points.sweep import fill_store

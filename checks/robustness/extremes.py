@@ -13,11 +13,8 @@ from rich.console import Console
 from checks.robustness import Row, below, near
 from checks.robustness._fuzz import refuse_nan
 from checks.robustness._scenes import Chance, Tables, example
-from raceway.errors import RacewayError
-from raceway.pipeline.result import Result
-from raceway.pipeline.run import run
-from raceway.planning.plan import make_plan
-from raceway.scene.reading import scene_from_dict
+from raceway import RacewayError, Result, make_plan, scene_from_dict
+from raceway.extend import run
 
 #: Runs that finish, and the most steps and predicted processor time [s] of those that are tried.
 RUNS, _STEPS, _SECONDS = 500, 3000, 3.0

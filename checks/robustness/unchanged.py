@@ -24,7 +24,7 @@ from platformdirs import user_cache_path
 
 from checks.robustness import Row
 from checks.robustness._unchanged_scenes import SCENES
-from raceway.storage.files import write_whole
+from raceway.extend import write_whole
 
 TITLE = "Numbers of results, compared with another commit"
 #: Relative difference that is allowed: the last digits, should an order of sums have to change.

@@ -11,8 +11,7 @@ from raceway_article.design import Curves, article_tables, design
 from raceway_article.elastic import ElasticArticle, _Run
 from raceway_article.study import RIG_LOADS, RIG_SPEEDS, Article
 
-from raceway.scene.inputs import read_toml
-from raceway.storage.tables import Tables
+from raceway.extend import Tables, read_toml
 
 SPEEDS, LOADS = "10980:15000:5", "400,1000,2000"
 #: Far from resonances, so that a run takes milliseconds.

@@ -11,7 +11,7 @@ from checks.validation.groove import DENSITY, HERTZ, POISSON, RADIUS, YOUNG, gue
 from checks.validation.quarter import unfolded
 from raceway.core.contact.hertz import largest_shear
 from raceway.core.fem.elastic.stress import ContactAxis, stress_profile
-from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.extend import HexOperator
 
 
 @attrs.frozen

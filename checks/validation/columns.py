@@ -13,12 +13,10 @@ import attrs
 import numpy as np
 
 import raceway as rw
+from raceway import ConvergenceError, scene_from_dict
 from raceway.bodies.columns import why_no_column
-from raceway.errors import ConvergenceError
-from raceway.framework.registry import registry_with
+from raceway.extend import continuous_keys, registry_with
 from raceway.points.column_quantities import of_result
-from raceway.scene.changes import continuous_keys
-from raceway.scene.reading import scene_from_dict
 
 _BEARINGS: list[dict[str, Any]] = [
     {"preset": "B7206C"},

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from raceway import build_model, make_plan, scene_from_dict
-from raceway.bodies.model import Equilibrium
+from raceway.extend import Equilibrium
 from raceway.storage import array_cache
 from raceway.testing import solve_equilibrium
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from checks.validation.reference import elastic
-from raceway.core.fem.mesh.hex_mesh import HexMesh, boundary
+from raceway.extend import HexMesh, boundary
 
 
 def block(nx=3, ny=4, nz=5, size=(1.0, 2.0, 3.0)):

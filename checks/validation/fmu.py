@@ -16,8 +16,8 @@ from fmpy.fmi2 import FMU2Model, FMU2Slave
 from fmpy.fmi3 import FMU3Model, FMU3Slave
 
 import raceway as rw
-from raceway.bodies.model import build_model
-from raceway.scene.inputs import as_scene
+from raceway import build_model
+from raceway.extend import as_scene
 
 #: A map's scene with load, force and speed for inputs, and ranges over which no ball lifts off.
 MAP: dict[str, Any] = {

@@ -13,7 +13,7 @@ from checks.validation.reference.shooting import swinging, trajectory
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.refinement import displacements
 from raceway.core.periodic.search import directly, highest_order
-from raceway.core.ring.system import System
+from raceway.extend import System
 from raceway.points.branch import first_component
 from raceway.points.parameter import parameter_of
 from raceway.testing import default_registry

@@ -13,7 +13,6 @@ import attrs
 import numpy as np
 
 from checks.validation.quarter import ball_layers, half_line, quarter_ball, quarter_groove
-from raceway.core.contact.hertz import contact_modulus, ellipse
 from raceway.core.contact.laws import linear
 from raceway.core.fem.elastic.assembly import Assembly, Body, Frame
 from raceway.core.fem.elastic.bearing import ElasticSystem
@@ -28,8 +27,8 @@ from raceway.core.fem.elastic.contact import (
 )
 from raceway.core.fem.elastic.newton import TOLERANCE, StaticSolution
 from raceway.core.fem.elastic.surface import Facets, surface_points
-from raceway.core.fem.hexahedron.operator import HexOperator
-from raceway.core.fem.mesh.hex_mesh import HexMesh, growing
+from raceway.core.fem.mesh.hex_mesh import growing
+from raceway.extend import HexMesh, HexOperator, contact_modulus, ellipse
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 DIAMETER, CONFORMITY, ROLLING = 9.525e-3, 0.52, 18.25e-3

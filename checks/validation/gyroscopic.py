@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq, root
 
-from raceway.planning.resolve import resolve
+from raceway.extend import resolve
 from raceway.testing import Model
 
 #: Hypothesis -> shares of the moment's tangential forces at the inner and the outer race, in units of M / D.

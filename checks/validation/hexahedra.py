@@ -8,7 +8,7 @@ from scipy.sparse.linalg import cg
 
 from checks.validation.reference.elastic import block
 from checks.validation.reference.hexahedron import gauss, slopes, values
-from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.extend import HexOperator
 
 DIRECTION = np.array([1.0, -0.5, 0.7])
 

@@ -14,12 +14,9 @@ from raceway.core.contact.laws import linear
 from raceway.core.fem.elastic.assembly import Assembly, Body
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, _plane, penalty_stiffness
-from raceway.core.fem.elastic.linear_statics import solve_static
 from raceway.core.fem.elastic.surface import Facets, surface_points
-from raceway.core.fem.hexahedron.operator import HexOperator
 from raceway.core.fem.mesh.ball_mesh import ball_mesh
-from raceway.core.fem.mesh.hex_mesh import FACES
-from raceway.core.record import Motion
+from raceway.extend import FACES, HexOperator, Motion, solve_static
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 RADIUS, HEIGHT, HALF_WIDTH = 4.7625e-3, 8e-3, 8e-3
@@ -108,7 +105,7 @@ def _block(fine: float, zone: float, growth: float) -> tuple[np.ndarray, np.ndar
 
 def _surface(mesh: tuple[np.ndarray, np.ndarray], chosen: Any, sphere: float | None) -> np.ndarray:
     """(k, 4) nodes of outer facets all of whose corners are chosen (and lie on the sphere)."""
-    from raceway.core.fem.mesh.hex_mesh import boundary
+    from raceway.extend import boundary
 
     points, cells = mesh
     facets = boundary(cells)

@@ -114,7 +114,7 @@ def compared(
 def answers(changes: tuple[str, ...], force: tuple[str, ...] = (), cage: float | None = None) -> Answer:
     """Dynamic stiffness (real, imaginary) of the example, from its scene on, with some parts forced in."""
     from raceway import build_model, load_scene, make_plan
-    from raceway.core.ring.kernels.layout import CAGE
+    from raceway.extend import CAGE
     from raceway.testing import simulate, solve_equilibrium
 
     scene = load_scene(SCENE, changes)
@@ -191,9 +191,7 @@ def integration() -> Rule:
 
 def history() -> Rule:
     from raceway import build_model, load_scene, make_plan
-    from raceway.core.record import Schedule
-    from raceway.core.ring.orbit import at_rest
-    from raceway.core.time.schemes import integrate
+    from raceway.extend import Schedule, at_rest, integrate
     from raceway.planning.resolve import recorded_per_turn
     from raceway.testing import solve_equilibrium
 
@@ -221,9 +219,8 @@ def history() -> Rule:
 def compliances() -> Rule:
     """Compliances made once for all balls and contacts, and once for each ball, nothing kept in memory or on disk."""
     from raceway import load_scene
-    from raceway.bodies.basis import make_basis
     from raceway.core.fem import structural
-    from raceway.planning.resolve import resolve
+    from raceway.extend import make_basis, resolve
     from raceway.plugins.bodies.condensed_bearing import _BODIES, elastic_bodies
 
     problem = resolve(load_scene(SCENE, ("bodies.kind=condensed",)))
@@ -255,9 +252,9 @@ def mirror() -> Rule:
     from scipy.sparse import diags_array
 
     from raceway import load_scene
-    from raceway.core.fem.mesh.ring_mesh import ring_shape
     from raceway.core.fem.revolution.body import Revolution, _factorised
     from raceway.core.fem.structural import ring_section
+    from raceway.extend import ring_shape
 
     bearing = load_scene(SCENE).bearing
     profile = ring_section(ring_shape(bearing, inner=False), bearing.ball_diameter)
@@ -294,7 +291,7 @@ def stresses() -> Rule:
     scene = load_scene(SCENE, changes)
     model = build_model(scene, make_plan(scene))
     bodies = model.system.bodies
-    from raceway.core.ring.system import surrogate
+    from raceway.extend import surrogate
 
     place, places, _ = surrogate(model.system).solve_equilibrium(model.guess)
     system, y = bodies.system, bodies.guess(place, places)

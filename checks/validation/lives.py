@@ -6,7 +6,7 @@ import numpy as np
 
 from raceway import run
 from raceway.core.life import equivalent_loads, ring_lives, system_life
-from raceway.core.ratings import BallRow
+from raceway.extend import BallRow
 
 #: 7 balls of 11.5 mm on 43.5 mm, C = 23 400 N: clearance [m], radial and axial force [N], moment about the radial force [N m], life.
 #: MASTA, in the public test file Test_BallBearing.py of github.com/minzhun/ISO16281; the moment's line has a life of 8e5 and balls

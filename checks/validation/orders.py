@@ -16,9 +16,7 @@ from checks.validation.reference.shooting import rotating as rotating_force
 from checks.validation.reference.shooting import trajectory
 from checks.validation.scenes import rig_force, rotating
 from raceway import scene_from_dict
-from raceway.core.record import Motion, Schedule
-from raceway.core.ring.system import System
-from raceway.core.time.schemes import integrate
+from raceway.extend import Motion, Schedule, System, integrate
 from raceway.scene.growth import ring_inertia
 from raceway.testing import Model, model_of, simulate, solve_equilibrium
 

@@ -16,7 +16,7 @@ from scipy.special import beta
 
 from raceway import LAW, jit
 from raceway.core.periodic.collocation import Path, Problem, Solved, one_turn, solve
-from raceway.core.ring.system import System
+from raceway.extend import System
 from raceway.testing.systems import along_x, contact_system
 
 

@@ -6,8 +6,8 @@ import attrs
 import numpy as np
 
 from raceway.core.columns import Number
-from raceway.core.contact.hertz import ellipse
 from raceway.core.rolling_friction import BallContacts, Lubrication, _spin_shape, losses
+from raceway.extend import ellipse
 
 _SIDES = np.array([[-1.0], [1.0]])
 _AIR, _STEEL = 1.2, 226.4e9

@@ -8,12 +8,10 @@ import attrs
 import numpy as np
 
 from raceway import scene_from_dict
-from raceway.bodies.basis import make_basis
 from raceway.core.contact.hertz import Ellipse
-from raceway.core.fem.mesh.ring_mesh import ring_shape
 from raceway.core.fem.patches.patch import Patch, RingBody, Solid, Spacing, make_ball, make_patch
 from raceway.core.fem.patches.pressure import Contact, ContactState
-from raceway.planning.resolve import resolve
+from raceway.extend import make_basis, resolve, ring_shape
 
 
 @attrs.frozen(eq=False)

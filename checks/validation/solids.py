@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from raceway.core.fem.mesh.hex_mesh import HexMesh
+    from raceway.extend import HexMesh
 
 
 def write(path: Path, solid: str) -> str:

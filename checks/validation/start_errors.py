@@ -15,8 +15,8 @@ import numpy as np
 from checks.validation.error_estimate import SMALL
 from checks.validation.scenes import rotating
 from raceway import ConvergenceError, RacewayError, Result, scene_from_dict
-from raceway.core.ring.orbit import steady_orbit
 from raceway.core.signals import stiffness
+from raceway.extend import steady_orbit
 from raceway.testing import model_of, run, solve_equilibrium
 
 _SEED = 1

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from raceway.answers.quantities import STIFFNESS
+from raceway.extend import STIFFNESS
 from raceway.testing import b7206c
 
 DOFS = ["x", "y", "z", "tilt_y", "tilt_z"]

@@ -16,17 +16,12 @@ from pathlib import Path
 from typing import Any
 
 from checks.validation.sessions import left
-from raceway.errors import RacewayError
-from raceway.framework.registry import default_registry
-from raceway.pipeline.run import run
+from raceway import RacewayError, load_scene, scene_from_dict
+from raceway.extend import default_registry, open_store, read_toml, run, tables_at, with_value
 from raceway.plugins.executors.processes import Serial
-from raceway.points.axes import grid, tables_at
-from raceway.points.dataset import open_store
+from raceway.points.axes import grid
 from raceway.points.sweep import fill_store as study
 from raceway.points.sweep import prepare
-from raceway.scene.changes import with_value
-from raceway.scene.inputs import load_scene, read_toml
-from raceway.scene.reading import scene_from_dict
 
 SCENE = Path(__file__).parents[2] / "examples" / "b7206.toml"
 #: A machine whose processors are busier than this with other programs is not quiet.

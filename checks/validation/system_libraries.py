@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 from raceway import RacewayError
-from raceway.plugins.system_libraries import refuse_pictures
+from raceway.extend import refuse_pictures
 
 
 def _programs(*names: str) -> str:

@@ -16,8 +16,7 @@ from checks.robustness._doors import GOOD, called, fronts
 from checks.robustness._fuzz import Watch, cheap, check, ran
 from checks.robustness._scenes import fill, scene, scene_keys
 from checks.validation.command_line import MINIMAL
-from raceway import load_scene
-from raceway.errors import ConvergenceError
+from raceway import ConvergenceError, load_scene
 
 KEYS = len(scene_keys())
 

@@ -9,9 +9,8 @@ import pytest
 
 from checks.validation import left_out
 from checks.validation.command_line import ARTICLE, python
-from raceway import load_scene
-from raceway.pipeline.run import run as compute
-from raceway.planning.plan import make_plan
+from raceway import load_scene, make_plan
+from raceway.extend import run as compute
 from raceway.planning.resolve import Derived, recorded_per_turn
 
 #: A run in a process of its own: plan, modules, shapes of arrays, compiled kernels with their signatures.
@@ -138,7 +137,8 @@ def test_elastic_bodies_with_whole_contacts_need_of_condensed_ones_what_calibrat
 
 
 def _check_shapes(shapes, scene, plan):
-    from raceway.core.ring.kernels.layout import COLUMNS, SCALARS
+    from raceway.core.ring.kernels.layout import COLUMNS
+    from raceway.extend import SCALARS
 
     z = scene.bearing.ball_count
     # Positions, slips of what rubs, structural approaches of what deforms.

@@ -6,9 +6,8 @@ import pytest
 
 from checks.validation.command_line import ARTICLE
 from checks.validation.plan_time import LEAST, MOST, SCENE, SCENES
-from raceway import load_scene
+from raceway import load_scene, make_plan
 from raceway.planning import cost
-from raceway.planning.plan import make_plan
 
 #: Processor times [s] of whole runs on the reference machine, as report cost measures them: what a test can
 #: hold a prediction against without a clock.  All but start-up, 1.2 s, is what the predictions tell apart.

@@ -8,14 +8,11 @@ from scipy.interpolate import CubicSpline
 
 from raceway import ConvergenceError
 from raceway.core.fem.structural import ElasticBodies, _RingCompliance, elastic_system
-from raceway.core.record import Schedule
-from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels import STORED
 from raceway.core.ring.kernels.layout import CENTRIFUGAL
-from raceway.core.ring.orbit import from_orbit, static_orbit, steady_orbit
-from raceway.core.ring.system import System
+from raceway.core.ring.orbit import static_orbit
 from raceway.core.signatures import Balls, Constants, Contacts, Response
-from raceway.core.time.schemes import integrate
+from raceway.extend import Schedule, System, energy_balance, from_orbit, integrate, steady_orbit
 from raceway.testing import b7206c, model_of
 
 ANGLES = np.linspace(-0.7, 0.7, 13)

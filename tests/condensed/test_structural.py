@@ -8,8 +8,8 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.core.contact.hertz import ball_compliance
-from raceway.core.fem.mesh.ring_mesh import ring_shape
 from raceway.core.fem.structural import _between_grooves, _nodal_weights, first_frequency, half_space, reach, ring_compliance
+from raceway.extend import ring_shape
 from raceway.testing import b7206c
 
 YOUNG, POISSON = 212e9, 0.29

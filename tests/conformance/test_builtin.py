@@ -2,7 +2,7 @@
 
 import pytest
 
-from raceway.framework.registry import Registry
+from raceway.extend import Registry
 from raceway.testing import check
 
 ENTRIES = list(Registry(third_party=False).all())

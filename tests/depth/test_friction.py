@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from raceway import run
-from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.layout import FRICTION, STICK
+from raceway.extend import energy_balance
 from raceway.testing import b7206c, model_of, simulate, solve_equilibrium
 
 

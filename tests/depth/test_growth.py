@@ -10,7 +10,7 @@ from scipy.integrate import solve_bvp
 from checks.validation.reference.rotating_ring import growth_by_elements
 from raceway import SceneError, make_plan, scene_from_dict
 from raceway.core.ring.kernels.layout import REST_RADIAL
-from raceway.planning.resolve import resolve
+from raceway.extend import resolve
 from raceway.scene.growth import groove_depth
 
 

@@ -9,11 +9,11 @@ import pytest
 from checks.validation.ball_pass import SPEED, passing_hz
 from checks.validation.ball_pass import passing_scene as scene
 from raceway import SceneError, make_plan, run, scene_from_dict
-from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, place
+from raceway.core.ring.kernels.layout import CENTRIFUGAL, place
 from raceway.core.signals import phasors
 from raceway.core.signatures import Constants
+from raceway.extend import CAGE, ball_pass
 from raceway.pipeline.quantities import stated_quantities
-from raceway.plugins.quantities.ball_pass import ball_pass
 from raceway.testing import b7206c, model_of, settled, simulate, solve_equilibrium
 
 

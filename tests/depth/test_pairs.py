@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from raceway import SceneError, scene_from_dict
-from raceway.core.ring.system import System
+from raceway.extend import System
 
 DISTANCE = 16e-3
 

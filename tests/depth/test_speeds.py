@@ -9,12 +9,10 @@ import pytest
 from rich.console import Console
 
 from raceway import ConvergenceError, SceneError, make_plan, run, scene_from_dict
-from raceway.core.record import Schedule
 from raceway.core.ring.energy import friction_energy
-from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COSINE, SINE
-from raceway.core.ring.orbit import at_rest
+from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, SINE
 from raceway.core.ring.ring import _SteppedBearing
-from raceway.core.time.schemes import integrate
+from raceway.extend import CAGE, Schedule, at_rest, integrate
 from raceway.plugins.excitations.harmonic import Bidirectional, RunUp
 from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c

@@ -12,7 +12,7 @@ from checks.validation.reference.ring import Ring
 from checks.validation.reference.row_set import RowSet, press, warmed
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.mounting import preload_table
-from raceway.planning.resolve import resolve
+from raceway.extend import resolve
 from raceway.scene.growth import ball_growth
 from raceway.scene.unused import unused
 from raceway.testing import run, solve_equilibrium

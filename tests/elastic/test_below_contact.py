@@ -9,9 +9,8 @@ import pytest
 from checks.validation.below_groove import below
 from checks.validation.cubes import block
 from raceway import scene_from_dict
-from raceway.core.fem.elastic.stress import cells_near, contact_axes
-from raceway.plugins.bodies.elastic_stress import BelowContact, below_contacts
-from raceway.storage.files import write_whole
+from raceway.core.fem.elastic.stress import contact_axes
+from raceway.extend import BelowContact, below_contacts, cells_near, write_whole
 from raceway.testing import run
 from tests.test_elastic_scene import TINY
 

@@ -6,8 +6,7 @@ from raceway_view.stress import _Fields, contacts_left_out, field_files
 
 from checks.validation.command_line import EXAMPLES
 from raceway import scene_from_dict
-from raceway.scene.inputs import read_toml
-from raceway.storage.files import write_whole
+from raceway.extend import read_toml, write_whole
 from raceway.testing import run
 
 

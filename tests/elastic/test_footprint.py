@@ -9,10 +9,7 @@ import pytest
 from raceway import scene_from_dict
 from raceway.core.fem.elastic.resultant import Footprint, _ellipse, footprint
 from raceway.core.fem.elastic.surface import Facets
-from raceway.core.fem.mesh.hex_mesh import azimuth
-from raceway.core.fem.mesh.ring_mesh import ring_shape
-from raceway.planning.resolve import resolve
-from raceway.plugins.bodies.mesh import mesh_bodies
+from raceway.extend import azimuth, mesh_bodies, resolve, ring_shape
 from raceway.testing import b7206c
 
 #: The coarsest meshes in use: a ball of 4 cells across, 36 cells around a ring.

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from raceway import ConvergenceError
-from raceway.core.contact.hertz import contact_modulus, ellipse
-from raceway.core.contact.laws import three_halves
 from raceway.core.fem.elastic.contact import PlaceLaw, _plane, groove
 from raceway.core.fem.elastic.resultant import Footprint, ResultantContact, Touch
+from raceway.extend import contact_modulus, ellipse, three_halves
 
 #: A ball of 9.5 mm on a groove of a ring, about; loads of some hundred newtons make it approach by some micrometres.
 HERTZ = ellipse(480.0, 0.93, contact_modulus(212e9, 0.29, 212e9, 0.29))

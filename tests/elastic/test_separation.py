@@ -9,8 +9,8 @@ from checks.validation.reference import elastic
 from raceway.core.contact.hertz import ball_compliance, normal_displacement
 from raceway.core.fem.elastic.resultant import LoadedBody, _locate, footprint
 from raceway.core.fem.elastic.surface import Facets
-from raceway.core.fem.hexahedron.operator import HexOperator
 from raceway.core.fem.mesh.ball_mesh import ball_mesh
+from raceway.extend import HexOperator
 
 STEEL = YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 #: Thickness of a clamped block, four times as wide as thick, and radius of a ball [m].

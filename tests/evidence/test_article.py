@@ -28,9 +28,8 @@ from raceway_article.design import (
 )
 
 from checks.validation.command_line import EXAMPLES
-from raceway.framework.registry import default_registry
-from raceway.pipeline.run import run
-from raceway.scene.reading import scene_from_dict
+from raceway import scene_from_dict
+from raceway.extend import default_registry, run
 
 pytestmark = pytest.mark.release
 

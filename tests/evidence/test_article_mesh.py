@@ -16,16 +16,12 @@ import numpy as np
 import pytest
 
 from checks.validation.command_line import EXAMPLES
-from raceway import load_scene
-from raceway.bodies.model import build_model
+from raceway import build_model, load_scene, make_plan
 from raceway.core.fem.elastic.assembly import Assembly
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.ring import ElasticRing
-from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.planning.plan import make_plan
-from raceway.planning.resolve import resolve
+from raceway.extend import mesh_bodies, resolve, solve_equilibrium
 from raceway.plugins.bodies.elastic import _elastic_cost
-from raceway.plugins.bodies.mesh import mesh_bodies
 from raceway.storage.kernel_cache import cache_root
 
 # One process for all: the cases share superelements on the disk.

@@ -6,7 +6,7 @@ import pytest
 from raceway_article.design import Setting, article_tables, design
 from raceway_article.study import _curve
 
-from raceway.framework.registry import default_registry
+from raceway.extend import default_registry
 
 pytestmark = pytest.mark.release
 

@@ -16,9 +16,7 @@ from checks.validation.condensed import cost, largest, quantities, tables
 from checks.validation.scenes import rotating
 from raceway.core.fem.revolution.body import Revolution, _seat_areas
 from raceway.core.fem.revolution.sections import ball_profile, coarse_profile, dofs, graded_profile
-from raceway.core.record import Schedule
-from raceway.core.ring.orbit import from_orbit, steady_orbit
-from raceway.core.time.schemes import integrate
+from raceway.extend import Schedule, from_orbit, integrate, steady_orbit
 from raceway.testing import model_of, settled
 from tests.revolution.sections import STEEL, shape
 

@@ -19,14 +19,10 @@ import pytest
 import raceway as rw
 from checks.validation import fused_loop, left_out, plan_time
 from checks.validation.command_line import ARTICLE, MINIMAL, python, raceway
-from raceway import build_model, load_scene
-from raceway.core.record import Schedule
-from raceway.core.ring.orbit import from_orbit, steady_orbit
-from raceway.core.time.schemes import integrate
-from raceway.pipeline.equilibrium import solve_equilibrium
+from raceway import build_model, load_scene, precision
+from raceway.extend import Schedule, from_orbit, integrate, read_toml, solve_equilibrium, steady_orbit
 from raceway.planning.cost import column_time
-from raceway.points.precision import EXACT, precision
-from raceway.scene.inputs import read_toml
+from raceway.points.precision import EXACT
 
 pytestmark = pytest.mark.night
 

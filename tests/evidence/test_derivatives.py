@@ -5,16 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway import build_model, load_scene, scene_from_dict
+from raceway import ConvergenceError, SceneError, band, build_model, load_scene, scene_from_dict, sensitivities
 from raceway.core.jit import working_processor_time
-from raceway.errors import ConvergenceError, SceneError
-from raceway.pipeline.equilibrium import solve_equilibrium
+from raceway.extend import continuous_keys, run, solve_equilibrium, with_number
 from raceway.pipeline.gradient import Gradients, NoDerivative, _SteadyOrbit
-from raceway.pipeline.run import run
-from raceway.points.band import band, design, indices
-from raceway.points.sensitivities import sensitivities
+from raceway.points.band import design, indices
 from raceway.scene.catalogue import _single_presets
-from raceway.scene.changes import continuous_keys, with_number
 
 pytestmark = pytest.mark.night
 

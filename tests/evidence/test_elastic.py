@@ -22,12 +22,10 @@ from checks.validation.below_groove import below
 from checks.validation.command_line import EXAMPLES
 from checks.validation.condensed import largest, quantities, tables
 from checks.validation.groove import HERTZ, pressed, solve
-from raceway import load_scene
-from raceway.planning.resolve import resolve
+from raceway import load_scene, scene_from_dict
+from raceway.extend import mesh_bodies, resolve
 from raceway.plugins.bodies.condensed import Condensed
-from raceway.plugins.bodies.mesh import mesh_bodies
 from raceway.scene.growth import ring_inertia
-from raceway.scene.reading import scene_from_dict
 from raceway.testing import run, settled
 
 pytestmark = pytest.mark.night

@@ -18,9 +18,8 @@ from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.friction import CoulombFriction
 from raceway.core.fem.elastic.iterative_solver import _sticking
 from raceway.core.fem.elastic.ring import from_orbit
-from raceway.core.record import Schedule, drift, largest_share
-from raceway.core.ring.orbit import steady_orbit
-from raceway.core.time.schemes import integrate
+from raceway.core.record import largest_share
+from raceway.extend import Schedule, drift, integrate, steady_orbit
 from raceway.integrators.methods import CentralDifference, Newmark
 from raceway.testing import run, solve_equilibrium
 

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from raceway_article.study import TRENDS
 
-from raceway import sweep
-from raceway.points.compare import compare
-from raceway.scene.inputs import read_toml
+from raceway import compare, sweep
+from raceway.extend import read_toml
 
 pytestmark = pytest.mark.night
 

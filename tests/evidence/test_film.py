@@ -25,11 +25,8 @@ from checks.validation.ross_rotor import in_ross
 from raceway import build_model, scene_from_dict
 from raceway.contact_laws.film import Film
 from raceway.core.contact.film import REGIMES, film, thermal_reduction
-from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.run import run
-from raceway.pipeline.simulate import simulate
+from raceway.extend import TIME_CONSTANTS, run, simulate, solve_equilibrium
 from raceway.scene.lubricant import GRADES, Walther
-from raceway.scene.tables import TIME_CONSTANTS
 
 pytestmark = pytest.mark.night
 

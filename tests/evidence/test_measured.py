@@ -13,8 +13,7 @@ from pathlib import Path
 import attrs
 import numpy as np
 import pytest
-from raceway_measure.fit.fit import fit
-from raceway_measure.fit.identify import _coefficients, identify, identify_recording
+from raceway_measure.fit.identify import _coefficients, identify_recording
 from raceway_measure.fit.signals import write_recording
 from raceway_measure.fit.synchronous import slow_roll
 from raceway_measure.rig.signals import _silent, record, response, slow_roll_record, white_noise
@@ -24,12 +23,10 @@ from raceway_rotor.shaft import _beam, balance, bearing, rotor, shaft
 
 from checks.validation.shaker import hammer_record
 from checks.validation.shaker import record as record_of_shaker
-from raceway import RacewayError, load_scene
+from raceway import RacewayError, evolve, fit, identify, load_scene, run
 from raceway.core.jit import working_process_time
-from raceway.pipeline.front import run
+from raceway.extend import with_number
 from raceway.scene.catalogue import catalogue
-from raceway.scene.changes import with_number
-from raceway.scene.inputs import evolve
 from raceway.testing import b7206c, default_registry
 
 pytestmark = pytest.mark.night

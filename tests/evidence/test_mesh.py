@@ -16,8 +16,7 @@ from checks.validation.command_line import EXAMPLES
 from checks.validation.natural_modes import natural_modes
 from checks.validation.reference import annulus, elastic
 from raceway import load_scene
-from raceway.core.fem.elastic.linear_statics import solve_static
-from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.extend import HexOperator, solve_static
 from raceway.plugins.meshers.structured import Structured
 
 pytestmark = pytest.mark.night

@@ -22,9 +22,8 @@ from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, 
 from raceway.core.periodic.collocation import one_turn
 from raceway.core.periodic.refinement import displacements, states
 from raceway.core.periodic.search import _force_continuation, directly, highest_order, mesh_of, problem_of
-from raceway.core.record import Motion, Schedule
 from raceway.core.signals import stiffness
-from raceway.core.time.schemes import integrate
+from raceway.extend import Motion, Schedule, integrate
 from raceway.integrators.methods import Newmark, Periodic
 from raceway.scene.growth import ring_inertia
 from raceway.testing import model_of, run, simulate, solve_equilibrium

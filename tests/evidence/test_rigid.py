@@ -20,8 +20,9 @@ from checks.validation.gyroscopic import SHARES, axial_displacement, harris_ball
 from checks.validation.scenes import random_tables
 from checks.validation.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
 from raceway import RacewayError
-from raceway.core.ring.energy import energy_balance, friction_energy
+from raceway.core.ring.energy import friction_energy
 from raceway.core.signals import phasors
+from raceway.extend import energy_balance
 from raceway.testing import b7206c, model_of, settled, simulate, solve_equilibrium
 
 SOLVER = "another rigid-ring solver (checks/validation/expected_values.py)"

@@ -13,7 +13,7 @@ from checks.validation.reference.ring import Ring
 from checks.validation.reference.row_set import RowSet, press, press_together, warmed
 from raceway import build_model, load_scene, run, scene_from_dict
 from raceway.bodies.mounting import preload_table
-from raceway.pipeline.equilibrium import solve_equilibrium
+from raceway.extend import solve_equilibrium
 
 pytestmark = pytest.mark.night
 

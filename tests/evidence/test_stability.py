@@ -11,8 +11,7 @@ import pytest
 from raceway_checks.stability.catalogue import catalogue
 from raceway_checks.stability.study import PROCESSES, measured, stability
 
-from raceway.framework.registry import registry_with
-from raceway.points.store import written
+from raceway.extend import registry_with, written
 
 pytestmark = pytest.mark.night
 #: Finished cases are kept here and beside it, as the command keeps them.

@@ -10,8 +10,7 @@ from scipy.sparse.linalg import spsolve
 from checks.validation.hexahedra import distorted, errors
 from checks.validation.reference import hexahedron as reference
 from checks.validation.reference.elastic import block
-from raceway.core.fem.hexahedron.operator import HexOperator
-from raceway.core.fem.hexahedron.strain import KINDS
+from raceway.extend import KINDS, HexOperator
 
 STEEL = (2.1e11, 0.29, 7810.0)
 EVERY = pytest.mark.parametrize("kind", KINDS)

@@ -9,8 +9,7 @@ from checks.validation.hexahedra import distorted
 from checks.validation.reference import hexahedron as reference
 from checks.validation.reference.elastic import block
 from raceway import MeshError
-from raceway.core.fem.hexahedron.operator import HexOperator
-from raceway.core.fem.hexahedron.strain import KINDS
+from raceway.extend import KINDS, HexOperator
 
 STEEL = (2.1e11, 0.29, 7810.0)
 #: Rounding of a sum of some hundred products.

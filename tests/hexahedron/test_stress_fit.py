@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from checks.validation.reference.half_space import pressed_stress
-from raceway.core.contact.hertz import axis_stresses, largest_shear
+from raceway.core.contact.hertz import largest_shear
 from raceway.core.fem.elastic.stress import StressProfile
 from raceway.core.fem.hexahedron.stress_fit import StressFit
+from raceway.extend import axis_stresses
 
 #: Ellipse of a ball bearing's contact, and steel.
 SEMI_AXES, NU = (8.0, 1.0), 0.3

@@ -13,8 +13,8 @@ from raceway_meshing.gmsh import Gmsh
 from checks.validation import solids
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway import MeshError, PluginError, SceneError, load_scene, make_plan, scene_from_dict
-from raceway.planning.resolve import resolve
-from raceway.plugins.bodies.mesh import mesh_bodies, predicted_mesh
+from raceway.extend import mesh_bodies, resolve
+from raceway.plugins.bodies.mesh import predicted_mesh
 from raceway.plugins.meshers.structured import Structured
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing

@@ -13,10 +13,10 @@ from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.core.fem.mesh import ball_mesh as sphere
 from raceway.core.fem.mesh.ball_mesh import ball_cells, ball_mesh
 from raceway.core.fem.mesh.hex_mesh import EDGES, graded, growing
-from raceway.core.fem.mesh.quality import _quality, refuse_bad_cells, summary
-from raceway.core.fem.mesh.ring_mesh import ring_mesh, ring_shape
-from raceway.planning.resolve import resolve
-from raceway.plugins.bodies.mesh import mesh_bodies, mesher_of
+from raceway.core.fem.mesh.quality import _quality
+from raceway.core.fem.mesh.ring_mesh import ring_mesh
+from raceway.extend import mesh_bodies, refuse_bad_cells, resolve, ring_shape, summary
+from raceway.plugins.bodies.mesh import mesher_of
 from raceway.plugins.meshers.structured import Structured
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing

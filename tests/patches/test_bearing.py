@@ -11,8 +11,8 @@ import pytest
 from raceway import ConvergenceError, SceneError, make_plan, scene_from_dict
 from raceway.core.fem.patches.balls import Balls
 from raceway.core.fem.patches.system import Pool
-from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
-from raceway.core.ring.system import compiled, surrogate
+from raceway.core.ring.kernels.layout import CENTRIFUGAL
+from raceway.extend import CAGE, compiled, surrogate
 from raceway.testing import b7206c, model_of, run, settled
 
 NODAL = b7206c(

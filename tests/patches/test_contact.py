@@ -8,9 +8,9 @@ import pytest
 
 from checks.validation.single import Single, single
 from raceway import LAW, ConvergenceError, MeshError, jit
-from raceway.core.contact.laws import three_halves
 from raceway.core.fem.patches.patch import Spacing
 from raceway.core.fem.patches.pressure import BeyondPatch, Contact, PointLaw, _Factor, pressure_field
+from raceway.extend import three_halves
 
 
 @pytest.fixture(scope="module")

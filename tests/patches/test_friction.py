@@ -16,7 +16,7 @@ from raceway.core.fem.patches.friction import Friction, Traction
 from raceway.core.fem.patches.pressure import Contact, SlipState
 from raceway.core.fem.patches.system import _History
 from raceway.core.ring.ring import Increment
-from raceway.planning.resolve import resolve
+from raceway.extend import resolve
 from raceway.plugins.bodies.condensed import _patch_cost
 from raceway.scene.unused import unused
 from tests.patches.test_bearing import RESULTANT, at_rest, off_tangent, tables

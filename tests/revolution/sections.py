@@ -9,8 +9,8 @@ import numpy as np
 
 from checks.validation.command_line import EXAMPLES
 from raceway import load_scene
-from raceway.core.fem.mesh.ring_mesh import ring_shape
 from raceway.core.fem.revolution.sections import Profile, ball_profile, graded_profile
+from raceway.extend import ring_shape
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 STEEL = (212e9, 0.29, 7810.0)

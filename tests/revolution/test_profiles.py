@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from raceway import MeshError, SceneError, scene_from_dict
-from raceway.core.fem.mesh.quality import refuse_bad_cells
-from raceway.core.fem.mesh.ring_mesh import ring_shape
 from raceway.core.fem.patches.patch import _BallMesh, _free_ball
 from raceway.core.fem.revolution.body import Revolution
 from raceway.core.fem.revolution.sections import Profile, coarse_profile, dofs, graded_profile
+from raceway.extend import refuse_bad_cells, ring_shape
 from raceway.plugins.meshers.structured import Structured
 from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c

@@ -10,13 +10,12 @@ import pytest
 
 from checks.validation.scenes import rotating
 from raceway import StabilityError
-from raceway.core.record import Schedule
-from raceway.core.ring.orbit import at_rest, static_orbit
+from raceway.core.ring.orbit import static_orbit
 from raceway.core.ring.ring import _SteppedBearing
-from raceway.core.time.schemes import Drivers, integrate
+from raceway.core.time.schemes import Drivers
+from raceway.extend import Schedule, at_rest, integrate
 from raceway.integrators import raceway_integrators
-from raceway.testing import settled
-from raceway.testing.integrator import IntegratorSuite
+from raceway.testing import IntegratorSuite, settled
 
 #: Those that march in time.
 METHODS = [m for m in raceway_integrators() if not m.steady]

@@ -15,10 +15,7 @@ from raceway.core.fem.elastic.assembly import Assembly, Body
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, _plane
 from raceway.core.fem.elastic.surface import Facets, surface_points
-from raceway.core.fem.hexahedron.operator import HexOperator
-from raceway.core.fem.mesh.hex_mesh import FACES, boundary
-from raceway.core.record import Schedule, drift
-from raceway.core.time.schemes import integrate
+from raceway.extend import FACES, HexOperator, Schedule, boundary, drift, integrate
 from raceway.integrators.methods import CentralDifference, Newmark
 
 YOUNG, SIDE = 2e11, 2e-3

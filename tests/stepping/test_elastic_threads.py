@@ -10,10 +10,8 @@ import pytest
 
 from raceway import StabilityError
 from raceway.core.fem.elastic.assembly import _fitting_threads
-from raceway.core.fem.elastic.ring import standstill
-from raceway.core.record import Schedule
 from raceway.core.threads import ThreadPool
-from raceway.core.time.schemes import integrate
+from raceway.extend import Schedule, integrate, standstill
 from raceway.integrators.methods import CentralDifference
 from raceway.testing import settled
 from tests.test_elastic_scene import EXCITED, TINY

@@ -8,8 +8,7 @@ import pytest
 from checks.validation.block import POISSON, YOUNG, Block
 from raceway import ConvergenceError
 from raceway.core.fem.elastic.friction import CoulombFriction
-from raceway.core.record import Schedule, drift
-from raceway.core.time.schemes import integrate
+from raceway.extend import Schedule, drift, integrate
 from raceway.integrators.methods import CentralDifference, Newmark
 
 WEIGHT, MU = 2.0, 0.3

@@ -7,7 +7,7 @@ import pytest
 
 from checks.validation.reference import elastic
 from raceway.core.fem.elastic.superelement import Closed, Copies, Loose, Part, gather_turned, sectors
-from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.extend import HexOperator
 from tests.superelements.bearings import STEEL, assembled, schur, unknowns
 
 #: Even and odd: with and without the harmonic in which neighbours move against each other.

@@ -8,7 +8,7 @@ import pytest
 from checks.validation.reference import elastic
 from raceway import ConvergenceError
 from raceway.core.fem.elastic.fronts import dissect, factored
-from raceway.core.fem.hexahedron.operator import HexOperator
+from raceway.extend import HexOperator
 from tests.superelements.bearings import STEEL, assembled, schur, unknowns
 
 MESHES = {

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from raceway.core.fem.elastic.iterative_solver import LinearSolver
-from raceway.core.fem.elastic.ring import standstill
 from raceway.core.fem.elastic.superelement import Closed
-from raceway.core.record import Schedule
-from raceway.core.time.schemes import integrate
+from raceway.extend import Schedule, integrate, standstill
 from raceway.integrators.methods import GeneralizedAlpha, Newmark
 from raceway.testing import solve_equilibrium
 from tests.superelements.bearings import built

@@ -15,7 +15,7 @@ from typing import Any, Self
 
 from checks.validation.browser.chromium import Browser
 from checks.validation.command_line import PATIENCE_S
-from raceway.pipeline.run_screen import screen
+from raceway.extend import screen
 
 _READY = """
 const app = document.querySelector(".app"), last = arguments[0];

@@ -3,10 +3,9 @@
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from raceway.core.fem.mesh.ring_mesh import ring_shape
 from raceway.core.fem.revolution.body import Revolution
 from raceway.core.fem.revolution.sections import coarse_profile
-from raceway.planning.resolve import resolve
+from raceway.extend import resolve, ring_shape
 
 
 def growth_by_elements(scene, size=0.5e-3):

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from raceway.core.fem.elastic.linear_statics import rigid_motions
-from raceway.core.fem.hexahedron.operator import HexOperator
 from raceway.core.fem.revolution.sections import Profile
+from raceway.extend import HexOperator
 
 
 class Swept:

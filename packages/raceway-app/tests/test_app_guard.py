@@ -21,7 +21,7 @@ import raceway as rw
 from checks.validation.browser.application import Application, Tab, proportional_memory
 from checks.validation.browser.chromium import Browser
 from checks.validation.command_line import EXAMPLES, PATIENCE_S
-from raceway.scene.inputs import as_given
+from raceway.extend import as_given
 
 SCENE = str(EXAMPLES / "b7206.toml")
 

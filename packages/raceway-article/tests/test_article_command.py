@@ -15,10 +15,8 @@ from raceway_article.page import page
 
 from checks.validation.article_study import SMALL, curves, row, study
 from checks.validation.command_line import EXAMPLES, invoke
-from raceway.errors import ConvergenceError
-from raceway.framework.registry import default_registry
-from raceway.points.attractor import FAILED, Attractor
-from raceway.scene.inputs import read_toml
+from raceway import ConvergenceError
+from raceway.extend import FAILED, Attractor, default_registry, read_toml
 
 
 @pytest.fixture

@@ -17,8 +17,7 @@ import raceway as rw
 from checks.validation.article_study import elastic_rows, elastic_study
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway import ConvergenceError, SceneError
-from raceway.answers.progress import RemainingTime
-from raceway.scene.inputs import read_toml
+from raceway.extend import RemainingTime, read_toml
 from raceway.testing import default_registry
 
 #: Three balls under a penalty so soft that every load case has an equilibrium: every path, no accuracy.

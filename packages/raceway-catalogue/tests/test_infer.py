@@ -17,8 +17,8 @@ import raceway as rw
 from checks.validation.command_line import invoke
 from raceway import SceneError
 from raceway.core.contact.geometry import BallBearing
-from raceway.core.contact.hertz import contact_modulus
-from raceway.core.ratings import BallRow, _groove, _load_factor, _static_factor
+from raceway.core.ratings import _groove, _load_factor, _static_factor
+from raceway.extend import BallRow, contact_modulus
 
 #: 7206C: 12 balls of 9.525 mm on 46 mm, 15 deg.
 Z, D, PITCH, ANGLE = 12, 9.525e-3, 46e-3, np.radians(15.0)

@@ -12,10 +12,8 @@ import pytest
 from raceway_checks.verify.reference import reference_cases
 from raceway_checks.verify.study import _impact_of, _measure, transient_integrators
 
-from raceway.core.ring.kernels.impact import impact_system
 from raceway.core.ring.kernels.layout import DAMPING
-from raceway.core.time.schemes import integrate
-from raceway.framework.registry import default_registry
+from raceway.extend import default_registry, impact_system, integrate
 
 CASES = ("chung-ooi-1-glass", "chung-ooi-3-alumina")
 INTEGRATORS = [entry.name for entry in transient_integrators(default_registry())]
@@ -43,8 +41,7 @@ def test_a_mass_on_a_spring_keeps_its_period_when_the_contact_is_open(name):
 
     The phase error of the worst of them is (w dt)^2 / 12 of 2 pi: 5e-4.
     """
-    from raceway.core.contact.laws import three_halves
-    from raceway.core.record import Motion, Schedule
+    from raceway.extend import Motion, Schedule, three_halves
 
     mass, stiffness, x0 = 2.0, 8e6, 1e-5
     system = impact_system(mass, three_halves, np.array([1e10]), clearance=1.0, stiffness=stiffness)
@@ -61,7 +58,7 @@ def test_a_mass_on_a_spring_keeps_its_period_when_the_contact_is_open(name):
 def test_an_impact_on_a_penalty(name):
     """Q = c d^2: energy gives d_max = (3 m v^2 / (2 c))^(1/3).  Tolerance as for Hertz; the frequency is about the same."""
     from raceway.core.contact.laws import square
-    from raceway.core.record import Motion, Schedule
+    from raceway.extend import Motion, Schedule
 
     mass, speed, factor = 0.01, 2.0, 1e12
     deepest = (1.5 * mass * speed**2 / factor) ** (1 / 3)
@@ -75,7 +72,7 @@ def test_an_impact_on_a_penalty(name):
 
 
 def test_a_dashpot_takes_energy_and_the_tangents_are_consistent():
-    from raceway.core.contact.laws import three_halves
+    from raceway.extend import three_halves
 
     system = impact_system(1.0, three_halves, np.array([1e10]))
     system.scalars[DAMPING] = 50.0
@@ -91,7 +88,7 @@ def test_a_dashpot_takes_energy_and_the_tangents_are_consistent():
 
 
 def test_a_mass_pressed_on_a_contact_settles_where_hertz_says():
-    from raceway.core.contact.laws import three_halves
+    from raceway.extend import three_halves
 
     system = impact_system(1.0, three_halves, np.array([1e10]), load=500.0, clearance=2e-6)
     q, _, _ = system.solve_equilibrium(np.zeros(5))

@@ -18,11 +18,9 @@ from raceway_checks.stability.study import AS_EXPECTED, FAILED, Case, Limit, Row
 from raceway_checks.stability.systems import Bench
 
 from checks.validation.command_line import ARTICLE, EXAMPLES, invoke
+from raceway import ConvergenceError, SceneError
 from raceway.core.ring.ring import Ring
-from raceway.errors import ConvergenceError, SceneError
-from raceway.framework.registry import default_registry, registry_with
-from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.points.store import written
+from raceway.extend import default_registry, registry_with, solve_equilibrium, written
 
 REGISTRY = default_registry()
 CUBIC, DAMPED = (EXAMPLES.parent / "tests" / f"{name}.py" for name in ("cubic_law", "hunt_crossley"))

@@ -11,9 +11,8 @@ from raceway_checks.verify import study as module
 from raceway_checks.verify.reference import reference_cases
 from raceway_checks.verify.study import COMPUTED, _Verification, verify
 
-from raceway import hookimpl
-from raceway.errors import ConvergenceError, SceneError
-from raceway.framework.registry import Registry
+from raceway import ConvergenceError, SceneError, hookimpl
+from raceway.extend import Registry
 from raceway.integrators.methods import Newmark
 
 

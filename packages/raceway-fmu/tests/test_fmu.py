@@ -17,8 +17,8 @@ from fmpy.validation import validate_fmu
 
 import raceway as rw
 from checks.validation.fmu import FORCES, MAP, RANGES, Instance, exported, force_difference, jeffcott, map_difference
-from raceway.errors import SceneError
-from raceway.scene.inputs import as_scene
+from raceway import SceneError
+from raceway.extend import as_scene
 
 TURNING = MAP | {"contact": {}, "excitation": MAP["excitation"] | {"force": 400.0}}
 

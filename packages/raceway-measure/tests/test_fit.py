@@ -18,8 +18,7 @@ import raceway as rw
 from checks.validation.command_line import EXAMPLES, invoke
 from checks.validation.shaker import hammer_record, record, turning_record
 from raceway import ConvergenceError, SceneError, load_scene
-from raceway.scene.changes import with_number
-from raceway.storage.number_table import NumberTable
+from raceway.extend import NumberTable, with_number
 from raceway.testing import b7206c, default_registry
 
 ANGLE = "bearing.contact_angle_deg"

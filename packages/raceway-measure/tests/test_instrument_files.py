@@ -13,7 +13,7 @@ from raceway_measure.fit.signals import signals_of
 import raceway as rw
 from checks.validation.command_line import invoke
 from raceway import SceneError
-from raceway.storage.number_table import read_numbers
+from raceway.extend import read_numbers
 
 
 @pytest.mark.parametrize("instrument", [*FORMS, "tdms"])

@@ -16,8 +16,8 @@ from checks.validation.cubes import block
 from checks.validation.solids import write, write_msh
 from checks.validation.squeezed import squeezed
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
-from raceway.planning.resolve import resolve
-from raceway.plugins.bodies.mesh import check_sets, mesh_bodies
+from raceway.extend import mesh_bodies, resolve
+from raceway.plugins.bodies.mesh import check_sets
 from raceway.scene.tables import Supports
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing

@@ -16,9 +16,9 @@ from raceway_rotor.ross_file import NAMES, _smoothed, through_points
 
 from checks.validation.stores import MASS, SPEEDS, as_list, damping, made, scene, stiffness
 from raceway import RacewayError, SceneError
+from raceway.extend import select
 from raceway.plugins.executors.processes import Serial
 from raceway.points.axes import grid
-from raceway.points.plot import select
 from raceway.points.sweep import fill_store, prepare
 from raceway.testing import b7206c
 

@@ -16,7 +16,7 @@ from raceway_rotor.ross_file import ross
 import raceway as rw
 from checks.validation.command_line import EXAMPLES
 from raceway import RacewayError, SceneError
-from raceway.plugins.excitations.harmonic import harmonic_load
+from raceway.extend import harmonic_load
 
 SPEED = 12000.0 * np.pi / 30.0
 UNITS = np.ones(2)

@@ -15,8 +15,7 @@ from raceway_view.view import _at_peak, at_rest
 
 from checks.validation.command_line import COARSE, EXAMPLES, MINIMAL, invoke, python
 from raceway import scene_from_dict
-from raceway.core.fem.mesh.ring_mesh import ring_shape
-from raceway.plugins.formats.pictures import picture
+from raceway.extend import picture, ring_shape
 from raceway.testing import b7206c, run
 
 

@@ -17,7 +17,7 @@ from raceway_rotor.shaft import balance, bearing, rotor
 from checks.validation.command_line import EXAMPLES, invoke
 from checks.validation.records import SPEED
 from raceway import ConvergenceError, RacewayError, load_scene
-from raceway.points.store import written
+from raceway.extend import written
 from raceway.testing import default_registry
 
 SCENE = EXAMPLES / "test_rig.toml"
