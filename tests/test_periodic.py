@@ -16,19 +16,10 @@ from checks.validation.scenes import rotating
 from checks.validation.several import heavy
 from raceway import SceneError, run
 from raceway.core.periodic.branch import Branch
+from raceway.core.periodic.branches import force_continuation
 from raceway.core.periodic.collocation import Problem, _newton, one_turn, solve, stiff
 from raceway.core.periodic.refinement import motion_at, record
-from raceway.core.periodic.search import (
-    Recorded,
-    _force_continuation,
-    _guess,
-    _neighbour_of,
-    _response,
-    find,
-    highest_order,
-    mesh_of,
-    problem_of,
-)
+from raceway.core.periodic.search import Recorded, _neighbour_of, find, guess, highest_order, mesh_of, problem_of, response
 from raceway.core.periodic.steady import _equilibrium
 from raceway.extend import Motion, Schedule, integrate, steady_orbit
 from raceway.integrators.methods import Periodic
@@ -146,7 +137,7 @@ def softening():
 
 def test_a_branch_passes_its_folds(softening):
     problem, q, tangent = softening
-    points = list(_force_continuation(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
+    points = list(force_continuation(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
     shares = np.array([point.parameter for point in points])
     assert points[-1].parameter >= 1.0
     assert any(point.folded for point in points)
@@ -190,7 +181,7 @@ def test_the_slope_of_a_growing_force_is_the_difference_quotient(softening):
     """Each point of the branch from rest with the known slope and by differences."""
     problem, q, tangent = softening
     nodes = mesh_of(problem, highest_order(problem, tangent))
-    first = next(_force_continuation(problem, q, tangent, nodes))
+    first = next(force_continuation(problem, q, tangent, nodes))
 
     def followed(slope):
         branch = Branch(lambda share: attrs.evolve(problem, share=share), 1.0, 1e-6, 1e-4, 512, slope)
@@ -205,7 +196,7 @@ def test_the_slope_of_a_growing_force_is_the_difference_quotient(softening):
 def test_a_motion_is_kept_where_two_exist(softening):
     """Down the upper branch by 3 % of the force at a time to between the folds; there the search from rest finds the lower motion."""
     problem, q, tangent = softening
-    points = list(_force_continuation(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
+    points = list(force_continuation(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
     turned = int(np.argmax(np.diff([point.parameter for point in points]) < 0.0))
     high, low = points[turned].parameter, min(point.parameter for point in points[turned:])
     near, share = _neighbour_of(points[-1].solved, q, tangent), points[-1].parameter
@@ -226,7 +217,7 @@ def test_newton_ends_at_its_tolerance():
     problem = Problem(model.system, 1256.0, one_turn(model.system))
     nodes = mesh_of(problem, highest_order(problem, equilibrium.stiffness))
     for tolerance in (1e-4, 1e-6, 1e-8):
-        once = solve(problem, _guess(problem, equilibrium.displacement, equilibrium.stiffness, nodes), tolerance)
+        once = solve(problem, guess(problem, equilibrium.displacement, equilibrium.stiffness, nodes), tolerance)
         assert once.correction <= tolerance * once.size
         again = solve(problem, once.path, 1e-13)
         assert np.abs((again.path.q - once.path.q) / problem.weight).max() <= tolerance * once.size
@@ -348,9 +339,9 @@ def test_the_linear_response_at_another_speed_has_the_lines_of_the_force():
     tangent = model.system.evaluate(q).stiffness
     here = problem_of(model.system, w, q, False)
     for ratio in (0.85, 1.15):
-        orders, lines = _response(attrs.evolve(here, speed=ratio * w, clock=w), tangent)
+        orders, lines = response(attrs.evolve(here, speed=ratio * w, clock=w), tangent)
         assert orders.tolist() == [1]
         at = np.linalg.inv(tangent[1:3, 1:3] - (ratio * w) ** 2 * model.system.mass[1:3, 1:3])
         known = np.linalg.inv(tangent[1:3, 1:3] - w**2 * model.system.mass[1:3, 1:3])
-        _, wanted = _response(here, tangent)
+        _, wanted = response(here, tangent)
         assert np.abs(lines[0, 1:3] - at @ np.linalg.solve(known, wanted[0, 1:3])).max() < 1e-9 * np.abs(wanted).max()

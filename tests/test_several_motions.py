@@ -10,8 +10,7 @@ from rich.console import Console
 
 from checks.validation.several import article, by_integration, heavy
 from raceway import ConvergenceError, run
-from raceway.core.periodic import search as direct
-from raceway.core.periodic import steady
+from raceway.core.periodic import branches, search, steady
 from raceway.core.ring.orbit import differentiation
 
 
@@ -186,7 +185,8 @@ def test_an_error_estimate_lets_no_force_grow_on_a_mesh_of_thousands_of_interval
         meshes.append(first.intervals)
         raise ConvergenceError("not found")
 
-    monkeypatch.setattr(direct, "solve", newton)
+    monkeypatch.setattr(search, "solve", newton)
+    monkeypatch.setattr(branches, "solve", newton)
     run(tables)
     assert meshes, "the motion is searched for directly"
-    assert max(meshes) <= 1.5 * direct.HIGHEST, "but not on twice the mesh, share by share"
+    assert max(meshes) <= 1.5 * search.HIGHEST, "but not on twice the mesh, share by share"

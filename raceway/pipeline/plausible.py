@@ -330,11 +330,13 @@ def _under(model: Model, problem: Problem, near: Equilibrium) -> tuple[Model, Eq
     if problem.kinematics.gyroscopic == "none":
         scalars[GYROSCOPIC] = 0.0
     else:
-        from raceway.core.ring.kernels.structural import condensed
-        from raceway.core.ring.kernels.tangential import rigid_tangential
+        from raceway.core.ring.kernels.tangential import rigid_tangential as kernel
 
         add_moments(scalars, problem, model.geometry)
-        kernel = condensed(rigid_tangential) if ring.condensed else rigid_tangential
+        if ring.condensed:
+            from raceway.core.ring.kernels.structural import condensed
+
+            kernel = condensed(kernel)
     system = attrs.evolve(ring, scalars=scalars, table=table, kernel=kernel)
     if system.mounted_params is not None and system.reach is not None:  # a law is renewed from standstill, as in a run
         system = system.running(system.mounted_params, np.zeros_like(system.reach))

@@ -31,8 +31,6 @@ from raceway.pipeline.quantities import StatedQuantities
 from raceway.pipeline.simulate import Simulation
 from raceway.pipeline.uncertainty import stated, uncertainty_table
 from raceway.planning.resolve import Problem
-from raceway.plugins.formats.labelled import labelled
-from raceway.plugins.formats.pictures import Pictures, plot
 from raceway.scene.catalogue import geometry_of
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.files import without_nan
@@ -206,6 +204,8 @@ class Result(Answer):
     @cached_property
     def tolerances(self) -> Tables | None:
         """95 % band over the scene's [tolerances] to first order, by derivatives; None without that table."""
+        if "tolerances" not in self.model.scene.source:
+            return None
         from raceway.pipeline.gradient import first_order_band
 
         return first_order_band(self.model, self.equilibrium)
@@ -296,6 +296,8 @@ class Result(Answer):
         RacewayError
             xarray is missing.
         """
+        from raceway.plugins.formats.labelled import labelled
+
         return labelled(self)
 
     @overload
@@ -322,6 +324,8 @@ class Result(Answer):
         RacewayError
             matplotlib is missing; no such picture, or no data for it.
         """
+        from raceway.plugins.formats.pictures import plot
+
         return plot(self, what, ax)
 
     def _shown(self) -> tuple[str, list[Fact]]:
@@ -401,6 +405,8 @@ class Result(Answer):
     @door
     def picture(self, folder: Annotated[str | Path, PATH]) -> list[Path]:
         """Orbit, spectrum and ball loads, as far as there is data, a PNG each."""
+        from raceway.plugins.formats.pictures import Pictures
+
         return Pictures().write(Path(folder), self)
 
     @door
@@ -512,9 +518,9 @@ def chosen_reports(names: Iterable[str], registry: Registry) -> list[Chosen]:
     PluginError
         A name that no format of results has, or two; a format whose options have no defaults.
     """
-    reports = []
-    writing = sorted({each.name for each in registry.of_kind("format") if of_results(each.plugin)})
-    for name in dict.fromkeys(names):
+    reports, names = [], dict.fromkeys(names)
+    writing = sorted({each.name for each in registry.of_kind("format") if of_results(each.plugin)}) if names else []
+    for name in names:
         if name not in writing:
             raise PluginError(
                 f"no format of results named '{name}'{nearest(name, writing)}; installed: {', '.join(writing)}"

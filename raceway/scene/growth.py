@@ -53,7 +53,7 @@ def _moments(b: Bearing, depth: Number) -> tuple[Number, Number, Number] | None:
         return ring_shape(b, True).moments
     if b.bore is None or b.width is None:
         return None
-    from raceway.core.fem.mesh.ring_mesh import RingSection
+    from raceway.core.fem.mesh.ring_section import RingSection
 
     volume, transverse, polar = RingSection.of(b, depth).moments
     return volume, transverse, polar
@@ -66,7 +66,7 @@ def _growth(b: Bearing, depth: Number) -> Number:
     if b.width is None:
         bore, land = 0.5 * (b.bore or 0.0), 0.5 * (b.pitch_diameter - b.ball_diameter) + depth
         return land / (4.0 * young) * ((1.0 - poisson) * land**2 + (3.0 + poisson) * bore**2)
-    from raceway.core.fem.mesh.ring_mesh import RingSection
+    from raceway.core.fem.mesh.ring_section import RingSection
 
     if not has_columns(b):
         return RingSection.of(b, depth).growth(young, poisson)

@@ -19,9 +19,10 @@ from checks.validation.reference.shooting import rotating as turning
 from checks.validation.reference.shooting import swinging
 from checks.validation.scenes import rig_force, rotating
 from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, special_points
+from raceway.core.periodic.branches import force_continuation
 from raceway.core.periodic.collocation import one_turn
 from raceway.core.periodic.refinement import displacements, states
-from raceway.core.periodic.search import _force_continuation, directly, highest_order, mesh_of, problem_of
+from raceway.core.periodic.search import directly, highest_order, mesh_of, problem_of
 from raceway.core.signals import stiffness
 from raceway.extend import Motion, Schedule, integrate
 from raceway.integrators.methods import Newmark, Periodic
@@ -181,7 +182,7 @@ def test_no_motion_grows_out_of_rest(claim):
         speed, q = 2.0 * np.pi / model.excitation.period_s, equilibrium.displacement
         problem = attrs.evolve(problem_of(system, speed, q, False), symmetry=one_turn(system))
         mesh = mesh_of(problem, highest_order(problem, equilibrium.stiffness))
-        shares = [point.parameter for point in _force_continuation(problem, q, equilibrium.stiffness, mesh)]
+        shares = [point.parameter for point in force_continuation(problem, q, equilibrium.stiffness, mesh)]
         assert abs(shares[-1]) < 0.02
         folds.append(max(shares))
         floquet = solved(tables).stability["floquet"]

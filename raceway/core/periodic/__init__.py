@@ -4,7 +4,7 @@ collocation   the boundary-value problem on one mesh: Gauss points, symmetry of 
 intervals     compiled: residuals, exact tangents, transfer matrices, rates and contacts, one interval after the other
 refinement    meshes halved where the error is made; the error that is left; equidistant samples
 branch        pseudo-arclength continuation over any parameter: folds, branch points, period doublings
-search        all motions: from a first guess, under a growing force, from another speed or load, along branches
+search        all motions: from a first guess or a neighbour;  branches: under a growing force, from another speed or load
 floquet       Floquet multipliers and stability
 orbits        compiled: steady orbits of many points, by Fourier collocation;  extremes: of the contact forces along them
 monodromy     compiled: what becomes of a disturbance of an orbit over a span

@@ -9,7 +9,7 @@ import numpy as np
 
 from raceway.core.contact.damping import stored_energy
 from raceway.core.record import Record
-from raceway.core.ring.kernels import layout, rollers
+from raceway.core.ring.kernels import layout
 from raceway.core.ring.system import System
 
 
@@ -91,6 +91,8 @@ def _gaps(system: System, record: Record) -> Iterator[tuple[float, np.ndarray]]:
     if table.shape[1] == layout.COLUMNS:
         yield 1.0, np.ascontiguousarray(record.gap)
         return
+    from raceway.core.ring.kernels import rollers
+
     count, (length, profile) = int(table[0, rollers.LAMINAE]), table[0, [rollers.LENGTH, rollers.PROFILE]]
     azimuth = np.arctan2(table[:, layout.SINE], table[:, layout.COSINE]) + system.scalars[layout.CAGE] * record.time[:, None]
     turn = record.displacement[:, 3:4] * np.sin(azimuth) - record.displacement[:, 4:5] * np.cos(azimuth)

@@ -1,0 +1,365 @@
+"""Motions on branches: on which the force grows from rest, or the speed or the load changes; where none is alone or found directly."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from functools import partial
+from itertools import islice, pairwise
+
+import attrs
+import numpy as np
+
+from raceway.core.periodic.branch import Branch, Point
+from raceway.core.periodic.collocation import Path, Problem, Solved, solve
+from raceway.core.periodic.intervals import Eliminated, forces
+from raceway.core.periodic.refinement import Refined, displacements, refine, states
+from raceway.core.periodic.search import (
+    MOST,
+    ROUGH,
+    PeriodicMotion,
+    directly,
+    full_steps,
+    guess,
+    highest_order,
+    mesh_of,
+    response,
+    standing,
+    with_multipliers,
+)
+from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
+from raceway.errors import ConvergenceError
+
+#: First and least step of a growing force; on larger meshes the least is half the first.
+_FIRST_SHARE, _LEAST_SHARE = 0.25, 0.02
+
+
+def _towards(before: Point, after: Point, parameter: float) -> Path:
+    """The path at one parameter between two points, or of the second one where their meshes differ."""
+    path = after.solved.path
+    if before.solved.path.intervals == path.intervals and np.array_equal(before.solved.path.nodes, path.nodes):
+        part = (parameter - before.parameter) / (after.parameter - before.parameter)
+        path = _between(before.solved.path, path, part)
+    return path
+
+
+def _between(first: Path, second: Path, part: float) -> Path:
+    """The second path's part and the first one's rest; ``part`` > 1 goes on beyond the second."""
+    names = ("q", "v", "a", "ball", "rate")
+    return attrs.evolve(second, **{x: (1.0 - part) * getattr(first, x) + part * getattr(second, x) for x in names})
+
+
+def _by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
+    """With the force growing step by step, each begun where the last two lead; twice the mesh of a direct solve."""
+    nodes = mesh_of(problem, highest_order(problem, tangent), 2)
+
+    def part(share: float) -> Problem:
+        return attrs.evolve(problem, share=share * problem.share)
+
+    share, step = 0.0, _FIRST_SHARE
+    last, before, gap = standing(problem, q, nodes), None, 1.0
+    while share < 1.0:
+        problem.watch()
+        step = min(step, 1.0 - share)
+        here = part(share + step)
+        first = guess(here, q, tangent, nodes) if before is None else _between(before, last, 1.0 + step / gap)
+        try:
+            solved = full_steps(here, first, ROUGH)
+        except ConvergenceError:
+            step *= 0.5
+            # A large mesh makes small steps dear; none leads round a fold anyway.
+            if step < (_LEAST_SHARE if len(nodes) <= MOST else 0.5 * _FIRST_SHARE):
+                raise
+            continue
+        share, gap = share + step, step
+        before, last = last, solved.path
+        step *= 1.5 if solved.sweeps <= 5 else 1.0
+    return refine(solve(problem, last, 1e-2 * tolerance), tolerance)
+
+
+#: Points of a branch.
+POINTS = 120
+
+
+#: Share of the force up to which the branch from rest is followed for its folds: a Duffing oscillator whose motion differs
+#: by a tenth from its linear response (``neighbour.MOST_NONLINEAR``) folds at 1.35 times the force, the internal resonances
+#: of the article's scene with tilt free at 1.6 and 1.8 times.
+_BEYOND = 2.0
+
+
+#: A branch that stays below this share of the force for so many points has become a free vibration: it is left there.
+_SMALL_SHARE, _SMALL_POINTS = 0.2, 10
+
+
+@attrs.frozen(eq=False)
+class _ForceBranch:
+    """Points of a branch over the share of the force.
+
+    largest : share of the force;  reaches : the whole force
+    folds : whether it turns back anywhere
+    crossings : neighbouring points on either side of the whole force or its opposite, in the order of the branch
+    """
+
+    largest: float = 0.0
+    folds: bool = False
+    crossings: tuple[tuple[Point, Point], ...] = ()
+
+    @property
+    def reaches(self) -> bool:
+        return self.largest >= 1.0
+
+    @classmethod
+    def of(cls, points: Iterable[Point]) -> _ForceBranch:
+        """Of points that come one by one."""
+        largest, folds, crossings = 0.0, False, []
+        for before, after in pairwise(points):
+            largest, folds = max(largest, before.parameter, after.parameter), folds or after.folded
+            if any((before.parameter - share) * (after.parameter - share) <= 0.0 for share in (1.0, -1.0)):
+                crossings.append((before, after))
+        return cls(largest, folds, tuple(crossings))
+
+
+def _force_branch(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> _ForceBranch:
+    """The branch from rest, beyond the whole force for its folds and round to the force's opposite.
+
+    ConvergenceError: it has no first point.
+    """
+    return _ForceBranch.of(force_continuation(problem, q, tangent, nodes, _BEYOND, -1.0, _SMALL_POINTS))
+
+
+def force_continuation(
+    problem: Problem,
+    q: np.ndarray,
+    tangent: np.ndarray,
+    nodes: np.ndarray,
+    most: float = 1.0,
+    least: float = -0.01,
+    small_points: int = POINTS,
+) -> Iterator[Point]:
+    """Points from the resting ring on until the force's share leaves ``least`` to ``most``, or to where the branch is lost.
+
+    small_points : points in a row of next to no force that end it, too: there it has become a free vibration
+    ConvergenceError: there is no first point.
+    """
+    _, lines = response(problem, tangent)
+    length = max(float(np.abs(lines / problem.weight).max(initial=0.0)), 1e-12)
+
+    def slope(at: Problem, path: Path) -> np.ndarray:
+        return -problem.share * at.force(at.angles(path.nodes))
+
+    branch = Branch(lambda share: attrs.evolve(problem, share=share * problem.share), 1.0, length, ROUGH, MOST, slope)
+    still = attrs.evolve(problem, share=0.0)
+    n, none = len(problem.free), np.empty((0, 0))
+    linear = Eliminated(none, none, np.zeros((2 * n, 2 * n + 2)))
+    equilibrium = Solved(still, standing(still, q, nodes), linear, 0.0, True, 0, 0.0)
+    first, small = branch.start(equilibrium, 0.0), 0
+    try:
+        for point in islice(branch.follow(first, 0.1, 2.0), POINTS):
+            yield point
+            small = small + 1 if point.solved.size > length and abs(point.parameter) < _SMALL_SHARE else 0
+            if point.parameter >= most or point.parameter < least or small >= small_points:
+                return
+    except ConvergenceError:  # lost: what it led to stands
+        return
+
+
+def _at_full_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], tolerance: float) -> Iterator[Refined]:
+    """Where a branch over the share of the force meets the whole force, or its opposite: that is the force half a turn later."""
+    # Whether the force half a turn later is its opposite.
+    angles = np.array([0.1, 0.9, 2.3])
+    now, later = np.empty((3, 5)), np.empty((3, 5))
+    system = problem.system
+    forces(system.force, system.force_params, angles / problem.clock, now)
+    forces(system.force, system.force_params, (angles + np.pi) / problem.clock, later)
+    opposite = bool(np.abs(now + later).max() <= 1e-9 * np.abs(now).max()) and problem.system.scalars[CAGE] == 0.0
+    for before, after in crossings:
+        for share in (1.0, -1.0):
+            if (before.parameter - share) * (after.parameter - share) > 0.0 or (share < 0.0 and not opposite):
+                continue
+            path = _towards(before, after, share)
+            try:
+                if share < 0.0:
+                    # The motion on its own mesh as it is half a turn later, for a problem whose force is the opposite of its own.
+                    solved = attrs.evolve(after.solved, path=path)
+                    nodes = solved.path.nodes
+                    q, v, _, _, _ = states(solved, nodes + np.pi)
+                    _, _, a, ball, rate = states(solved, problem.angles(nodes) + np.pi)
+                    path = Path(nodes, np.ascontiguousarray(q), np.ascontiguousarray(v), np.ascontiguousarray(a), ball, rate)
+                yield refine(solve(problem, path, 1e-2 * tolerance), tolerance)
+            except ConvergenceError:
+                continue
+
+
+#: Speeds, and axial loads, over the wanted one, that the motion is followed from.
+_RATIOS, _LOADS = (1.15, 1.3, 1.6, 0.85, 0.7), (1.5, 2.5)
+
+
+#: Speeds that are so near that a branch leads here through its folds, if at all.
+_NEAR = (1.02, 1.05, 0.97)
+
+
+def _by_homotopy(
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, lost: bool
+) -> tuple[Refined, str] | None:
+    """The first motion that leads here from another speed or load, and from where; None where none does.
+
+    q : (5,) static equilibrium;  tangent : (5, 5) of its contacts
+    lost : no motion is known here, so that nearby branches are worth following through their folds
+    """
+    for ratio in (*(_NEAR if lost else ()), *_RATIOS):
+        problem.watch()
+        at = partial(_at_speed, problem)
+        with suppress(ConvergenceError):
+            refined = _continued_to(at, q, tangent, tolerance, ratio, lost and ratio in _NEAR)
+            return refined, "from a higher speed" if ratio > 1.0 else "from a lower speed"
+    if problem.system.load[0] == 0.0 or problem.system.free[0] == 0.0:
+        return None
+    for ratio in _LOADS:
+        problem.watch()
+        at = partial(_at_load, problem)
+        with suppress(ConvergenceError):
+            system = at(ratio).system
+            q_loaded, ball, _ = system.solve_equilibrium(q)
+            stiff = system.evaluate(q_loaded, ball=ball).stiffness
+            return _continued_to(at, q_loaded, stiff, tolerance, ratio, False), "from a heavier axial load"
+    return None
+
+
+def _from_undamped(
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray, tolerance: float
+) -> Iterator[Refined]:
+    """Motions that the branch from rest leads to without damping, each continued to the damped ring; none of an undamped one.
+
+    Without damping branches of motions cross, where the ring's motion may lead or lag alike; the least damping parts them
+    there, and what lay beyond the crossing is no longer on the branch that begins at rest, though it still exists.
+    """
+    system = problem.system.without(DAMPING, TIME_CONSTANT)
+    skew = 0.5 * (system.damping - system.damping.T)  # gyroscopic moments stay: they take no energy
+    if np.array_equal(system.scalars, problem.system.scalars) and np.array_equal(skew, system.damping):
+        return
+    still = attrs.evolve(problem, system=attrs.evolve(system, damping=skew))
+    problem.watch()
+    with suppress(ConvergenceError):
+        for motion in _at_full_force(still, _force_branch(still, q, tangent, nodes).crossings, ROUGH):
+            problem.watch()
+            with suppress(ConvergenceError):
+                yield refine(full_steps(problem, motion.solved.path, 1e-2 * tolerance), tolerance)
+
+
+def _at_speed(problem: Problem, ratio: float) -> Problem:
+    """At another speed of the force, the bodies' own speed and the force itself unchanged."""
+    return attrs.evolve(problem, speed=ratio * problem.speed, clock=problem.speed)
+
+
+def _at_load(problem: Problem, ratio: float) -> Problem:
+    load = problem.system.load.copy()
+    load[0] *= ratio
+    return attrs.evolve(problem, system=attrs.evolve(problem.system, load=load))
+
+
+def _continued_to(
+    at: Callable[[float], Problem], q: np.ndarray, tangent: np.ndarray, tolerance: float, ratio: float, through: bool
+) -> Refined:
+    """From the motion about an equilibrium at a ratio to that at 1; ``through`` folds, too.
+
+    ConvergenceError: none leads there.
+    """
+    far, sense = at(ratio), float(np.sign(1.0 - ratio))
+    try:
+        begin = directly(far, q, tangent, ROUGH)
+    except ConvergenceError:
+        begin = _by_force_steps(far, q, tangent, ROUGH)
+    branch = Branch(at, abs(ratio - 1.0), begin.solved.size, ROUGH, MOST)
+    points = branch.follow(branch.start(begin.solved, ratio, sense), 0.1, 1.0)
+    for before, after in pairwise(islice(points, POINTS)):
+        if (after.parameter - 1.0) * sense >= 0.0:
+            return refine(solve(at(1.0), _towards(before, after, 1.0), 1e-2 * tolerance), tolerance)
+        if (after.folded and not through) or (after.parameter - ratio) * sense < 0.0:
+            break
+    raise ConvergenceError("the branch turns back")
+
+
+#: Distance of two motions over their size below which they are one.
+_SAME = 1e-3
+
+
+#: Angles at which motions are compared: no harmonic of a turn hides between them.
+_COMPARED = 2.0 * np.pi * np.arange(17) / 17
+
+
+def grown_from_rest(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float) -> Refined:
+    try:
+        return _by_force_steps(problem, q, tangent, tolerance)
+    except ConvergenceError as why:
+        raise ConvergenceError(
+            "no motion with the period of the force was found from rest; branches are not searched: natural "
+            f"frequencies go up to {highest:.3g} times the force's, or dashpots are strong. A transient integrator with "
+            "start = 'ramp' shows the motion of the ring.",
+            {"q": q.copy()},
+        ) from why
+
+
+def chosen(
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, direct: PeriodicMotion | None
+) -> PeriodicMotion:
+    """The motion that is taken, of all that the branch from rest and Newton's iteration lead to."""
+    highest = highest_order(problem, tangent)
+    lost, branch = None, _ForceBranch()
+    try:
+        branch = _force_branch(problem, q, tangent, mesh_of(problem, highest))
+    except ConvergenceError as why:
+        lost = why
+    motions: list[PeriodicMotion] = []
+    for refined in _at_full_force(problem, branch.crossings, tolerance):
+        if not any(_alike(refined, motion.refined) for motion in motions):
+            motions.append(with_multipliers(refined, highest, "from rest"))
+    fold = None if branch.reaches else branch.largest
+    if direct is not None:
+        # Where both ways lead to motion motion, the shorter motion is told.
+        same = [k for k, motion in enumerate(motions) if _alike(direct.refined, motion.refined)]
+        if same:
+            motions[same[0]] = direct
+        else:
+            motions.append(attrs.evolve(direct, fold=fold))
+    if not motions:
+        try:
+            motions = [with_multipliers(_by_force_steps(problem, q, tangent, tolerance), highest, "from rest")]
+        except ConvergenceError:
+            if lost is not None:
+                raise lost from None
+    if all(motion.floquet.verdict == "unstable" for motion in motions):
+        for refined in _from_undamped(problem, q, tangent, mesh_of(problem, highest), tolerance):
+            if not any(_alike(refined, other_motion.refined) for other_motion in motions):
+                motions.append(with_multipliers(refined, highest, "from no damping", fold))
+    if (
+        fold is not None
+        and problem.system.scalars[CAGE] == 0.0
+        and all(motion.floquet.verdict == "unstable" for motion in motions)
+    ):
+        reached = _by_homotopy(problem, q, tangent, tolerance, not motions)
+        if reached is not None and not any(_alike(reached[0], other_motion.refined) for other_motion in motions):
+            motions.append(with_multipliers(reached[0], highest, reached[1], fold))
+    if not motions:
+        back = "where its branch turns back (an internal resonance)"
+        end = back if branch.folds else "beyond which it could not be followed"
+        raise ConvergenceError(
+            f"no motion with the period of the force was found: the branch from rest ends at {100 * (fold or 0.0):.3g} % "
+            f"of the force, {end}, and no branch leads here from other speeds or a heavier load. A transient integrator with start = 'ramp' shows "
+            "the motion of the ring.",
+            {"q": q.copy()},
+        )
+    first, *coexisting = _attractor_first(motions)
+    return attrs.evolve(first, coexisting=tuple(coexisting))
+
+
+def _attractor_first(motions: list[PeriodicMotion]) -> list[PeriodicMotion]:
+    """The same motions, that one first which is taken: the first that is not unstable, else the one that is left slowest."""
+    slowest = min(motions, key=lambda motion: motion.floquet.largest)
+    first = next((motion for motion in motions if motion.floquet.verdict != "unstable"), slowest)
+    return [first, *(motion for motion in motions if motion is not first)]
+
+
+def _alike(first: Refined, second: Refined) -> bool:
+    """Whether two motions of one problem are the same."""
+    pair = [displacements(refined.solved, _COMPARED) / refined.solved.problem.weight for refined in (first, second)]
+    return bool(np.abs(pair[0] - pair[1]).max() <= _SAME * max(first.solved.size, second.solved.size))
