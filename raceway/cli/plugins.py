@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,7 +23,6 @@ from raceway.framework.registry import default_registry, registry_with
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
-    from raceway.framework.registry import Entry
     from raceway.testing.suite import Conformity
 
 
@@ -40,8 +39,17 @@ def plugins(plugins: tuple[Path, ...], as_json: bool) -> int:
       raceway dev plugins --json
       raceway dev plugins --plugin my_law.py
     """
-    registry = registry_with(plugins)
-    rows = _plugin_rows(registry.of_kind(*KINDS))
+    from raceway.scene.schema import key_schema, keys
+
+    registry, rows = registry_with(plugins), list[Tables]()
+    for entry in registry.of_kind(*KINDS):
+        options = [
+            {"name": field.name, "default": key_schema(field).get("default")}
+            | {word: field.metadata.get(word, "") for word in ("unit", "rule", "help")}
+            for field in keys(entry.plugin)
+        ]
+        head = {word: getattr(entry, word) for word in ("kind", "name", "distribution", "version")}
+        rows.append({**head, "options": options})
     broken = faults(registry)
     if as_json:
         print_json({"plugins": rows, "errors": [{"path": None, "value": None, "message": text} for text in broken]})
@@ -112,30 +120,6 @@ def new_plugin(kind: str, name: str, out: Path, as_json: bool) -> int:
     steps = Text(f"next: pip install -e {folder} && python -m pytest {folder}", no_wrap=True, overflow="ignore")
     show({"folder": str(folder), "files": files}, as_json, None, lambda: Group(*file_lines([str(folder), *files]), steps))
     return 0
-
-
-def _plugin_rows(entries: Iterable[Entry]) -> list[Tables]:
-    """``[{kind, name, distribution, version, options[{name, unit, default, help}]}]``."""
-    from raceway.scene.schema import key_schema, keys
-
-    rows = []
-    for entry in entries:
-        options = []
-        for field in keys(entry.plugin):
-            facts = key_schema(field)
-            meta = field.metadata
-            options.append(
-                {
-                    "name": field.name,
-                    "unit": meta.get("unit", ""),
-                    "default": facts.get("default"),
-                    "rule": meta.get("rule", ""),
-                    "help": meta.get("help", ""),
-                }
-            )
-        head = {"kind": entry.kind, "name": entry.name, "distribution": entry.distribution, "version": entry.version}
-        rows.append({**head, "options": options})
-    return rows
 
 
 def _plugins_screen(rows: Sequence[ReadTables]) -> RenderableType:

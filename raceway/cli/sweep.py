@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from importlib.util import find_spec
 from itertools import islice
 from pathlib import Path
-from typing import ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import attrs
 
@@ -27,6 +27,10 @@ from raceway.points.store import POINTS, exists
 from raceway.scene.inputs import plain_tables
 from raceway.storage.files import slug, writable
 from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Executor
+    from raceway.points.sweep import Sweep
 
 #: Points of a sweep that a screen shows one by one, and reasons of points that failed.
 _MOST_ROWS, _MOST_REASONS = 30, 5
@@ -76,23 +80,23 @@ class _Swept(Answer):
             title, states, points = store.title, store.status(), points_of(store)
         rows = [_row(row) for row in islice(points.rows(), _MOST_ROWS)]
         # Warning without its numbers -> count, its words and the point that has it first.
-        warned = dict[str, tuple[int, str, int]]()
+        warnings_of = dict[str, tuple[int, str, int]]()
         for number, texts in points.warnings.items():
             for text in texts:
-                count, first, where = warned.get(key := _NUMBER.sub("#", text), (0, text, number))
-                warned[key] = count + 1, first, where
+                count, first, where = warnings_of.get(key := _NUMBER.sub("#", text), (0, text, number))
+                warnings_of[key] = count + 1, first, where
         total = states["total"]
-        counted = ", ".join(f"{states[name]} {name}" for name in ("done", "failed", "waiting") if states[name])
+        counts = ", ".join(f"{states[name]} {name}" for name in ("done", "failed", "waiting") if states[name])
         yield Words(title, "bold")
         yield rows
         if total > len(rows):
             yield Words(f"and {total - len(rows)} more points in {self.store}", "dim")
-        yield f"{total} points: {counted}"
+        yield f"{total} points: {counts}"
         if states["computed"]:
             yield f"{states['computed']} computed in a compiled loop. {NOT_CHECKED}"
         for number, reason in islice(points.reasons.items(), _MOST_REASONS):
             yield f"failed: {point_words(points.design.point(number))}: {micro(reason.splitlines()[0])}"
-        for count, text, where in warned.values():
+        for count, text, where in warnings_of.values():
             words = "points warn" if count > 1 else "point warns"
             yield f"{count} {words}: {micro(text)} (first at {point_words(points.design.point(where))})"
         yield from file_lines(self.files)
@@ -157,18 +161,18 @@ class _Choice(NamedTuple):
         from raceway.points.plot import layout, selection_of
 
         selection = selection_of(store, self.at)
-        drawn = layout(selection, self.value, self.kind, self.x, self.y)
-        name = slug(drawn.name.replace(":", "-").replace(",", "-"))
-        file = store / f"{name}-{drawn.kind}.png" if self.file is None else Path(self.file)
+        panel = layout(selection, self.value, self.kind, self.x, self.y)
+        name = slug(panel.name.replace(":", "-").replace(",", "-"))
+        file = store / f"{name}-{panel.kind}.png" if self.file is None else Path(self.file)
         writable(file.parent)
         return {
             "store": str(store),
-            "value": drawn.name,
-            "units": drawn.data.attrs.get("units"),
-            **{part: getattr(drawn, part) for part in ("kind", "x", "y", "panels")},
+            "value": panel.name,
+            "units": panel.data.attrs.get("units"),
+            **{part: getattr(panel, part) for part in ("kind", "x", "y", "panels")},
             "fixed": selection.fixed,
             "unfinished": selection.unfinished,
-            "files": [str(drawn.write(file))],
+            "files": [str(panel.write(file))],
         }
 
 
@@ -230,28 +234,44 @@ def sweep(
     picture : a .png or .svg; None: STORE/NAME-KIND.png
     plan : print how many points, how long, how much memory and disk, and stop
     """
-    from raceway.points.sweep import executor_of, fill_store, prepare, refuse_large, workload
+    from raceway.points.sweep import executor_of, prepare, workload
 
     scene, choice = Path(source), _Choice(value, kind, x, y, tuple(at), picture)
-    if (stored := exists(scene)) or value is not None:
+    if (is_store := exists(scene)) or value is not None:
         require_matplotlib("leave out --plot: --json and --csv have the values")
     if picture is not None:
         writable(Path(picture).parent)
-    if stored:
+    if is_store:
         return _Drawn(choice.draw(scene))
-    registry, listed = registry_with(plugins), _design(tuple(axes), points, design, tuple(ranges), seed)
+    registry, points_swept = registry_with(plugins), _design(tuple(axes), points, design, tuple(ranges), seed)
     pool = executor_of(executor, {"workers": workers, "scheduler": scheduler}, registry)
     tables = plain_tables(scene, *settings, registry=registry)
     folder = writable(RESULTS / f"{slug(str(tables['title']))}-sweep" if store is None else Path(store))
     if (resume or retry_failed) and not exists(folder):
         warnings.warn(f"`{folder}` holds no sweep to resume: a new one is started", stacklevel=2)
-    prepared = prepare(tables, listed, folder, plugins, resume or retry_failed or plan, quantities)
+    prepared = prepare(tables, points_swept, folder, plugins, resume or retry_failed or plan, quantities)
     if plan:
         return workload(prepared, pool)
+    return _answer(prepared, pool, force, retry_failed, scheduler, csv, choice, progress)
+
+
+def _answer(
+    prepared: Sweep, pool: Executor, force: bool, retry_failed: bool, scheduler: str | None, csv: bool, choice: _Choice,
+    progress: ShowProgress,
+) -> Answer:  # fmt: skip
+    """What the store holds once the points are computed, and its files.
+
+    Raises
+    ------
+    Interrupted
+        After Ctrl-C.
+    """
+    from raceway.points.sweep import fill_store, refuse_large
+
     refuse_large(prepared, pool, force)
-    if value is not None:
+    if choice.value is not None:
         choice.foresee(prepared.design, prepared.facts["scene"])
-    stopped: BaseException | None = None
+    folder, stop = prepared.store, None
     try:
         with telling(progress, remaining=True) as report:
             if scheduler:
@@ -260,31 +280,24 @@ def sweep(
     except (KeyboardInterrupt, RacewayError) as why:
         if not (folder / POINTS).is_file():
             raise
-        stopped = why
-    return _answer(folder, stopped, csv, choice)
-
-
-def _answer(folder: Path, stopped: BaseException | None, csv: bool, choice: _Choice) -> Answer:
-    """What a store holds, and its files.
-
-    Raises
-    ------
-    Interrupted
-        After Ctrl-C.
-    """
-    with open_store(folder) as filled:
-        states, missing = filled.status(), all_failed(filled)
-        steps: list[Callable[[], object]] = [lambda: write_netcdf(filled)] if _has_netcdf() else []
-        steps += [lambda: write_csv(filled, folder / TABLE)] if csv else []
-        if choice.value is not None and stopped is None and missing is None:
+        stop = why
+    with open_store(folder) as store:
+        states, missing = store.status(), all_failed(store)
+        libraries = [name for name in ("h5netcdf", "h5py") if find_spec(name) is None]
+        if libraries:
+            words = f"no results.nc: it needs {', '.join(libraries)}; {extra('sweep')}; points.sqlite holds everything"
+            warnings.warn(words, stacklevel=2)
+        steps: list[Callable[[], object]] = [] if libraries else [lambda: write_netcdf(store)]
+        steps += [lambda: write_csv(store, folder / TABLE)] if csv else []
+        if choice.value is not None and stop is None and missing is None:
             steps.append(lambda: choice.draw(folder)["files"][0])
         answer = _Swept(folder, *_files(steps, folder))
-    if isinstance(stopped, RacewayError) or answer.fault is None:
-        answer = attrs.evolve(answer, fault=stopped if isinstance(stopped, RacewayError) else missing)
-    if isinstance(stopped, KeyboardInterrupt):
+    if isinstance(stop, RacewayError) or answer.fault is None:
+        answer = attrs.evolve(answer, fault=stop if isinstance(stop, RacewayError) else missing)
+    if isinstance(stop, KeyboardInterrupt):
         words = f"{states['done']} of {states['total']} points are done; the same command with --resume continues"
         warnings.warn(words, stacklevel=2)
-        raise Interrupted(answer) from stopped
+        raise Interrupted(answer) from stop
     return answer
 
 
@@ -308,12 +321,3 @@ def _design(
         return sampled(ranges, str(design or ""), seed)
     file = points or design
     return grid(axes) if file is None else design_file(Path(file))
-
-
-def _has_netcdf() -> bool:
-    """Whether labelled results can be written; warns of what is missing."""
-    missing = [name for name in ("h5netcdf", "h5py") if find_spec(name) is None]
-    if missing:
-        words = f"no results.nc: it needs {', '.join(missing)}; {extra('sweep')}; points.sqlite holds everything"
-        warnings.warn(words, stacklevel=3)
-    return not missing

@@ -40,7 +40,6 @@ from raceway.storage.files import without_nan
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -107,7 +106,17 @@ def _draw(content: ReadTables) -> Figure:
         axes.locator_params(axis="x", nbins=4)
         rows[len(heights) * block, 0].set_ylabel("samples", fontsize=9)
         if with_indices:
-            _indices(rows[2 * block + 1, column], entry, keys, named=column == 0)
+            panel = rows[2 * block + 1, column]
+            places = np.arange(len(keys))
+            panel.set_xlim(0.0, 1.05)
+            panel.set_ylim(len(keys) - 0.4, -0.6)
+            panel.set_yticks(places, keys if column == 0 else [""] * len(keys), fontsize=8)
+            panel.set_xlabel("Sobol' index", fontsize=9)
+            panel.tick_params(axis="x", labelsize=8)
+            # Estimates of small indices scatter about 0, those of a single cause about 1.
+            total, first = (np.clip(entry[order] or np.zeros(len(keys)), 0.0, 1.0) for order in ("total", "first_order"))
+            panel.barh(places, total, color=_TOTAL, height=0.7, label="total")
+            panel.barh(places, first, color=_FIRST, height=0.3, label="first order")
     for panel in rows[-len(heights) :, len(quantities) - columns * (blocks - 1) :].flat:
         panel.set_visible(False)
     handles, labels = rows[0, 0].get_legend_handles_labels()
@@ -116,19 +125,6 @@ def _draw(content: ReadTables) -> Figure:
     figure.legend(handles, labels, loc="outside lower right", ncols=4, fontsize=8, frameon=False)
     figure.suptitle(wrapped(content["title"]), fontsize=11)
     return figure
-
-
-def _indices(axes: Axes, entry: ReadTables, keys: list[str], named: bool) -> None:
-    places = np.arange(len(keys))
-    axes.set_xlim(0.0, 1.05)
-    axes.set_ylim(len(keys) - 0.4, -0.6)
-    axes.set_yticks(places, keys if named else [""] * len(keys), fontsize=8)
-    axes.set_xlabel("Sobol' index", fontsize=9)
-    axes.tick_params(axis="x", labelsize=8)
-    # Estimates of small indices scatter about 0, those of a single cause about 1.
-    total, first = (np.clip(entry[order] or np.zeros(len(keys)), 0.0, 1.0) for order in ("total", "first_order"))
-    axes.barh(places, total, color=_TOTAL, height=0.7, label="total")
-    axes.barh(places, first, color=_FIRST, height=0.3, label="first order")
 
 
 #: Samples of a piece of work, which is what a killed worker loses; limits of the band.
@@ -458,7 +454,18 @@ def uncertainty(
                 "keys", ", ".join(keys), "requests derivatives, which samples do not provide: omit it, or the samples"
             )
         if plan:
-            return _samples_planned(as_scene(scene, plugins=plugins), tolerances, samples, processes)
+            read = as_scene(scene, plugins=plugins)
+            varied = tolerances_of(read, tolerances or stated_tolerances(read))
+            count, steady = (len(varied) + 2) * samples, read if read.excitation is None else _steady(read)
+            loop = function(
+                steady, [tolerance.key.path for tolerance in varied], ["K" if steady.excitation else "kyy"], threads=1
+            )
+            if loop.why_slow:
+                seconds, _ = run_times(count, lambda _: steady.to_dict(), default_registry(), planned=1)
+                return Workload(
+                    read.title, count, seconds / max(processes, 1), runs=count, noun="samples", why_runs=loop.why_slow
+                )
+            return of_columns(read.title, loop, count, noun="samples")
         return band(
             scene, tolerances, count=samples, seed=seed, processes=processes, kept=kept, progress=progress, plugins=plugins
         )
@@ -468,14 +475,3 @@ def uncertainty(
         seconds = once.predicted_once_s + _DERIVATIVES * max(once.predicted_wall_s - once.predicted_once_s, _RUN_S)
         return Workload(read.title, count, seconds, looped=count, noun="derivatives")
     return sensitivities(scene, keys, tolerances=tolerances, progress=progress, plugins=plugins)
-
-
-def _samples_planned(scene: Scene, tolerances: Mapping[str, str] | Iterable[str], samples: int, processes: int) -> Workload:
-    """Samples of a band, as of columns or runs."""
-    varied = tolerances_of(scene, tolerances or stated_tolerances(scene))
-    count, read = (len(varied) + 2) * samples, scene if scene.excitation is None else _steady(scene)
-    loop = function(read, [tolerance.key.path for tolerance in varied], ["K" if read.excitation else "kyy"], threads=1)
-    if loop.why_slow:
-        seconds, _ = run_times(count, lambda _: read.to_dict(), default_registry(), planned=1)
-        return Workload(scene.title, count, seconds / max(processes, 1), runs=count, noun="samples", why_runs=loop.why_slow)
-    return of_columns(scene.title, loop, count, noun="samples")

@@ -246,13 +246,8 @@ def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Datas
             f"`{store.path}`: {damaged} of {design.size} rows are damaged, read as waiting; --resume computes them again",
             stacklevel=3,
         )
-    return labelled_dataset(variables, _coordinates(store, registry or default_registry()), attributes)
-
-
-def _coordinates(store: SweepStore, registry: Registry) -> dict[str, Labelled]:
-    design = store.design
     try:
-        scene: Scene | None = scene_from_dict(store.scene, registry)
+        scene: Scene | None = scene_from_dict(store.scene, registry or default_registry())
     except RacewayError:  # its plug-ins are not installed here: values are there, units of its keys are not
         scene = None
     names = np.array(DOF, dtype=object)
@@ -263,7 +258,7 @@ def _coordinates(store: SweepStore, registry: Registry) -> dict[str, Labelled]:
         coordinates[axis.key] = (("point" if design.listed else axis.key,), axis_labels(axis.values), about)
     if design.listed:
         coordinates["point"] = (("point",), np.arange(design.size), {"long_name": "number of the point in the list"})
-    return coordinates
+    return labelled_dataset(variables, coordinates, attributes)
 
 
 def all_failed(store: SweepStore) -> ConvergenceError | None:

@@ -524,7 +524,14 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
             change = f"{percent(effect.log_change)} ({about.read(effect.difference or 0.0):+.2f} {unit}{share}{mixed})"
             parts.append(f"{_step(comparison.axis(key))} changes it by {change}")
         elif abs(effect.log_change) + factorial.error >= _HARDLY and not effect.resolved:
-            hidden.append(f"{key} ({percent(effect.log_change)}{_where_resolved(comparison, factorial, key)})")
+            # An end of another axis may resolve what its mean does not.
+            other_ends = [(other, end) for other in factorial.keys if other != key for end in (0, 1)]
+            resolved = [
+                f"; with {other} = {shown(comparison.axis(other).ends[end])} {percent(change_there)}"
+                for other, end in other_ends
+                if (change_there := factorial.resolved_change(key, {other: end}))
+            ]
+            hidden.append(f"{key} ({percent(effect.log_change)}{''.join(resolved)})")
         elif max(abs(e.log_change) for e in factorial.effects if key in e.term) + factorial.error < _HARDLY:
             inert.append(f"{key} ({percent(effect.log_change)})")
         else:
@@ -563,16 +570,6 @@ def _between(comparison: Findings, quantity: str, axis: Axis) -> tuple[str, list
         if (far := max((max(to - max(end, 0.0), min(end, 0.0) - to) for to, end in changes), default=0.0)) > least:
             farthest, least = (shown(value), [to for to, _ in changes]), far
     return farthest
-
-
-def _where_resolved(comparison: Findings, factorial: _Factorial, key: str) -> str:
-    """At which end of another axis the change along one is resolved although its mean is not."""
-    words = []
-    for partner in (name for name in factorial.keys if name != key):
-        for end in (0, 1):
-            if change := factorial.resolved_change(key, {partner: end}):
-                words.append(f"with {partner} = {shown(comparison.axis(partner).ends[end])} {percent(change)}")
-    return "".join(f"; {text}" for text in words)
 
 
 def _interactions(comparison: Findings, quantity: str) -> list[str]:

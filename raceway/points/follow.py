@@ -192,20 +192,15 @@ def _follow_branch(
         for followed in (curve, *curve.doubled) if turns else ():
             followed.attractors += [attractor_beside(point, turns, on_progress) for point in followed.worst]
     except KeyboardInterrupt as stop:
-        raise Interrupted(_stopped(curve) if curve.rows else None) from stop
-    return curve
-
-
-def _stopped(curve: Followed) -> Followed:
-    """What there is of a curve that was stopped."""
-    curve.doubled = [branch for branch in curve.doubled if branch.rows]
-    for branch in (curve, *curve.doubled):
-        branch.labels.sort(key=lambda label: label.row.arc)
-    here = curve.rows[-1].parameter if curve.rows else curve.first
-    if curve.end or here == curve.last:
-        curve.notes.append("stopped before the branches of twice the period and the time integrations were finished")
-    else:
-        curve.end = f"stopped at {here:.6g} after {len(curve.rows)} orbits; --over {curve.key}={here:.6g}:{curve.last:g} goes on from there"
+        curve.doubled = [twice for twice in curve.doubled if twice.rows]
+        for part in (curve, *curve.doubled):
+            part.labels.sort(key=lambda label: label.row.arc)
+        here = curve.rows[-1].parameter if curve.rows else curve.first
+        if curve.end or here == curve.last:
+            curve.notes.append("stopped before the branches of twice the period and the time integrations were finished")
+        else:
+            curve.end = f"stopped at {here:.6g} after {len(curve.rows)} orbits; --over {curve.key}={here:.6g}:{curve.last:g} goes on from there"
+        raise Interrupted(curve if curve.rows else None) from stop
     return curve
 
 

@@ -195,7 +195,18 @@ class Function:
         if self.why_slow:
             self.refuse_time(n)
             return _joined([self._run_all(flat, np.arange(n), {})], self.outputs)
-        return self._completed(flat, self.looped(flat))
+        # Runs of what the loop has left.
+        answer = self.with_reasons(flat, self.looped(flat))
+        left = np.flatnonzero(answer["status"] == PointStatus.FAILED)
+        left = left[answer["reason"][left] == ""]
+        seconds = self._seconds(len(left)) if len(left) and not self.force else 0.0
+        if seconds > _LIMIT_S:
+            answer["reason"][left] = (
+                f"the compiled loop finds no regular solution; runs of these {len(left)} points would take about "
+                f"{duration(seconds)}: force = True runs them"
+            )
+            return answer
+        return self._run_all(flat, left, answer)
 
     def looped(self, flat: Mapping[str, np.ndarray]) -> Columns:
         """As ``columns``, of the compiled loop alone: what it leaves has the status FAILED or REFUSED, nan, and no reason."""
@@ -309,7 +320,11 @@ class Function:
             chosen = {key: column[rows] for key, column in columns.items()}
             try:
                 if self.scene.heat is not None:
-                    chosen = self._warm(chosen, plan, rows, reason)
+                    from raceway.pipeline.warm import RUNAWAY, warm
+
+                    warmth = warm(self.scene, chosen, plan)
+                    reason[rows[warmth.runaway]] = RUNAWAY
+                    chosen = {**chosen, **warmth.columns}
                 bearing = build_columns(column_problem(self.scene, chosen), plan)
             except RacewayError:  # of elastic bodies that no point has
                 continue
@@ -327,14 +342,6 @@ class Function:
                 part = QUANTITIES[name](computed) if name in QUANTITIES else computed.of_plugin(self._stated[name][0], name)
                 values.setdefault(name, np.full((n, *part.shape[1:]), np.nan))[rows[fine]] = part[fine]
         return {**values, "status": status, "reason": reason}
-
-    def _warm(self, columns: Columns, plan: ScenePlan, rows: np.ndarray, reason: np.ndarray) -> Columns:
-        """With steady temperatures; the reason of rows that have none."""
-        from raceway.pipeline.warm import RUNAWAY, warm
-
-        warmth = warm(self.scene, columns, plan)
-        reason[rows[warmth.runaway]] = RUNAWAY
-        return {**columns, **warmth.columns}
 
     def _refused(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
         """(n,) whether a number is none, or a rule of its key alone refuses it."""
@@ -375,19 +382,6 @@ class Function:
             if key in columns and (key.startswith("kin") or self.scene.kinematics.spin_speed_rpm is None):
                 turning = columns[key][rows] > 0.0
         return [(turns, part) for turns, part in ((True, rows[turning]), (False, rows[~turning])) if len(part)]
-
-    def _completed(self, flat: Mapping[str, np.ndarray], answer: Columns) -> Columns:
-        """With runs of the points that the loop has left."""
-        answer, left = self.with_reasons(flat, answer), np.flatnonzero(answer["status"] == PointStatus.FAILED)
-        left = left[answer["reason"][left] == ""]
-        seconds = self._seconds(len(left)) if len(left) and not self.force else 0.0
-        if seconds > _LIMIT_S:
-            answer["reason"][left] = (
-                f"the compiled loop finds no regular solution; runs of these {len(left)} points would take about "
-                f"{duration(seconds)}: force = True runs them"
-            )
-            return answer
-        return self._run_all(flat, left, answer)
 
     def _scene_of(self, flat: Mapping[str, np.ndarray], row: int) -> Scene:
         """The scene of one row; ``SceneError`` of what is no number, too."""

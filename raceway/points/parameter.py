@@ -96,7 +96,12 @@ class Parameter:
         if not differing:
             raise SceneError.at(self.key, None, "has no effect on the motion: there is no branch over it")
         differing.pop("force_params", None)
-        if all(_linear(*values) for values in differing.values()):
+        # Arrays between the ends that lie on the line from the first to the last one.
+        if all(isinstance(array, np.ndarray) for arrays in differing.values() for array in arrays) and all(
+            np.abs((1.0 - _BETWEEN) * a + _BETWEEN * c - b).max(initial=0.0)
+            <= _ROUNDING * max(np.abs(a).max(), np.abs(c).max())
+            for a, b, c in differing.values()
+        ):
             self.linear = tuple(differing)
         self._ends = first, last
 
@@ -185,11 +190,3 @@ def _equal(first: object, second: object) -> bool:
     if isinstance(first, np.ndarray) and isinstance(second, np.ndarray):
         return bool(first.shape == second.shape and np.array_equal(first, second))
     return first is second or first == second
-
-
-def _linear(first: object, between: object, last: object) -> bool:
-    """Whether an array between the ends lies on the line from the first to the last one."""
-    if not (isinstance(first, np.ndarray) and isinstance(between, np.ndarray) and isinstance(last, np.ndarray)):
-        return False
-    interpolated = (1.0 - _BETWEEN) * first + _BETWEEN * last
-    return bool(np.abs(interpolated - between).max(initial=0.0) <= _ROUNDING * max(np.abs(first).max(), np.abs(last).max()))

@@ -516,7 +516,18 @@ def layout(
         raise RacewayError("nothing varies in this part of the sweep: leave out an --at, or see the values with --json")
     if not bool(data.notnull().any()):
         raise RacewayError(f"no selected point has a {name}: {selection.gaps or 'none was finished'}")
-    _refuse_strangers(selection, x, y)
+    mistakes, varying = list[Mistake](), list(axes)
+    for option, key in (("--x", x), ("--y", y)):
+        if key is None or key in varying:
+            continue
+        why = f"is not an axis of this sweep{nearest(key, varying)}"
+        if key in selection.fixed:
+            why = f"has the one value {shown(selection.fixed[key])} here"
+        mistakes.append(Mistake(option, key, f"{why}; axes that vary: {', '.join(varying)}"))
+    if x is not None and x == y:
+        mistakes.append(Mistake("--y", y, "is the axis of --x already: choose another, or leave one out"))
+    if mistakes:
+        raise SceneError(mistakes)
     numeric = [key for key, values in axes.items() if _numeric(values)]
     both = len(axes) == 2 and len(numeric) == 2
     kind = kind or ("map" if both and min(len(values) for values in axes.values()) > _MOST_COLOURS else "curves")
@@ -595,20 +606,3 @@ def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:
 def names(dataset: Dataset) -> list[str]:
     """Variables with numbers."""
     return [str(name) for name, data in dataset.data_vars.items() if data.dtype.kind in "fiu"]
-
-
-def _refuse_strangers(selection: Selection, x: str | None, y: str | None) -> None:
-    mistakes = []
-    varying = list(selection.axes)
-    for option, key in (("--x", x), ("--y", y)):
-        if key is None or key in varying:
-            continue
-        if key in selection.fixed:
-            why = f"has the one value {shown(selection.fixed[key])} here"
-        else:
-            why = f"is not an axis of this sweep{nearest(key, varying)}"
-        mistakes.append(Mistake(option, key, f"{why}; axes that vary: {', '.join(varying)}"))
-    if x is not None and x == y:
-        mistakes.append(Mistake("--y", y, "is the axis of --x already: choose another, or leave one out"))
-    if mistakes:
-        raise SceneError(mistakes)

@@ -98,8 +98,16 @@ class Precision(Answer):
     def judged(self) -> list[Row]:
         """Rows with value, error, errors of all quantities, whether the reference limits them, and the observed order."""
         found = [{**row, **self._errors(row)} for row in self.rows]
-        for index, order in self._orders(found).items():
-            found[index]["order"] = order
+        # The order between each row and the next coarser one of its ladder.
+        for key, inverse in _LADDERS.items():
+            for places in _ladders(found, key):
+                places.sort(key=lambda k: found[k]["setting"][key], reverse=not inverse)
+                for coarse, fine in zip(places, places[1:], strict=False):
+                    bound = _ORDER_MARGIN * self.references[found[fine]["physics"]].bound
+                    errors = [found[k]["error"] for k in (coarse, fine)]
+                    if min(errors) > bound:
+                        ratio = found[fine]["setting"][key] / found[coarse]["setting"][key]
+                        found[fine]["order"] = math.log(errors[0] / errors[1]) / math.log(ratio if inverse else 1.0 / ratio)
         return found
 
     def _errors(self, row: Row) -> Row:
@@ -116,20 +124,6 @@ class Precision(Answer):
         out["error"] = distance(apart) / reference.size
         out["at_bound"] = not out["error"] > EXACT * reference.bound
         return out
-
-    def _orders(self, rows: list[Row]) -> dict[int, float]:
-        """Order between each row and the next coarser one of its ladder."""
-        orders: dict[int, float] = {}
-        for key, inverse in _LADDERS.items():
-            for places in _ladders(rows, key):
-                places.sort(key=lambda k: rows[k]["setting"][key], reverse=not inverse)
-                for coarse, fine in zip(places, places[1:], strict=False):
-                    bound = _ORDER_MARGIN * self.references[rows[fine]["physics"]].bound
-                    errors = [rows[k]["error"] for k in (coarse, fine)]
-                    if min(errors) > bound:
-                        ratio = rows[fine]["setting"][key] / rows[coarse]["setting"][key]
-                        orders[fine] = math.log(errors[0] / errors[1]) / math.log(ratio if inverse else 1.0 / ratio)
-        return orders
 
     def _bounded(self, row: Row) -> float:
         """The largest error that the row can have."""
@@ -455,17 +449,6 @@ def _measured(
     )
 
 
-def _given(settings: tuple[Setting, ...], changes: Vary, registry: Registry) -> Tables:
-    """The reference that the user names, checked with the first setting that can run."""
-    named = tidy(changes) if isinstance(changes, Mapping) else dict(parse_change(text) for text in changes)
-    first = next((setting for setting in settings if setting.scene is not None), None)
-    if named and first is not None:
-        found = setting_at(first.tables, "reference", named, registry)
-        if found.scene is None:
-            raise SceneError.at("reference", None, found.reason)
-    return named
-
-
 def _row(setting: Setting, repeats: int, registry: Registry, store: Store) -> Tables:
     """One row: measured now, or taken from what an earlier study has kept."""
     head = {
@@ -541,7 +524,13 @@ def precision(
     registry = registry_with(plugins)
     folder = None if out is None else writable(Path(out))
     design = make_design(plain_tables(scene, registry=registry), vary or (), limit_s, registry)
-    named = _given(design.settings, reference, registry)
+    # What the user names is checked with the first setting that can run.
+    named = tidy(reference) if isinstance(reference, Mapping) else dict(parse_change(text) for text in reference)
+    first = next((setting for setting in design.settings if setting.scene is not None), None)
+    if named and first is not None:
+        trial = setting_at(first.tables, "reference", named, registry)
+        if trial.scene is None:
+            raise SceneError.at("reference", None, trial.reason)
     with telling(progress) as report, written(kept or folder) as store:
         study = _measured(design, named, repeats, limit_s, store, registry, report)
     if folder is not None:

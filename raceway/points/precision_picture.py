@@ -69,7 +69,14 @@ def page(result: Tables, picture: bool = False) -> str:
     lines += ["Errors of each quantity, each relative to its own reference:", "", _quantities(result), ""]
     models = [model for model in result["models"] if not model["base"]]
     if models:
-        lines += ["Differences between models, each by its own reference:", "", _models(models), ""]
+        table = [_line(("model", "difference", "of K", "of peak load", "of p0", "reference's bound")), _line(["---"] * 6)]
+        for model in models:
+            parts = model["differences"]
+            signed = (parts.get(name) for name in (K.name, PEAK_BALL_LOAD.name, P0.name))
+            cells = ["" if part is None else f"{100.0 * part:+.3g} %" for part in signed]
+            difference = "" if model["difference"] is None else f"{100.0 * model['difference']:.3g} %"
+            table.append(_line((_words(model["model"]), difference, *cells, _number(model["reference"]["error"], 2))))
+        lines += ["Differences between models, each by its own reference:", "", "\n".join(table), ""]
     if result["left_out"]:
         lines += ["Left out:", ""]
         lines += [f"- {_words(item['setting'])} ({item['family']}): {item['why']}" for item in result["left_out"]]
@@ -124,17 +131,6 @@ def _quantities(result: Tables) -> str:
     return "\n".join([*lines, "", "z real and z imag: relative to the size of Z."])
 
 
-def _models(models: list[Tables]) -> str:
-    lines = [_line(("model", "difference", "of K", "of peak load", "of p0", "reference's bound")), _line(["---"] * 6)]
-    for model in models:
-        parts = model["differences"]
-        signed = (parts.get(name) for name in (K.name, PEAK_BALL_LOAD.name, P0.name))
-        cells = ["" if part is None else f"{100.0 * part:+.3g} %" for part in signed]
-        difference = "" if model["difference"] is None else f"{100.0 * model['difference']:.3g} %"
-        lines.append(_line((_words(model["model"]), difference, *cells, _number(model["reference"]["error"], 2))))
-    return "\n".join(lines)
-
-
 def _line(cells: Sequence[object]) -> str:
     return "| " + " | ".join(str(cell).replace("|", "\\|") if cell != "\\*" else cell for cell in cells) + " |"
 
@@ -167,8 +163,8 @@ def draw_on(panel: Axes, result: Tables) -> list[_Label]:
     bound = result["reference"]["error"]
     # What lies below the reference's bound is drawn at its lower edge: nobody knows how far below.
     least = bound / 10.0 if bound else _LEAST
-    base = [k for k, row in enumerate(result["rows"]) if _drawn(row) and _of_base(row)]
-    foreign = [k for k, row in enumerate(result["rows"]) if _drawn(row) and not _of_base(row)]
+    base = [k for k, row in enumerate(result["rows"]) if _drawn(row) and row["base"]]
+    foreign = [k for k, row in enumerate(result["rows"]) if _drawn(row) and not row["base"]]
     series: dict[str, list[int]] = {}
     labels: list[_Label] = []
     for k in base:
@@ -183,7 +179,12 @@ def draw_on(panel: Axes, result: Tables) -> list[_Label]:
         label = "other models, against their own references"
         panel.plot(*zip(*xy, strict=True), linestyle="", marker="x", color=GREY, label=label)
         labels += [(_words(result["rows"][k]["setting"]), point, GREY) for k, point in zip(foreign, xy, strict=True)]
-    _front(panel, result, least)
+    points = [_point(result["rows"][number], least) for number in result["front"]]
+    if points:
+        x, y = zip(*points, strict=True)
+        label = "front: no setting is both faster and more accurate"
+        panel.plot(x, y, color="black", linewidth=1.2, linestyle="--", drawstyle="steps-post", label=label)
+        panel.plot(x, y, linestyle="", marker="o", markersize=13, markerfacecolor="none", markeredgecolor="black")
     if bound:
         panel.axhspan(bound / 30.0, bound, color=GRID, zorder=0)
         panel.axhline(bound, color=GREY, linewidth=0.8, linestyle=":", label="bound of the reference, grey below")
@@ -195,21 +196,8 @@ def draw_on(panel: Axes, result: Tables) -> list[_Label]:
     return labels
 
 
-def _front(panel: Axes, result: Tables, least: float) -> None:
-    points = [_point(result["rows"][number], least) for number in result["front"]]
-    if points:
-        x, y = zip(*points, strict=True)
-        label = "front: no setting is both faster and more accurate"
-        panel.plot(x, y, color="black", linewidth=1.2, linestyle="--", drawstyle="steps-post", label=label)
-        panel.plot(x, y, linestyle="", marker="o", markersize=13, markerfacecolor="none", markeredgecolor="black")
-
-
 def _drawn(row: Tables) -> bool:
     return row["error"] is not None and row["time_s"] is not None
-
-
-def _of_base(row: Tables) -> bool:
-    return bool(row["base"])
 
 
 def _point(row: Tables, least: float) -> tuple[float, float]:

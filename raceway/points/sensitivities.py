@@ -155,7 +155,14 @@ class Sensitivities(Answer):
             yield "first order holds where the answer is nearly linear over the tolerances; --samples N samples them"
         yield [
             {"key": row.key.path, "value": f"{row.key.value:.6g} {row.key.unit}".strip()}
-            | {f"{name.replace('_', ' ')} [% per %]": _percent(row.influence.get(name)) for name in self.values}
+            | {
+                f"{name.replace('_', ' ')} [% per %]": ""
+                if share is None
+                else "0"
+                if abs(share) < _SHOWN
+                else f"{share:+.3g}"
+                for name, share in ((name, row.influence.get(name)) for name in self.values)
+            }
             for row in self.rows
             if row.influence
         ]
@@ -177,10 +184,6 @@ def _by_reason(head: str, keys: Iterable[tuple[Key, str]]) -> Iterator[str]:
     for key, why in keys:
         reasons.setdefault(why, []).append(key.path)
     return (f"{head}{', '.join(paths)}: {why}" for why, paths in reasons.items())
-
-
-def _percent(share: float | None) -> str:
-    return "" if share is None else "0" if abs(share) < _SHOWN else f"{share:+.3g}"
 
 
 def _table(row: _Sensitivity) -> Tables:

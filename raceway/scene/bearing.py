@@ -136,9 +136,6 @@ class Bearing:
             raise ValueError(words)
         self._check_angle()
         check_set(self)
-        self._check_profiles()
-
-    def _check_profiles(self) -> None:
         for profile, inner in ((self.inner_profile, True), (self.outer_profile, False)):
             if profile is not None:
                 from raceway.core.fem.mesh.ring_mesh import ring_shape

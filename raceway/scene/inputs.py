@@ -236,7 +236,18 @@ def tidy(value: object, depth: int = 0) -> Any:
         if isinstance(value, os.PathLike):
             return os.fsdecode(value)
         if hasattr(value, "magnitude") and hasattr(value, "to_base_units"):
-            return _quantity(value)
+            # A quantity of pint is a number with its unit in text, or several; a number where it has no unit.
+            quantity: Any = value
+            unit = f"{quantity.units:~C}"
+            try:
+                unit_of(unit)
+            except ValueError:  # a unit that only pint knows
+                quantity = quantity.to_base_units()
+                unit = f"{quantity.units:~C}"
+            numbers = tidy(quantity.magnitude)
+            if not unit:
+                return numbers
+            return [f"{number!r} {unit}" for number in numbers] if isinstance(numbers, list) else f"{numbers!r} {unit}"
         if hasattr(value, "tolist"):  # numpy's arrays and numbers, data arrays of xarray through their values
             return value.tolist()
         return copy.deepcopy(value)
@@ -245,20 +256,6 @@ def tidy(value: object, depth: int = 0) -> Any:
     except Exception:  # whatever a foreign object makes of being asked
         kind = type(value).__name__
         raise SceneError.at("scene", value, f"holds text, numbers, lists and tables, no {kind}") from None
-
-
-def _quantity(value: Any) -> object:
-    """A quantity of pint as a number with its unit in text, or several; a number where it has no unit."""
-    unit = f"{value.units:~C}"
-    try:
-        unit_of(unit)
-    except ValueError:  # a unit that only pint knows
-        value = value.to_base_units()
-        unit = f"{value.units:~C}"
-    numbers = tidy(value.magnitude)
-    if not unit:
-        return numbers
-    return [f"{number!r} {unit}" for number in numbers] if isinstance(numbers, list) else f"{numbers!r} {unit}"
 
 
 def leaves(table: ReadTables, before: str = "") -> Iterator[tuple[str, Any]]:

@@ -219,7 +219,16 @@ def scene_from_dict(
         plain["bearing"] = _with_preset(plain["bearing"], mistakes)
     if "mounting" in plain:
         plain["mounting"] = _with_materials(plain["mounting"], {}, mistakes, "mounting")
-    _complete_by_preset(plain)
+    # What a preset says beside its bearing.
+    bearing, classes, fits = plain.get("bearing", {}), plain.get("tolerances"), plain.get("mounting", {})
+    entry = preset_of(bearing.get("preset"), bearing.get("maker"))
+    for name, table in ({} if entry is None else entry.other_tables).items():
+        own = plain.get(name, {})
+        if isinstance(own, dict) and own.get("kind", table.get("kind")) == table.get("kind"):
+            plain[name] = {**table, **own}
+    acts = any(fits.get(key, 0.0) > 0.0 for key in ("shaft_interference", "housing_interference"))
+    if entry is not None and entry.tolerance_class and isinstance(classes, dict) and acts:
+        plain["tolerances"] = {"class": entry.tolerance_class, **classes}
     started = _at_inlet(plain)
     parts: Tables = {}
     for name, cls in TABLES.items():
@@ -245,20 +254,6 @@ def scene_from_dict(
     if faults := check_tolerances(scene):
         raise SceneError(faults)
     return scene
-
-
-def _complete_by_preset(tables: Tables) -> None:
-    """What a preset says beside [bearing]: bodies, contacts and supports of rollers, where the scene has no other kind; the tolerance
-    class of a maker's designation, where the scene has tolerances and fits that it acts through."""
-    bearing, tolerances, fits = tables.get("bearing", {}), tables.get("tolerances"), tables.get("mounting", {})
-    entry = preset_of(bearing.get("preset"), bearing.get("maker"))
-    for name, table in ({} if entry is None else entry.other_tables).items():
-        own = tables.get(name, {})
-        if isinstance(own, dict) and own.get("kind", table.get("kind")) == table.get("kind"):
-            tables[name] = {**table, **own}
-    acts = any(fits.get(key, 0.0) > 0.0 for key in ("shaft_interference", "housing_interference"))
-    if entry is not None and entry.tolerance_class and isinstance(tolerances, dict) and acts:
-        tables["tolerances"] = {"class": entry.tolerance_class, **tolerances}
 
 
 def _at_inlet(tables: Tables) -> Tables:

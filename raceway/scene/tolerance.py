@@ -133,7 +133,14 @@ def tolerances_of(scene: Scene, texts: Iterable[str] | Mapping[str, str]) -> tup
             ranges = _ranges_of(scene, path, str(text).strip())
             of_text = [_checked(scene, key_of(scene, fit), str(text), *ends) for fit, ends in ranges.items()]
         else:
-            of_text = [_tolerance(scene, key_of(scene, path), str(text))]
+            key, text = key_of(scene, path), str(text)
+            if match := _SYMMETRIC.fullmatch(text):
+                above = below = _size(key, match[1], text)
+            elif match := _ENDS.fullmatch(text):
+                above, below = (_size(key, part, text) for part in match.groups())
+            else:
+                raise SceneError.at(key.path, text, _FORM)
+            of_text = [_checked(scene, key, text, below, above)]
         for tolerance in of_text:
             if tolerance.key.path in tolerances:
                 raise SceneError.at(tolerance.key.path, text, "has two tolerances: give one")
@@ -164,16 +171,6 @@ def _split(text: str) -> tuple[str, str]:
     if not sign or not path.strip():
         raise SceneError.at("tolerance", text, "must have the form KEY=TEXT, such as load.axial='±10 %'")
     return path.strip(), width
-
-
-def _tolerance(scene: Scene, key: Key, text: str) -> Tolerance:
-    if match := _SYMMETRIC.fullmatch(text):
-        above = below = _size(key, match[1], text)
-    elif match := _ENDS.fullmatch(text):
-        above, below = (_size(key, part, text) for part in match.groups())
-    else:
-        raise SceneError.at(key.path, text, _FORM)
-    return _checked(scene, key, text, below, above)
 
 
 def _checked(scene: Scene, key: Key, text: str, below: float, above: float) -> Tolerance:

@@ -91,7 +91,15 @@ def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTabl
             for rows, numbers in _parts(stream, heading.last):
                 rows = heading.picked(rows)
                 if heading.sign != ",":
-                    rows, marks = _with_points(rows, numbers, marks)
+                    # Decimal commas become points; beside the file's own sign the other one says nothing.
+                    for text, number in zip(rows, numbers, strict=True):
+                        marks += "".join(mark for mark in ",." if mark in text and mark not in marks)
+                        if len(marks) > 1:
+                            shown = text.strip()[:_SHOWN]
+                            raise ValueError(
+                                f"line {number}: commas and points in the file's numbers ({shown}): write one decimal sign only"
+                            )
+                    rows, marks = [text.replace(",", ".") for text in rows] if marks == "," else rows, marks
                 end = count + len(rows)
                 sign = heading.sign if heading.fields is None else "\t"
                 values[count:end], lines[count:end] = _values(rows, numbers, width, sign), numbers
@@ -129,24 +137,6 @@ def _encoding(path: Path) -> str:
         if "\ufffd" not in text and "".join(text.split()).isprintable():
             return "cp1252"
     return "utf-8-sig"
-
-
-def _with_points(rows: list[str], numbers: np.ndarray, marks: str) -> tuple[list[str], str]:
-    """Decimal commas as points.
-
-    Parameters
-    ----------
-    marks : the file's decimal sign, "" where none is known yet; beside the other one it says nothing
-    Returns as well : the same with these rows
-    """
-    for text, number in zip(rows, numbers, strict=True):
-        marks += "".join(mark for mark in ",." if mark in text and mark not in marks)
-        if len(marks) > 1:
-            shown = text.strip()[:_SHOWN]
-            raise ValueError(
-                f"line {number}: commas and points in the file's numbers ({shown}): write one decimal sign only"
-            )
-    return [text.replace(",", ".") for text in rows] if marks == "," else rows, marks
 
 
 def _parts(stream: TextIO, line: int) -> Iterator[tuple[list[str], np.ndarray]]:

@@ -42,45 +42,6 @@ def new_plugin(kind: str, name: str, folder: str | Path = ".", registry: Registr
     kind = kind.replace("-", "_")
     if kind not in KINDS:
         raise PluginError(f"no kind of plug-in named '{kind}'{nearest(kind, KINDS)}; kinds: {', '.join(KINDS)}")
-    _check_name(kind, name, registry or default_registry())
-    words = {
-        "kind": kind,
-        "name": name,
-        "module": f"raceway_{name}",
-        "distribution": f"raceway-{name.strip('_').replace('_', '-')}",
-        "cls": "".join(part.capitalize() for part in name.split("_")),
-        "title": f"{_article(kind)} '{name}'",
-        "hook": KINDS[kind][0],
-        "version": ".".join(__version__.split(".")[:2]),
-    }
-    target = Path(folder) / words["distribution"]
-    if target.exists():
-        raise PluginError(f"`{target}` exists already and is not overwritten: choose another name or --out DIR")
-    contents = _contents(kind, words)
-    try:
-        for path, text in contents.items():
-            (target / path).parent.mkdir(parents=True, exist_ok=True)
-            (target / path).write_text(text, encoding="utf-8")
-    except OSError as why:
-        raise PluginError(f"`{target}` cannot be written: {why.strerror or why}") from why
-    return target
-
-
-def _contents(kind: str, words: dict[str, str]) -> dict[str, str]:
-    """Path in the new folder -> text."""
-    contents = {}
-    for part in ("common", kind):
-        for source in sorted(files("raceway").joinpath("data", "templates", part).iterdir(), key=lambda f: f.name):
-            name = source.name.removesuffix(".txt")
-            if name.startswith("package_"):
-                name = f"{words['module']}/{name.removeprefix('package_')}"
-            elif name.startswith("tests_"):
-                name = f"tests/{name.removeprefix('tests_')}"
-            contents[name] = Template(source.read_text(encoding="utf-8")).substitute(words)
-    return contents
-
-
-def _check_name(kind: str, name: str, registry: Registry) -> None:
     if not _NAME.fullmatch(name) or name.endswith("_") or "__" in name:
         fitting = re.sub(r"[^a-z0-9]+", "_", name.lower()).strip("_0123456789")[:40]
         hint = f"; for instance '{fitting}'" if _NAME.fullmatch(fitting) else ""
@@ -88,11 +49,36 @@ def _check_name(kind: str, name: str, registry: Registry) -> None:
         raise PluginError(f"'{name}' cannot be a plug-in's name: {rule}{hint}")
     if keyword.iskeyword(name) or keyword.issoftkeyword(name):
         raise PluginError(f"'{name}' cannot be a plug-in's name: it is a word of Python")
-    for entry in registry.entries.get((kind, name), []):
-        words = kind.replace("_", " ")
-        raise PluginError(f"there is a {words} '{name}' already, of {entry.distribution}: choose another name")
-
-
-def _article(kind: str) -> str:
-    words = kind.replace("_", " ")
-    return f"{'An' if words[0] in 'aeiou' else 'A'} {words}"
+    for entry in (registry or default_registry()).entries.get((kind, name), []):
+        raise PluginError(
+            f"there is a {kind.replace('_', ' ')} '{name}' already, of {entry.distribution}: choose another name"
+        )
+    words = {
+        "kind": kind,
+        "name": name,
+        "module": f"raceway_{name}",
+        "distribution": f"raceway-{name.strip('_').replace('_', '-')}",
+        "cls": "".join(part.capitalize() for part in name.split("_")),
+        "title": f"{'An' if kind[0] in 'aeiou' else 'A'} {kind.replace('_', ' ')} '{name}'",
+        "hook": KINDS[kind][0],
+        "version": ".".join(__version__.split(".")[:2]),
+    }
+    target = Path(folder) / words["distribution"]
+    if target.exists():
+        raise PluginError(f"`{target}` exists already and is not overwritten: choose another name or --out DIR")
+    contents = {}
+    for part in ("common", kind):
+        for source in sorted(files("raceway").joinpath("data", "templates", part).iterdir(), key=lambda f: f.name):
+            file = source.name.removesuffix(".txt")
+            if file.startswith("package_"):
+                file = f"{words['module']}/{file.removeprefix('package_')}"
+            elif file.startswith("tests_"):
+                file = f"tests/{file.removeprefix('tests_')}"
+            contents[file] = Template(source.read_text(encoding="utf-8")).substitute(words)
+    try:
+        for path, text in contents.items():
+            (target / path).parent.mkdir(parents=True, exist_ok=True)
+            (target / path).write_text(text, encoding="utf-8")
+    except OSError as why:
+        raise PluginError(f"`{target}` cannot be written: {why.strerror or why}") from why
+    return target
