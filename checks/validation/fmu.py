@@ -104,11 +104,11 @@ def exported(folder: Path, scene: object, **options: Any) -> dict[int, Path]:
     return {version: next(path for path in paths if path.name.endswith(f"_fmi{version}.fmu")) for version in (2, 3)}
 
 
-def map_difference(instance: Instance, count: int = 1000) -> float:
+def map_difference(instance: Instance, count: int = 1000, ranges: dict[str, tuple[float, float]] = RANGES) -> float:
     """Largest difference of random points from ``raceway.function`` over the error that the FMU states."""
     rng = np.random.default_rng(3)
-    columns = [rng.uniform(*ends, size=count) for ends in RANGES.values()]
-    answer = rw.function(MAP, RANGES, ["K", "C"])(*columns)
+    columns = [rng.uniform(*ends, size=count) for ends in ranges.values()]
+    answer = rw.function(MAP, ranges, ["K", "C"])(*columns)
     values = np.array([instance(*point) for point in zip(*columns, strict=True)])
     shares = []
     for k, name in enumerate(instance.outputs):
