@@ -111,7 +111,7 @@ def test_classes_of_clearance_overlap_in_order():
     assert clearance_range("ball", 2.0) is None
 
 
-@pytest.mark.parametrize("bodies", ["rigid", "condensed"])
+@pytest.mark.parametrize("bodies", ["rigid", pytest.param("condensed", marks=pytest.mark.slow)])
 def test_a_deep_groove_bearing_counts_from_the_middle_of_its_clearance(bodies):
     def answer(axial, radial=0.0, **bearing):
         load = {"axial": axial, "radial": [radial, 0.0]}

@@ -54,7 +54,7 @@ def test_static_scenes_state_what_moments_and_growth_would_change():
     assert alone["none"] < alone["shared"] < 0.0 < alone["outer_race"]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind == "condensed")) for kind in KINDS])
 def test_every_hypothesis_is_that_of_a_run_under_it(kind):
     """Within 1 % of the change; errors of orbits on 17 times cancel to far less."""
     base = rw.Scene.from_dict(MOVING).with_(**KINDS[kind])

@@ -44,13 +44,13 @@ def test_runs_end_in_numbers_or_a_message(tmp_path):
     """Rigid bodies only; ``python -m checks fuzz`` runs 1500 scenes of all bodies."""
     fill(tmp_path)
     ends: Counter[str] = Counter()
-    for seed in range(0, 2 * KEYS, 3):
+    for seed in range(0, 2 * KEYS, 6):
         good, plan, _ = check(scene(seed, tmp_path))
         if good is not None and good.bodies.name == "rigid" and cheap(good, plan):
             end, faults = ran(good)
             assert not faults, (seed, faults)
             ends[end] += 1
-    assert ends["finished"] >= 30, ends
+    assert ends["finished"] >= 15, ends
 
 
 def test_fronts_end_in_an_answer_or_a_message(tmp_path):

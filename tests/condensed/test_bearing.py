@@ -49,7 +49,7 @@ def test_whole_bearing(supports, displacement, diagonal):
         assert value is None or 1e-6 * found.stiffness[index, index] == pytest.approx(value, rel=0.01)
 
 
-@pytest.mark.parametrize("seats", [("outer",), ("inner", "outer")])
+@pytest.mark.parametrize("seats", [pytest.param(("outer",), marks=pytest.mark.slow), ("inner", "outer")])
 def test_rings_that_do_not_deform_are_in_series_with_their_beds(seats):
     """Axially exact: 1 / K = 1 / K on rigid seats + 1 / (bed area); 1e-3 for the angles' table over which c is a spline."""
     rings = {"rings": {"young": 2e15, "poisson": 0.29}}
@@ -184,6 +184,7 @@ def test_limit_takes_away_an_error_of_order_two_and_gives_the_tangent():
     assert found.error(np.array([200.0])) == pytest.approx(found.uncertainty + found.trend)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tilt", ["locked", "free"])
 def test_thin_walls_are_within_what_is_stated_of_pressures_at_surface_points(tilt):
     """Four points along a semi-axis are 0.6 % softer than their limit; matched at depth alone kyy was 3.5 % too high."""

@@ -180,7 +180,8 @@ ALL = {**TURNING, **GROWN, "gyroscopic": "outer_race", "ring_growth": True}
 
 @pytest.mark.parametrize(
     ("bodies", "kinematics"),
-    [(bodies, one) for bodies in ("rigid", "condensed") for one in (TURNING, GROWN, ALL)] + [("patches", ALL)],
+    [(bodies, one) for bodies in ("rigid", "condensed") for one in (TURNING, GROWN, ALL)]
+    + [pytest.param("patches", ALL, marks=pytest.mark.slow)],
 )
 def test_every_kind_of_bodies_is_mounted_at_standstill(built, bodies, kinematics):
     """The rows' offset and the held displacement are those of the scene that neither turns nor grows."""

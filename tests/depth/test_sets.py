@@ -224,6 +224,7 @@ def test_preload_of_a_running_set(rpm):
     )
 
 
+@pytest.mark.slow
 def test_condensed_rows():
     """Elastic rings and balls: a set of equal rows is its rows, too."""
     (_, pair), (_, four) = (

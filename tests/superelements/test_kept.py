@@ -45,7 +45,7 @@ def test_what_was_kept_gives_the_same_digits_without_a_factorisation_and_serves_
 @pytest.mark.parametrize(
     "change",
     [
-        {"bodies": {"formulation": "full"}},
+        pytest.param({"bodies": {"formulation": "full"}}, marks=pytest.mark.slow),
         pytest.param({"mesh": {"azimuth_cells": 30}}, marks=pytest.mark.slow),
         pytest.param({"bearing": {"rings": {"young": 205e9}}}, marks=pytest.mark.slow),
         {"supports": {"outer_seat": 1e13}},

@@ -314,14 +314,14 @@ def test_only_a_law_stiffer_than_hertz_may_be_refused_by_elastic_bodies(law, exp
 
 
 def test_the_command_writes_its_report_and_reuses_finished_cases(tmp_path):
-    words = ("stability", "--only", "chatter", "--processes", 0, "--out", tmp_path, "--json")
+    words = ("stability", "--only", "clearance 20 um", "--processes", 0, "--out", tmp_path, "--json")
     first = invoke(*words)
     assert first.exit_code == 0
     content = json.loads(first.stdout)
     keys = {"case", "setting", "expected", "predicted", "observed", "energy_drift", "verdict"}
     assert all(keys <= set(row) for row in content["rows"]) and content["failed"] == content["reused"] == 0
     assert json.loads((tmp_path / "stability.json").read_text())["rows"] == content["rows"]
-    assert "## chatter" in (tmp_path / "stability.md").read_text()
+    assert "## clearance 20 um" in (tmp_path / "stability.md").read_text()
     again = json.loads(invoke(*words).stdout)
     assert again["reused"] == again["cases"] and again["rows"] == content["rows"]
 
@@ -348,14 +348,17 @@ def test_quick_cases_are_the_default_and_the_screen_says_what_is_left_out(tmp_pa
     assert page.index("## Failed") < page.index("## answer")
 
 
-def test_an_interruption_keeps_finished_cases(tmp_path):
+def test_an_interruption_keeps_finished_cases(tmp_path, monkeypatch):
+    cases = tuple(attrs.evolve(case("answer", value="near"), name=f"answer {k}", setting={"k": k}) for k in range(4))
+    monkeypatch.setattr("raceway_checks.stability.catalogue.catalogue", lambda *_: cases)
+
     def stop(what, done, total):
         if done == 2:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        stability(only="chatter", processes=0, kept=tmp_path, progress=stop)
-    assert stability(only="chatter", processes=0, kept=tmp_path).reused == 2
+        stability(only="answer", processes=0, kept=tmp_path, progress=stop)
+    assert stability(only="answer", processes=0, kept=tmp_path).reused == 2
 
 
 @pytest.mark.parametrize(

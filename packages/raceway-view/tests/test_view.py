@@ -164,6 +164,7 @@ for words in {commands!r}:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.needs("pyvista")
 def test_pictures_are_drawn_without_a_display_and_in_silence(tmp_path):
     """Of the view at a static load, and of a mesh; ``test_commands`` looks at those of a motion."""
