@@ -16,7 +16,7 @@ import numpy as np
 
 from checks.kernel import least
 from raceway import load_scene
-from raceway.core.contact.laws import linear
+from raceway.contact_laws.penalty import linear
 from raceway.core.fem.elastic.bearing import ElasticBearing
 from raceway.core.fem.elastic.bearing_data import BearingData
 from raceway.core.fem.elastic.contact import penalty_stiffness
@@ -49,7 +49,7 @@ def bearing(scene: Any) -> ElasticBearing:
         rings=(b.rings.young, b.rings.poisson, b.rings.density),
         balls=(b.balls.young, b.balls.poisson, b.balls.density),
         reference_load=basis.ball_load,
-        law=linear,
+        law=linear(),
         params=params,
         mass=np.diag([0.5, 0.5, 0.5, 1e-4, 1e-4]),
         free=np.ones(5, dtype=bool),

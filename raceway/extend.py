@@ -16,6 +16,8 @@ import ast
 from importlib import import_module
 from pathlib import Path
 
+from raceway.core.deferred import DeferredKernel
+
 _STUB = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
 _PLACES = {
     alias.name: f"raceway.{node.module}" for node in _STUB.body if isinstance(node, ast.ImportFrom) for alias in node.names
@@ -27,4 +29,5 @@ __all__ = sorted(_PLACES)
 def __getattr__(name: str) -> object:
     if name not in _PLACES:
         raise AttributeError(f"module 'raceway.extend' has no attribute '{name}'")
-    return getattr(import_module(_PLACES[name]), name)
+    found = getattr(import_module(_PLACES[name]), name)
+    return found() if isinstance(found, DeferredKernel) else found

@@ -17,12 +17,12 @@ from .cli.frame import FILE as FILE
 from .cli.frame import common as common
 from .cli.frame import plugin_files as plugin_files
 from .cli.frame import set_keys as set_keys
+from .contact_laws.hertz import three_halves as three_halves
 from .core.contact.damping import stored_energy as stored_energy
 from .core.contact.hertz import axis_shear as axis_shear
 from .core.contact.hertz import axis_stresses as axis_stresses
 from .core.contact.hertz import contact_modulus as contact_modulus
 from .core.contact.hertz import ellipse as ellipse
-from .core.contact.laws import three_halves as three_halves
 from .core.excitations import no_force as no_force
 from .core.fem.hexahedron.operator import HexOperator as HexOperator
 from .core.fem.hexahedron.rows import centre_stress as centre_stress

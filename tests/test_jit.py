@@ -24,20 +24,21 @@ from raceway.core.jit import clock
 from raceway.core.signatures import Pointer
 from raceway.storage.kernel_cache import current_folder, make, opened, refusal
 
-#: The smallest kernels, three in a file, each used once; what was compiled and read, what was warned of, numba's own settings.
+#: The smallest kernels, three in two files, each used once; what was compiled and read, what was warned of, numba's own settings.
 USE = """
 import json, sys, warnings
 import numba, numpy as np
 before = numba.config.CACHE_DIR
 with warnings.catch_warnings(record=True) as caught:
     warnings.simplefilter("always")
-    from raceway.core.contact.laws import linear, square, three_halves
+    from raceway.contact_laws.hertz import three_halves
+    from raceway.contact_laws.penalty import linear, square
     from raceway.core.jit import clock
     at_import = clock["compiled"] + clock["loaded"]
     force, slope, rate = np.empty(1), np.empty(1), np.empty(1)
     none = np.zeros((1, 0))
     for law in (linear, square, three_halves):
-        law(np.array([-4e-6]), np.zeros(1), np.array([[1e9]]), none, none, 0.0, force, slope, rate)
+        law()(np.array([-4e-6]), np.zeros(1), np.array([[1e9]]), none, none, 0.0, force, slope, rate)
 assert at_import == 0, at_import
 kept = before == numba.config.CACHE_DIR
 print(json.dumps([force[0], clock["compiled"], clock["loaded"], [str(w.message) for w in caught], kept]))
@@ -395,10 +396,10 @@ def test_threads_that_use_a_kernel_first_at_the_same_time_compile_it_once():
 def test_a_kernel_is_handed_to_another_process_uncompiled():
     import pickle
 
-    from raceway.core.contact.laws import square
+    from raceway.contact_laws.penalty import square
 
-    assert pickle.loads(pickle.dumps(square)) is square
-    done = python("-c", f"import pickle; print(pickle.loads({pickle.dumps(square)!r}).signature.args[0])")
+    assert pickle.loads(pickle.dumps(square())) is square()
+    done = python("-c", f"import pickle; print(pickle.loads({pickle.dumps(square())!r}).signature.args[0])")
     assert done.stdout.strip() == "array(float64, 1d, C)", done.stderr
 
 

@@ -13,7 +13,7 @@ import attrs
 import numpy as np
 
 from checks.validation.quarter import ball_layers, half_line, quarter_ball, quarter_groove
-from raceway.core.contact.laws import linear
+from raceway.contact_laws.penalty import linear
 from raceway.core.fem.elastic.assembly import Assembly, Body, Frame
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.contact import (
@@ -144,7 +144,7 @@ def model(
     points = found[near]
     penalty = float(penalty_stiffness(MODULUS, minor / nodes))
     pair = Pair("ball on groove", points, surface, facets, len(ball.points))
-    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, np.full((len(points.area), 1), penalty)))
+    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear(), np.full((len(points.area), 1), penalty)))
     forces = np.zeros(assembly.size)
     forces[0] = 0.0 if prescribed else -0.25 * load
     return Groove(load, nodes, ball, block, ElasticSystem(assembly, contact, MODULUS, forces), penalty)

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from checks.validation.quarter import half_line
 from checks.validation.reference.elastic import grid
-from raceway.core.contact.laws import linear
+from raceway.contact_laws.penalty import linear
 from raceway.core.fem.elastic.assembly import Assembly, Body
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, _plane, penalty_stiffness
@@ -65,7 +65,7 @@ def model(fine: float, zone: float, formulation: str = "one_point", hourglass: f
     points = surface_points(ball[0], under, np.array([0.0, 0.0, RADIUS]))
     pair = Pair("ball on block", points, _plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(block[0], top), first)
     stiffness = penalty_stiffness(MODULUS, 2.0 * np.sqrt(points.area))
-    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, stiffness[:, None]))
+    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear(), stiffness[:, None]))
     system = ElasticSystem(assembly, contact, MODULUS, np.zeros(assembly.size))
     velocity = np.zeros((assembly.nodes, 3))
     velocity[:first, 2] = -1.0

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
+from raceway.contact_laws.hertz import three_halves
 from raceway.framework.contracts import LawReport
 from raceway.framework.options import between, one_of, option, optional, positive
 from raceway.scene.lubricant import Oil
@@ -88,9 +89,7 @@ class Film(Oil):
         return (1.0 + slope) * thick
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact.laws import three_halves
-
-        return three_halves
+        return three_halves()
 
     def report(self, pairs: ContactPairs) -> LawReport:
         """Thickness, Lambda and regime of every contact, and what makes them doubtful."""

@@ -5,19 +5,28 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
+import numpy as np
 
+from raceway.core.deferred import deferred
 from raceway.errors import PluginError
 from raceway.framework.options import option, optional, positive, word_or
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from raceway.core.jit import Kernel
     from raceway.framework.contracts import ContactPairs
 
 #: c of delta = c Q^0.9 / L^0.8 of one contact [m^1.8 / N^0.9], for steel: half of what c_L = 35948 L^(8/9) of both races leaves
 #: (ISO/TS 16281), and 3.84e-5 mm^1.8 / N^0.9 (Palmgren).
 _COEFFICIENTS = {"iso_16281": 0.5 * 35948.0**-0.9 * 1e-3 * 1e-3**0.8, "palmgren": 3.84e-5 * 1e-3 * 1e-3**0.8}
+
+
+@deferred("LAW")
+def ten_ninths(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Q = k delta^(10/9)."""
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        slope = params[i, 0] * approach ** (1.0 / 9.0)
+        force[i], d_gap[i], d_rate[i] = slope * approach, -10.0 / 9.0 * slope, 0.0
 
 
 @attrs.frozen
@@ -60,8 +69,6 @@ class Line:
         return _COEFFICIENTS[self.constant] if isinstance(self.constant, str) else self.constant
 
     def build(self, pairs: ContactPairs) -> np.ndarray:
-        import numpy as np
-
         if self.length is None and pairs.length is None:
             raise PluginError(
                 "the contacts are not line contacts: use bodies.kind = 'cylindrical_rollers', or give contact.length"
@@ -70,6 +77,4 @@ class Line:
         return np.asarray((length ** (8.0 / 9.0) / self.coefficient ** (10.0 / 9.0))[:, None].copy())
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact.laws import ten_ninths
-
-        return ten_ninths
+        return ten_ninths()

@@ -5,33 +5,46 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
+import numpy as np
 
+from raceway.contact_laws.hertz import point_stiffness
+from raceway.core.deferred import deferred
 from raceway.framework.options import option, optional, positive
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from raceway.core.jit import Kernel
     from raceway.framework.contracts import ContactPairs
 
 
-#: Times the pressure per penetration at which two rigid paraboloids approach as far as Hertz's: the largest penetration
-#: is then 1.5 / 150 = 1 % of Hertz's approach, because the peak of a Hertz pressure is 1.5 times its mean.
-SHARE = 150.0
+@deferred("LAW")
+def square(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Penalty: p = k delta at a point, or, integrated over the overlap of a paraboloid, Q = c delta^2 of a pair."""
+    if params.shape[1] == 1:
+        for i in range(gap.size):
+            approach = max(-gap[i], 0.0)
+            slope = params[i, 0] * approach
+            force[i] = slope * approach
+            d_gap[i] = -2.0 * slope
+            d_rate[i] = 0.0
+        return
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        linear = params[i, 1] if gap[i] < 0.0 else 0.0
+        slope = params[i, 0] * approach
+        force[i] = (slope + linear) * approach
+        d_gap[i] = -2.0 * slope - linear
+        d_rate[i] = 0.0
 
 
-def point_stiffness(pairs: ContactPairs, load: np.ndarray) -> np.ndarray:
-    """(n,) k_n [N/m3] whose penetration under the peak pressure at ``load`` (n,) [N] is 1 % of Hertz's approach.
-
-    Notes
-    -----
-    Rigid paraboloids A x^2 + B y^2 that overlap by delta carry Q = pi k delta^2 / (2 sqrt(A B)); with Hertz's delta that
-    gives k = 2 sqrt(A B) Q / (pi delta^2), which is 2/3 of the peak pressure over delta for any ellipse near a circle.
-    """
-    import numpy as np
-
-    approach = np.cbrt(load / pairs.hertz_factor) ** 2
-    return SHARE * 2.0 * np.sqrt(pairs.curvature_a * pairs.curvature_b) * load / (np.pi * approach**2)
+@deferred("LAW")
+def linear(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """A nodal penalty: p = k_n delta."""
+    for i in range(gap.size):
+        closed = gap[i] < 0.0
+        slope = params[i, 0] if closed else 0.0
+        force[i] = -slope * gap[i]
+        d_gap[i] = -slope
+        d_rate[i] = 0.0
 
 
 @attrs.frozen
@@ -68,8 +81,6 @@ class Penalty:
             raise ValueError("`stiffness` and `calibrate_at` exclude each other: give one of them")
 
     def build(self, pairs: ContactPairs) -> np.ndarray:
-        import numpy as np
-
         none = np.zeros_like(pairs.hertz_factor)
         load = pairs.reference_load if self.calibrate_at is None else np.full_like(none, self.calibrate_at)
         if pairs.area is not None:
@@ -82,9 +93,7 @@ class Penalty:
         return np.asarray(factor)[:, np.newaxis]
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact.laws import square
-
-        return square
+        return square()
 
 
 @attrs.frozen
@@ -105,12 +114,8 @@ class Unilateral:
     constraint: ClassVar[bool] = True
 
     def build(self, pairs: ContactPairs) -> np.ndarray:
-        import numpy as np
-
         stiffness = 100.0 * point_stiffness(pairs, pairs.reference_load)
         return np.column_stack([np.zeros_like(stiffness), stiffness])
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact.laws import square
-
-        return square
+        return square()

@@ -223,6 +223,8 @@ class _Compiler(CompilerBase):
 
 
 _Dispatcher: _Numba = CPUDispatcher
+#: Modules whose kernels need no more than ``_Compiler`` does.
+_OWN = "raceway.core.", "raceway.contact_laws.", "raceway.plugins."
 
 
 class Kernel(_Dispatcher):
@@ -236,7 +238,7 @@ class Kernel(_Dispatcher):
     """
 
     def __init__(self, function: Callable[..., Any], signature: Signature, options: dict[str, Any]) -> None:
-        if function.__module__.startswith("raceway.core."):
+        if function.__module__.startswith(_OWN):
             super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
         else:
             super().__init__(function, targetoptions=options)
@@ -292,7 +294,8 @@ class Kernel(_Dispatcher):
     def __reduce__(self) -> Any:
         """By name, uncompiled, where it has one: a cached kernel made around it is found again by this."""
         module, name = self.py_func.__module__, self.py_func.__qualname__
-        if getattr(sys.modules.get(module), name, None) is self:
+        found = getattr(sys.modules.get(module), name, None)
+        if getattr(found, "kernel", found) is self:  # of a file that is read without this module
             return _named, (module, name)
         return super().__reduce__()
 
@@ -485,7 +488,8 @@ def _refuse_strided(values: tuple[Any, ...], name: str) -> None:
 
 
 def _named(module: str, name: str) -> Kernel:
-    return getattr(import_module(module), name)
+    found = getattr(import_module(module), name)
+    return found if isinstance(found, Kernel) else found.kernel
 
 
 def jit(

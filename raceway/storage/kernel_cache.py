@@ -75,10 +75,11 @@ def make(folder: Path) -> None:
 
 @cache
 def source_key() -> str:
-    """Hash of the sources of core, where all shared kernels are, and of the versions that produce machine code."""
+    """Hash of the sources of the core and of laws and excitations, where all shared kernels are, and of what produces machine code."""
     digest = hashlib.sha256()
     package = Path(__file__).resolve().parents[1]
-    for path in sorted(package.glob("core/**/*.py")):
+    shared = ("core", "contact_laws", "plugins/excitations")
+    for path in sorted(path for folder in shared for path in package.glob(f"{folder}/**/*.py")):
         digest.update(path.relative_to(package).as_posix().encode())
         digest.update(path.read_bytes())
     versions = (sys.version, *(version(name) for name in ("numba", "llvmlite", "numpy")))

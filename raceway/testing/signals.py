@@ -202,7 +202,7 @@ def _synthetic_record(
 
 def _model_of(sense: int = 1, direction: float = 0.0) -> Model:
     """A model as identifiers see it, for the same spring, mass and dashpot."""
-    from raceway.core.excitations import harmonic
+    from raceway.plugins.excitations.harmonic import harmonic
     from raceway.testing.systems import linear_system
 
     radial = np.diag([0.0, 1.0, 1.0, 0.0, 0.0])
@@ -210,7 +210,7 @@ def _model_of(sense: int = 1, direction: float = 0.0) -> Model:
     system.mass, system.damping, system.stiffness = MASS * np.eye(5), DAMPING * radial, STIFFNESS * radial
     w = 2.0 * np.pi * FREQUENCY
     shape = [1.0, 0.0, 0.0, float(sense)] if sense else [np.cos(direction), 0.0, np.sin(direction), 0.0]
-    system.force, system.force_params = harmonic, np.array([FORCE, w, 0.4, *shape])
+    system.force, system.force_params = harmonic(), np.array([FORCE, w, 0.4, *shape])
     excitation = SimpleNamespace(
         frequency_hz=FREQUENCY, period_s=1.0 / FREQUENCY, amplitude_n=FORCE, sense=sense, speed_rpm=60.0 * FREQUENCY,
         phase=lambda time: w * time - 0.4,

@@ -331,7 +331,7 @@ def _import_compiler() -> None:
     """Once for all children, with a small kernel, whose first use starts the compiler: most duties take less time than that."""
     for name in ("scipy.sparse.linalg", "scipy.optimize", "raceway.pipeline.run"):
         import_module(name)
-    import_module("raceway.core.contact.laws").three_halves.compile()
+    import_module("raceway.contact_laws.hertz").three_halves().compile()
 
 
 def _serve(work: Callable[[], object], writer: int) -> None:

@@ -17,13 +17,13 @@ import attrs
 import numpy as np
 from numba import float64, int64, void
 
-from raceway.core.contact.laws import three_halves
-from raceway.core.excitations import harmonic
+from raceway.contact_laws.hertz import three_halves
 from raceway.core.jit import jit
 from raceway.core.record import Motion
 from raceway.core.ring.kernels.impact import CLEARANCE, impact_system
 from raceway.core.ring.system import System
 from raceway.core.signatures import FORCE, FORCE_POINTER, LAW, LAW_POINTER, MATRIX, VECTOR
+from raceway.plugins.excitations.harmonic import harmonic
 from raceway.testing.suite import require
 
 #: Gap of contacts that stay open [m].
@@ -115,7 +115,7 @@ def counting_system() -> System:
 
 def _system(free: list[float], clearance: float = 0.0, **parts: object) -> System:
     return attrs.evolve(
-        impact_system(MASS, three_halves, np.array([FACTOR]), clearance=clearance), free=np.array(free), **parts
+        impact_system(MASS, three_halves(), np.array([FACTOR]), clearance=clearance), free=np.array(free), **parts
     )
 
 
@@ -124,7 +124,7 @@ def linear_system(damped: bool = True, forced: bool = True) -> System:
     damping = np.zeros((5, 5))
     if damped:
         damping[1:3, 1:3] = [[DASHPOT, GYROSCOPIC], [-GYROSCOPIC, DASHPOT]]
-    force = {"force": harmonic, "force_params": np.array([AMPLITUDE, SPEED, 0.3, 1.0, 0.0, 0.0, 1.0])} if forced else {}
+    force = {"force": harmonic(), "force_params": np.array([AMPLITUDE, SPEED, 0.3, 1.0, 0.0, 0.0, 1.0])} if forced else {}
     stiffness = np.diag([0.0, STIFFNESS, 1.3 * STIFFNESS, 0.0, 0.0])
     return _system([0.0, 1.0, 1.0, 0.0, 0.0], damping=damping, stiffness=stiffness, clearance=_OPEN, **force)
 

@@ -23,7 +23,8 @@ from raceway.core.jit import Kernel, clock
 modules = {name: module for name, module in sys.modules.items() if name.startswith("raceway.")}
 kernels = {
     f"{kernel.__module__}:{kernel.__name__}": len(kernel.signatures)
-    for module in modules.values() for kernel in vars(module).values() if isinstance(kernel, Kernel)
+    for module in modules.values() for value in vars(module).values()
+    if isinstance(kernel := getattr(value, "kernel", value), Kernel)
 }
 from raceway.core.ring.system import surrogate
 system, record = surrogate(result.model.system), None if result.simulation is None else result.simulation.whole

@@ -72,7 +72,7 @@ def test_a_fault_touches_what_imports_its_file_and_nothing_else():
         "raceway/core/fem/elastic/assembly.py",
         "tests/hexahedron/test_elements.py",
     } <= found
-    assert not {"raceway/core/time/compiled.py", "raceway/core/contact/laws.py"} & found
+    assert not {"raceway/core/time/compiled.py", "raceway/contact_laws/penalty.py"} & found
 
 
 def test_the_copy_has_what_configures_pytest():

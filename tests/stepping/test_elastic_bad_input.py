@@ -10,7 +10,7 @@ import pytest
 from checks.validation.impact import moving
 from checks.validation.reference import elastic
 from raceway import ConvergenceError, MeshError, StabilityError
-from raceway.core.contact.laws import linear
+from raceway.contact_laws.penalty import linear
 from raceway.core.fem.elastic.assembly import Assembly, Body
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, _plane
@@ -40,7 +40,7 @@ def cubes(gap: float = 0.0, held: bool = True, penalty: float = 1e14) -> Elastic
     under, top = (_facets(mesh, height) for mesh, height in zip(meshes, (gap, 0.0), strict=True))
     at = surface_points(meshes[0][0], under)
     pair = Pair("upper on lower", at, _plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(meshes[1][0], top), first)
-    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, np.full((len(at.area), 1), penalty)))
+    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear(), np.full((len(at.area), 1), penalty)))
     force = np.zeros((assembly.nodes, 3))
     force[np.flatnonzero(meshes[0][0][:, 2] > gap + SIDE - 1e-9), 2] = -1.0
     return ElasticSystem(assembly, contact, MODULUS, assembly.reduced(force.ravel()))

@@ -57,12 +57,12 @@ def test_a_mass_on_a_spring_keeps_its_period_when_the_contact_is_open(name):
 @pytest.mark.parametrize("name", ["newmark", "generalized_alpha", "central_difference"])
 def test_an_impact_on_a_penalty(name):
     """Q = c d^2: energy gives d_max = (3 m v^2 / (2 c))^(1/3).  Tolerance as for Hertz; the frequency is about the same."""
-    from raceway.core.contact.laws import square
+    from raceway.contact_laws.penalty import square
     from raceway.extend import Motion, Schedule
 
     mass, speed, factor = 0.01, 2.0, 1e12
     deepest = (1.5 * mass * speed**2 / factor) ** (1 / 3)
-    system = impact_system(mass, square, np.array([factor]))
+    system = impact_system(mass, square(), np.array([factor]))
     dt = 2.8 * deepest / speed / 100  # Hertz's contact lasts 2.94 d_max / v, this one a little less
     balls, first = np.zeros((1, 2)), np.array([1.0, 0, 0, 0, 0])
     start = Motion(-2.5 * dt * speed * first, speed * first, np.zeros(5), balls, balls.copy())

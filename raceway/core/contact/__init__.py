@@ -2,7 +2,7 @@
 
 geometry   groove curvatures, groove centres, contact angle, cage speed
 hertz      exact elliptic Hertz contact, the half-space around it, stresses below it
-laws       kernels of contact laws;  damping: normal damping, and the energy that a contact stores
+damping    normal damping, and the energy that a contact stores
 losses     torque of balls that roll between races, a compiled loop over points
 film       thickness of an elastohydrodynamic film, entraining speed
 """

@@ -7,16 +7,31 @@ from math import pi, radians
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
+import numpy as np
 
+from raceway.core.deferred import deferred
 from raceway.framework.options import at_least, between, finite, inside, one_of, option, optional, positive
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from typing import Self
 
-    import numpy as np
-
     from raceway.core.jit import Kernel
+
+
+@deferred("FORCE")
+def harmonic(t, params, out):
+    """A force that rotates, or oscillates along one direction: out (5,), F_y = F (p3 cos + p4 sin)(W t - lag), F_z likewise with p5, p6.
+
+    params: amplitude F [N], speed W [rad/s], lag [rad], then the cos and sin parts p3 to p6 of F_y and of F_z.
+    """
+    phase = params[1] * t - params[2]
+    c, s = params[0] * np.cos(phase), params[0] * np.sin(phase)
+    out[0] = 0.0
+    out[1] = params[3] * c + params[4] * s
+    out[2] = params[5] * c + params[6] * s
+    out[3] = 0.0
+    out[4] = 0.0
 
 
 @attrs.frozen(kw_only=True)
@@ -110,9 +125,7 @@ class Amplitude:
         return attrs.evolve(self, speed_rpm=speed_rpm, unbalance=None, reference_speed_rpm=None, **fixed)
 
     def kernel(self) -> Kernel:
-        from raceway.core.excitations import harmonic
-
-        return harmonic
+        return harmonic()
 
 
 @attrs.frozen(kw_only=True)
@@ -134,8 +147,6 @@ class Unidirectional(Amplitude):
         return 0
 
     def parameters(self) -> np.ndarray:
-        import numpy as np
-
         lag, direction = radians(self.phase_lag_deg), radians(self.direction_deg)
         return np.array([self.amplitude_n, self.whirl_speed, lag, np.cos(direction), 0.0, np.sin(direction), 0.0])
 
@@ -158,10 +169,38 @@ class Bidirectional(Amplitude):
         return 1 if self.whirl == "forward" else -1
 
     def parameters(self) -> np.ndarray:
-        import numpy as np
-
         lag = radians(self.phase_lag_deg)
         return np.array([self.amplitude_n, self.whirl_speed, lag, 1.0, 0.0, 0.0, float(self.sense)])
+
+
+@deferred("FORCE")
+def run_up(t, params, out):
+    """Unbalance while the speed changes linearly: out (5,), m e (w^2 n + w' n_perpendicular), w the momentary speed.
+
+    params: unbalance on this bearing m e [kg m], first and last speed [rad/s], duration [s], lag [rad], sense.
+
+    Notes
+    -----
+    The centre of mass at e (cos phi, sin phi) accelerates by -e w^2 along the radius and by e w' across it; the force on
+    the ring is the reaction.  Beyond the duration the speed stays.
+    """
+    duration = params[3]
+    rate = (params[2] - params[1]) / duration
+    if t < duration:
+        w = params[1] + rate * t
+        phase = params[1] * t + 0.5 * rate * t * t
+    else:
+        w = params[2]
+        phase = 0.5 * (params[1] + params[2]) * duration + w * (t - duration)
+        rate = 0.0
+    phase -= params[4]
+    c, s = np.cos(phase), np.sin(phase)
+    radial, across = params[0] * w * w, params[0] * rate
+    out[0] = 0.0
+    out[1] = radial * c + across * s
+    out[2] = params[5] * (radial * s - across * c)
+    out[3] = 0.0
+    out[4] = 0.0
 
 
 @attrs.frozen(kw_only=True)
@@ -205,8 +244,6 @@ class RunUp:
 
     def phase(self, time: np.ndarray) -> np.ndarray:
         """Angle of the force (n,) [rad] at times (n,)."""
-        import numpy as np
-
         first, last = self.first_speed_rpm * pi / 30.0, self.speed_rpm * pi / 30.0
         changing = np.minimum(time, self.duration_s)
         turned = first * changing + 0.5 * (last - first) / self.duration_s * changing**2
@@ -218,16 +255,20 @@ class RunUp:
         return Bidirectional(speed_rpm=self.first_speed_rpm, **same)
 
     def parameters(self) -> np.ndarray:
-        import numpy as np
-
         first, last = self.first_speed_rpm * pi / 30.0, self.speed_rpm * pi / 30.0
         share = self.load_share * self.unbalance
         return np.array([share, first, last, self.duration_s, radians(self.phase_lag_deg), float(self.sense)])
 
     def kernel(self) -> Kernel:
-        from raceway.core.excitations import run_up
+        return run_up()
 
-        return run_up
+
+@deferred("FORCE")
+def one_frequency(t, params, out):
+    """A load of one frequency: out (5,) from params (11,), speed [rad/s], then real and imaginary part of F_x, F_y, F_z [N], M_y, M_z [N m] e^{jwt}."""
+    c, s = np.cos(params[0] * t), np.sin(params[0] * t)
+    for i in range(out.size):
+        out[i] = params[1 + 2 * i] * c - params[2 + 2 * i] * s
 
 
 @attrs.frozen(kw_only=True)
@@ -237,20 +278,14 @@ class HarmonicLoad(Bidirectional):
     amplitudes: tuple[complex, ...] = (0.0,) * 5
 
     def parameters(self) -> np.ndarray:
-        import numpy as np
-
         return np.concatenate([[self.whirl_speed], np.array(self.amplitudes, dtype=complex).view(float)])
 
     def kernel(self) -> Kernel:
-        from raceway.core.excitations import harmonic_load
-
-        return harmonic_load
+        return one_frequency()
 
 
 def harmonic_load(speed: float, load: np.ndarray) -> HarmonicLoad:
     """The excitation of a load (5,) [N, N m] at a speed [rad/s]."""
-    import numpy as np
-
     largest = float(np.abs(load[:3]).max())
     return HarmonicLoad(
         speed_rpm=speed * 30.0 / pi, amplitude="constant", force=largest, amplitudes=tuple(map(complex, load))

@@ -8,18 +8,52 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
+import numpy as np
 
+from raceway.core.deferred import deferred
 from raceway.framework.options import inside, option
 from raceway.storage.number_table import read_numbers
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from raceway.core.jit import Kernel
 
 #: Samples at least, and samples that are fitted at once.
 _LEAST, _AT_ONCE = 8, 2**16
 _COLUMNS = ("Fx", "Fy", "Fz", "My", "Mz")
+
+
+@deferred("FORCE")
+def samples(t, params, out):
+    """Samples at equal intervals: out (5,), a Catmull-Rom cubic, once continuously differentiable, third order between them.
+
+    params: interval [s], 1 if the samples repeat, then rows of F_x, F_y, F_z, M_y, M_z one after the other.
+
+    Notes
+    -----
+    Before the first and after the last sample of a record that does not repeat, the end values hold.
+    """
+    n = (params.size - 2) // 5
+    position = t / params[0]
+    k = int(np.floor(position))
+    u = position - k
+    repeat = params[1] != 0.0
+    if not repeat:
+        if position <= 0.0:
+            k, u = 0, 0.0
+        elif k >= n - 1:
+            k, u = n - 2, 1.0
+    w0 = 0.5 * u * (-1.0 + u * (2.0 - u))
+    w1 = 1.0 + 0.5 * u * u * (-5.0 + 3.0 * u)
+    w2 = 0.5 * u * (1.0 + u * (4.0 - 3.0 * u))
+    w3 = 0.5 * u * u * (u - 1.0)
+    for i in range(out.size):
+        total = 0.0
+        for j in range(4):
+            row = k - 1 + j
+            row = row % n if repeat else min(max(row, 0), n - 1)
+            weight = w0 if j == 0 else (w1 if j == 1 else (w2 if j == 2 else w3))
+            total += weight * params[2 + 5 * row + i]
+        out[i] = total
 
 
 @attrs.frozen(kw_only=True)
@@ -70,8 +104,6 @@ class Measured:
 
     @property
     def amplitude_n(self) -> float:
-        import numpy as np
-
         line = self._line()
         return float(np.linalg.svd(np.array([line.real, line.imag]), compute_uv=False)[0])
 
@@ -89,8 +121,6 @@ class Measured:
 
     def _line(self) -> np.ndarray:
         """1x phasors of F_x, F_y, F_z."""
-        import numpy as np
-
         time, _ = _read(self.file)
         grid = np.linspace(time[0], time[-1], len(time))
         square, right = np.zeros((3, 3)), np.zeros((3, 3))
@@ -105,8 +135,6 @@ class Measured:
 
     def _at(self, t: np.ndarray) -> np.ndarray:
         """(n, 5) forces and moments at times (n,) [s]."""
-        import numpy as np
-
         time, columns = _read(self.file)
         values = np.zeros((len(t), 5))
         for name, column in columns.items():
@@ -114,16 +142,12 @@ class Measured:
         return values
 
     def parameters(self) -> np.ndarray:
-        import numpy as np
-
         time, _ = _read(self.file)
         grid = np.linspace(time[0], time[-1], len(time))
         return np.concatenate([[grid[1] - grid[0], float(self.repeats)], self._at(grid).reshape(-1)])
 
     def kernel(self) -> Kernel:
-        from raceway.core.excitations import samples
-
-        return samples
+        return samples()
 
 
 def _read(path: str) -> tuple[np.ndarray, dict[str, np.ndarray]]:
