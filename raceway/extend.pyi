@@ -212,7 +212,7 @@ from .scene.changes import Key as Key
 from .scene.changes import continuous_keys as continuous_keys
 from .scene.changes import key_of as key_of
 from .scene.changes import parse_value as parse_value
-from .scene.changes import told as told
+from .scene.tables import told as told
 from .scene.changes import with_number as with_number
 from .scene.changes import with_numbers as with_numbers
 from .scene.changes import with_value as with_value

@@ -21,7 +21,6 @@ from raceway.bodies.contacts import (
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.record import Motion, Record
-from raceway.core.ring.energy import friction_energy
 from raceway.core.ring.orbit import Orbit, at_rest, from_orbit, static_orbit
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import compiled
@@ -89,6 +88,8 @@ class Bearing(ABC):
 
     def friction_lost(self, system: Ring, record: Record) -> float:
         """Energy that friction has taken at the end of a record [J]."""
+        from raceway.core.ring.energy import friction_energy
+
         ring = compiled(system)
         return 0.0 if ring is None else float(friction_energy(ring, record).lost[-1])
 

@@ -14,7 +14,6 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, first_guess, growth_of
-from raceway.bodies.running import renew
 from raceway.core.contact.hertz import regula_falsi
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.ring import Evaluation, Growth, Ring
@@ -54,6 +53,8 @@ def place_ring(problem: Problem, basis: Basis, system: Ring) -> np.ndarray:
         start = guess[0] * _AXIAL
         guess = loose.solve_equilibrium(start)[0] if seek is None else seek(loose, start)
     if renews(problem.contact.law) and isinstance(system, System):
+        from raceway.bodies.running import renew
+
         guess = renew(problem, basis, system, guess, seek)
     if seek is not None and system.spin is not None:
         # The changing speed with the second row's shift over the speeds of the run, a cubic spline through those of steady speeds.

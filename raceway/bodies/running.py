@@ -16,13 +16,12 @@ from raceway.core.ring.equilibrium import NOT_CONVERGED
 from raceway.core.ring.kernels.layout import CAGE, OWN_OFFSET_INNER, OWN_OFFSET_OUTER
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
-from raceway.framework.contracts import ContactPairs, LawReport
-from raceway.framework.duties import law_params, law_report, reach_of, renews
+from raceway.framework.contracts import ContactPairs
+from raceway.framework.duties import law_params, reach_of
 from raceway.planning.resolve import Problem
 
 if TYPE_CHECKING:
     from raceway.bodies.columns import ColumnBearing
-    from raceway.bodies.model import Equilibrium, Model
 
 #: Part of the most loaded contact's load of a race and row that a contact without it is taken to be about to carry.
 _LEAST = 0.1
@@ -67,15 +66,6 @@ def running_pairs(
     load = np.where(load > 0.0, load, _LEAST * per_ball(per_ball(basis.ball_load)))
     pairs = contact_pairs(problem, basis) if mounted is None else mounted
     return attrs.evolve(pairs, entraining_speed=np.concatenate(speeds, axis=-1).ravel(), load=load.ravel())
-
-
-def report_of(model: Model, equilibrium: Equilibrium) -> LawReport | None:
-    """What the scene's law reports of its contacts in an equilibrium; None where it reports nothing."""
-    if not renews(model.problem.contact.law):
-        return None
-    angles = (equilibrium.angle_inner, equilibrium.angle_outer)
-    pairs = running_pairs(model.problem, model.basis, equilibrium.contact_force, angles)
-    return law_report(model.problem.contact.law, pairs)
 
 
 def renew(

@@ -212,7 +212,6 @@ def _argument(parameter: inspect.Parameter, metavar: str | None) -> Callable[[Va
 def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:
     """Read the scene, call the front, write and show its answer."""
     from raceway.answers.answer import Interrupted
-    from raceway.cli.failure import keep_state
     from raceway.framework.registry import registry_with
     from raceway.scene.scene import Scene
     from raceway.storage.files import slug, writable
@@ -254,6 +253,8 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
                 answer: Answer = front(*bound.args, **bound.kwargs)
             except (ConvergenceError, BeyondPlanError) as error:
                 if folder is not None and isinstance(scene := arguments.get("scene"), Scene):
+                    from raceway.cli.failure import keep_state
+
                     keep_state(error, scene, folder)
                 raise
             except SceneError as error:

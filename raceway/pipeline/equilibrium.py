@@ -10,11 +10,12 @@ import numpy as np
 
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.bodies.mounting import held_table, lost_preload, preload_table
-from raceway.bodies.running import report_of
 from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.ring import COORDINATES
 from raceway.errors import ConvergenceError
+from raceway.framework.contracts import LawReport
+from raceway.framework.duties import law_report, renews
 from raceway.storage.tables import Tables
 
 #: Share of its free contact angle at which a row without a clearance counts as unseated.
@@ -58,7 +59,7 @@ def solve_equilibrium(
     warnings = _warnings(model, inner, outer, now.contact_force)
     state = now.ball, now.gap, now.contact_force, inner, outer
     equilibrium = Equilibrium(q, stiffness, damping, *held, *state, iterations, warnings)
-    law = report_of(model, equilibrium)
+    law = law_report_of(model, equilibrium)
     return equilibrium if law is None else attrs.evolve(equilibrium, warnings=(*law.warnings, *warnings))
 
 
@@ -125,7 +126,7 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
         columns[f"semi_major_{word}_m"] = a
         columns[f"semi_minor_{word}_m"] = b
     columns |= model.bearing.ball_columns(model, equilibrium)
-    law = report_of(model, equilibrium)
+    law = law_report_of(model, equilibrium)
     for name, values in {} if law is None else law.columns.items():
         columns |= {f"inner_{name}": values[:z], f"outer_{name}": values[z:]}
     several = len(model.problem.bearing.rows) > 1
@@ -189,3 +190,14 @@ def peak(samples: np.ndarray) -> float:
     before, after = float(samples[row - 1, column]), float(samples[row + 1, column])
     bend = before - 2.0 * top + after
     return top if bend >= 0.0 else top - (before - after) ** 2 / (8.0 * bend)
+
+
+def law_report_of(model: Model, equilibrium: Equilibrium) -> LawReport | None:
+    """What the scene's law reports of its contacts in an equilibrium; None where it reports nothing."""
+    if not renews(model.problem.contact.law):
+        return None
+    from raceway.bodies.running import running_pairs
+
+    angles = (equilibrium.angle_inner, equilibrium.angle_outer)
+    pairs = running_pairs(model.problem, model.basis, equilibrium.contact_force, angles)
+    return law_report(model.problem.contact.law, pairs)

@@ -9,9 +9,8 @@ import attrs
 import numpy as np
 
 from raceway.bodies.model import Equilibrium, Model
-from raceway.bodies.running import running_pairs
 from raceway.core.record import Record
-from raceway.framework.contracts import SolvedPoints
+from raceway.framework.contracts import ContactPairs, SolvedPoints
 from raceway.framework.duties import fitting_quantities, missing_quantities, quantities_at, quantity_report
 from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables
@@ -77,6 +76,11 @@ def solved_point(model: Model, equilibrium: Equilibrium, record: Record | None) 
         pressure, major, minor = (np.stack(pair)[np.newaxis] for pair in zip(*races, strict=True))
         return pressure, major, minor
 
+    def running() -> ContactPairs:
+        from raceway.bodies.running import running_pairs
+
+        return running_pairs(problem, model.basis, equilibrium.contact_force, angles)
+
     repeats = record is not None and problem.excitation is not None and problem.excitation.period_s is not None
     return SolvedPoints(
         problem=problem,
@@ -87,7 +91,7 @@ def solved_point(model: Model, equilibrium: Equilibrium, record: Record | None) 
         contact_angles=lambda: np.stack(angles)[np.newaxis],
         displacement=equilibrium.displacement[np.newaxis],
         stiffness=equilibrium.stiffness[np.newaxis],
-        running_contacts=partial(running_pairs, problem, model.basis, equilibrium.contact_force, angles),
+        running_contacts=running,
         ellipse=ellipse,
         turn=partial(_turn, record, problem.period) if repeats and record is not None else None,
     )

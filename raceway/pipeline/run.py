@@ -20,7 +20,6 @@ import numpy as np
 from raceway.bodies.model import Equilibrium, Model, build_model
 from raceway.core.jit import clock, take_compile_seconds, working_clock, working_process_time, working_processor_time
 from raceway.core.record import drift, friction_lost, largest_share
-from raceway.core.ring.energy import energy_balance
 from raceway.core.ring.kernels.layout import GYROSCOPIC
 from raceway.core.ring.system import compiled
 from raceway.core.signals import Identification, Line, lines
@@ -353,6 +352,8 @@ def _drift(motion: Simulation) -> float | None:
     steady = motion.start.kind != "ramp" and not problem.kinematics.orbiting and model.system.spin is None
     if not (potential and steady and problem.integrator.method.inertial):
         return None
+    from raceway.core.ring.energy import energy_balance
+
     ring = compiled(model.system)
     return None if ring is None else energy_balance(ring, motion.whole).drift
 

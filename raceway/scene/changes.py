@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -13,7 +12,7 @@ import attrs
 from raceway.core.columns import Number, with_values
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
-from raceway.scene.tables import TABLES
+from raceway.scene.tables import TABLES, told
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
@@ -36,17 +35,6 @@ def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]])
     if changed and isinstance(title, str) and title.strip():
         title += (", " if "\n" in title else "\n") + changed
     return {**tables, "title": title}
-
-
-def told(value: object) -> str:
-    """A value as it stands in a scene file, words without quotes; 400.0 is 400."""
-    if value is None:
-        return "none"
-    if isinstance(value, str):
-        return value
-    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
-        value = int(value)
-    return json.dumps(value, default=str)
 
 
 def parse_change(text: str) -> tuple[str, Any]:

@@ -23,7 +23,6 @@ from raceway.scene.scene import Scene
 from raceway.scene.sets import GEOMETRY
 from raceway.scene.structure import structure, table_without_units
 from raceway.scene.tables import OPTIONAL_TABLES, PLUGIN_TABLES, SWAPPED_TABLES, TABLES, AutoIntegrator, quantities_table
-from raceway.scene.tolerance import check_tolerances
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
@@ -251,8 +250,10 @@ def scene_from_dict(
     if mistakes:
         raise SceneError(mistakes)
     scene = Scene(title=title, source=plain, given=Given(checked), **parts)
-    if faults := check_tolerances(scene):
-        raise SceneError(faults)
+    if "tolerances" in plain:
+        from raceway.scene.tolerance import check_tolerances
+
+        check_tolerances(scene)
     return scene
 
 

@@ -10,7 +10,6 @@ import attrs
 from raceway.framework.doors import reader
 from raceway.framework.shown import Fact, Shown
 from raceway.scene.bearing import Bearing
-from raceway.scene.changes import told
 from raceway.scene.heat import Heat
 from raceway.scene.inputs import Given
 from raceway.scene.lubricant import Lubricant
@@ -25,6 +24,7 @@ from raceway.scene.tables import (
     Mounting,
     Rotor,
     Supports,
+    told,
 )
 from raceway.storage.tables import ReadTables, Tables
 

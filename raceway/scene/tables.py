@@ -3,6 +3,7 @@ its last attribute."""
 
 from __future__ import annotations
 
+import json
 from functools import cache
 from typing import Any, ClassVar
 
@@ -259,3 +260,14 @@ def quantities_table(registry: Registry) -> type:
     """The table [quantities]: a table of options for each plug-in of quantities."""
     entries = registry.of_kind("quantity")
     return _quantities(tuple(e.plugin for e in entries if len(registry.entries[e.kind, e.name]) == 1))
+
+
+def told(value: object) -> str:
+    """A value as it stands in a scene file, words without quotes; 400.0 is 400."""
+    if value is None:
+        return "none"
+    if isinstance(value, str):
+        return value
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        value = int(value)
+    return json.dumps(value, default=str)

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 
 import attrs
 
-from raceway.errors import Mistake, SceneError
+from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.changes import Key, key_of, with_number
 from raceway.scene.inputs import leaves
@@ -153,17 +153,13 @@ def stated_tolerances(scene: Scene) -> dict[str, str]:
     return dict(leaves(scene.source.get("tolerances", {})))
 
 
-def check_tolerances(scene: Scene) -> list[Mistake]:
-    """Mistakes of the scene's own table; an absent one has none."""
+def check_tolerances(scene: Scene) -> None:
+    """Refuse mistakes of the scene's own table by ``SceneError``."""
     try:
-        if "tolerances" in scene.source:
-            tolerances_of(scene, stated_tolerances(scene))
+        tolerances_of(scene, stated_tolerances(scene))
     except SceneError as why:
-        return [
-            attrs.evolve(mistake, path=f"tolerances.{mistake.path}".replace("tolerances.tolerances", "tolerances"))
-            for mistake in why.mistakes
-        ]
-    return []
+        paths = [f"tolerances.{mistake.path}".replace("tolerances.tolerances", "tolerances") for mistake in why.mistakes]
+        raise SceneError([attrs.evolve(one, path=path) for one, path in zip(why.mistakes, paths, strict=True)]) from None
 
 
 def _split(text: str) -> tuple[str, str]:

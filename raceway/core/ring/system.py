@@ -11,7 +11,6 @@ from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, R
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP, layout
 from raceway.core.ring.kernels.layout import are_condensed, elastic_columns, work_rows
 from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Growth, Increment, Ring
-from raceway.core.ring.viscous_stiffness import viscous_stiffness
 from raceway.core.signatures import Balls, Constants, Contacts, Forces, Linear, Response, StaticState
 from raceway.errors import ConvergenceError
 
@@ -206,6 +205,8 @@ class System(Ring):
         now = still.evaluate(q, ball=ball)
         if not now.damping.any():
             return np.zeros((5, 5), dtype=complex)
+        from raceway.core.ring.viscous_stiffness import viscous_stiffness
+
         damping, cage = still.damping_at(q, now), self.scalars[layout.CAGE]
         return viscous_stiffness(lambda rate: still.stiffness_at_rate(q, now, rate), damping, frequency, cage)
 
