@@ -11,7 +11,7 @@ from pathlib import Path
 import attrs
 import raceway_catalogue
 from raceway_catalogue.deep_groove import GROOVES
-from raceway_catalogue.infer import _sizes_of
+from raceway_catalogue.infer import lines_by_size
 from raceway_catalogue.inferred import infer_printed
 from raceway_catalogue.printed import printed_by
 from raceway_catalogue.rating_conventions import CONFORMITY, POISSON, YOUNG
@@ -289,7 +289,7 @@ def every() -> dict[str, str]:
     def of(kind: _Kind, sizes: list[Inferred], written: str) -> str:
         return text(kind, [row for x in sizes if x.printed.names[0].startswith(written) for row in _rows(x)])
 
-    sizes = [infer_printed(one, maker="NSK", conformity=CONFORMITY) for one in _sizes_of(printed_by("nsk"))]
+    sizes = [infer_printed(one, maker="NSK", conformity=CONFORMITY) for one in lines_by_size(printed_by("nsk"))]
     deep = []
     for one in printed_by("nsk_deep_groove"):
         with suppress(SceneError):  # one of 256 has ratings that no balls explain

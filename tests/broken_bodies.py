@@ -5,11 +5,13 @@ from itertools import count
 import attrs
 import numpy as np
 
+from checks.validation.scenes import built_in
 from raceway import ConvergenceError, Mistake, make_plan
 from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.extend import System
 from raceway.framework.contracts import Cost, Traits
-from raceway.plugins.bodies.rigid import Rigid
+
+Rigid = built_in("bodies", "rigid")
 
 TIMES = count(1)
 

@@ -12,7 +12,7 @@ from checks.validation.command_line import ARTICLE, invoke
 from checks.validation.several import article
 from raceway import BeyondPlanError, SceneError, check, load_scene, make_plan, plan, scene_from_dict
 from raceway.cli.main import main
-from raceway.pipeline.run import PATIENCE, _Allowance
+from raceway.pipeline.run import PATIENCE, Allowance
 from raceway.testing import run
 from tests.test_elastic_scene import QUICK
 from tests.test_elastic_scene import scene as elastic_scene
@@ -56,11 +56,11 @@ def test_a_motion_that_is_complete_is_kept_without_its_error():
 def test_a_stepped_motion_keeps_its_state(monkeypatch):
     """Elastic bodies are stepped from Python; the allowance is spent at the first report after the equilibrium."""
     monkeypatch.setattr("raceway.core.record._REPORT_S", 0.0)
-    monkeypatch.setattr(_Allowance, "spent", False)
+    monkeypatch.setattr(Allowance, "spent", False)
 
     def progress(what, done, total):
         if total and done == 3:
-            monkeypatch.setattr(_Allowance, "spent", True)
+            monkeypatch.setattr(Allowance, "spent", True)
 
     with pytest.raises(BeyondPlanError, match="3 of [0-9]+ done") as caught:
         run(elastic_scene(**QUICK), on_progress=progress)
@@ -69,7 +69,7 @@ def test_a_stepped_motion_keeps_its_state(monkeypatch):
 
 def test_a_search_that_is_stopped_tells_no_error(monkeypatch):
     """Three motions exist; the first one that a search meets is another one than the ramp settles on."""
-    check = _Allowance.check
+    check = Allowance.check
 
     def stop(self, what, done, total):
         if what == "the steady motion":
@@ -79,7 +79,7 @@ def test_a_search_that_is_stopped_tells_no_error(monkeypatch):
     monkeypatch.setattr("raceway.pipeline.simulate.last_turn", lambda *_: None)
     scene = scene_from_dict(article(800.0, start="ramp", turns=24))
     whole = run(scene)
-    monkeypatch.setattr(_Allowance, "check", stop)
+    monkeypatch.setattr(Allowance, "check", stop)
     stopped = run(scene)
     assert whole.error["transient"] > 0.0
     assert stopped.error["transient"] is None and stopped.error["total"] is None
@@ -91,14 +91,14 @@ def test_a_search_for_orbits_that_is_stopped_stops_the_run(monkeypatch):
         if what == "the search for orbits":
             raise BeyondPlanError("stopped far beyond the plan")
 
-    monkeypatch.setattr(_Allowance, "check", stop)
+    monkeypatch.setattr(Allowance, "check", stop)
     with pytest.raises(BeyondPlanError):
         run(scene_from_dict(article(800.0)))
 
 
 def test_only_many_times_the_plan_is_beyond_it(monkeypatch):
     clock = Clock(monkeypatch)
-    allowance = _Allowance(planned=10.0, patience=PATIENCE)
+    allowance = Allowance(planned=10.0, patience=PATIENCE)
     clock.now = 10.0 * PATIENCE
     allowance.check("steps", 1, 2)
     clock.now += 1.0
@@ -110,7 +110,7 @@ def test_only_many_times_the_plan_is_beyond_it(monkeypatch):
 def test_short_plans_count_as_three_seconds(monkeypatch):
     clock = Clock(monkeypatch)
     plan = type("Plan", (), {"predicted_wall_s": 0.01, "predicted_bytes": 0, "at_least": False})()
-    allowance = _Allowance.of(plan, PATIENCE)
+    allowance = Allowance.of(plan, PATIENCE)
     clock.now = 59.0
     assert not allowance.spent
     clock.now = 61.0
@@ -137,7 +137,7 @@ def test_memory_beyond_the_plan_stops_a_run(monkeypatch):
     held = [3e9]
     monkeypatch.setattr("raceway.pipeline.run._resident_bytes", lambda: held[0])
     plan = type("Plan", (), {"predicted_wall_s": 1.0, "predicted_bytes": 1e9, "at_least": False})()
-    allowance, endless = _Allowance.of(plan, PATIENCE), _Allowance.of(plan, float("inf"))
+    allowance, endless = Allowance.of(plan, PATIENCE), Allowance.of(plan, float("inf"))
     held[0] = 6.4e9
     allowance.check("equilibrium", 3, 0)
     held[0] = 6.6e9

@@ -19,16 +19,19 @@ import pytest
 
 import raceway as rw
 from checks.validation.command_line import PATIENCE_S, invoke
+from checks.validation.scenes import built_in
 from raceway.extend import COLUMNS, open_store, tables_at
 from raceway.framework.contracts import Lost
 from raceway.planning.cost import column_time, slowness
-from raceway.plugins.executors.processes import Processes, Serial
 from raceway.points import sweep
 from raceway.points.axes import grid, listed_points, sampled
 from raceway.points.dataset import values_of
 from raceway.points.function import BLOCK
 from raceway.points.sweep import fill_store, prepare
 from raceway.testing import default_registry
+
+Processes = built_in("executor", "processes")
+Serial = built_in("executor", "serial")
 
 STATIC: dict[str, Any] = {
     "title": "static",

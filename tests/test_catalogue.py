@@ -11,7 +11,7 @@ import pytest
 
 from raceway import SceneError, run, scene_from_dict
 from raceway.extend import Bearing, clearance_range, found_by, resolve
-from raceway.scene.catalogue import _single_presets, catalogue, preset, preset_of
+from raceway.scene.catalogue import catalogue, preset, preset_of, single_presets
 from raceway.scene.clearance import CLASSES
 from raceway.scene.sets import RATINGS
 
@@ -32,7 +32,7 @@ NEEDED |= {"rings.young", "rings.poisson", "balls.young", "balls.poisson"}
 
 
 def test_the_presets_that_the_documentation_promises_are_there():
-    assert set(INFERRED) == set(_single_presets())
+    assert set(INFERRED) == set(single_presets())
     assert set(INFERRED) < set(catalogue())
 
 

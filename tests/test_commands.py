@@ -565,10 +565,10 @@ def test_cache_is_seen_and_cleared(tmp_path, monkeypatch):
 
 
 def test_the_light_key_is_the_one_that_kernels_are_kept_under():
-    from raceway.core.jit import _kernel_folder
+    from raceway.core.jit import kernel_folder
     from raceway.storage.kernel_cache import current_folder
 
-    folder = _kernel_folder()
+    folder = kernel_folder()
     assert folder is None or folder.path == current_folder()
 
 

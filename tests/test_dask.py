@@ -11,10 +11,12 @@ import pytest
 import raceway
 from checks.validation.cluster import POINTS, START_S, Cluster, installed, prepared, rows
 from checks.validation.command_line import invoke
+from checks.validation.scenes import built_in
 from raceway import PluginError
-from raceway.plugins.executors.dask import Dask
-from raceway.plugins.executors.processes import Serial
 from raceway.points.sweep import fill_store
+
+Dask = built_in("executor", "dask")
+Serial = built_in("executor", "serial")
 
 
 @pytest.fixture(scope="module", autouse=True)

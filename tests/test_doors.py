@@ -158,7 +158,7 @@ def test_linearised_bearings_go_with_their_iteration():
     from raceway.core.fem.elastic import superelement_solver as linearised
     from tests.test_elastic_scene import scene as elastic_scene
 
-    alive, most, plain = weakref.WeakSet(), [0], linearised._Linearised.__init__
+    alive, most, plain = weakref.WeakSet(), [0], linearised.LinearisedContacts.__init__
 
     def counted(self, *given):
         alive.add(self)
@@ -167,7 +167,7 @@ def test_linearised_bearings_go_with_their_iteration():
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(linearised, "_FACTORED", 0)
-        patch.setattr(linearised._Linearised, "__init__", counted)
+        patch.setattr(linearised.LinearisedContacts, "__init__", counted)
         gc.disable()
         try:
             rw.run(elastic_scene())

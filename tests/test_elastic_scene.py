@@ -13,7 +13,7 @@ from raceway import RacewayError, SceneError, build_model, make_plan, scene_from
 from raceway.core.fem.elastic.iterative_solver import LinearSolver
 from raceway.core.fem.elastic.ring import from_orbit
 from raceway.extend import steady_orbit
-from raceway.pipeline.run import _Allowance
+from raceway.pipeline.run import Allowance
 from raceway.scene.unused import unused
 from raceway.storage.memory import allowed_bytes
 from raceway.testing import run, solve_equilibrium
@@ -280,8 +280,8 @@ def test_no_run_on_a_mesh_of_unknown_size_is_stopped_for_its_time():
     files = {"kind": "file", "ball": "b.vtu", "inner_ring": "i.vtu", "outer_ring": "o.vtu"}
     plan = make_plan(scene_from_dict({**TINY, "mesh": files}))
     assert plan.at_least and plan.mesh is None
-    assert _Allowance.of(plan, 20.0).patience == float("inf")
-    assert _Allowance.of(make_plan(scene()), 20.0).patience == 20.0
+    assert Allowance.of(plan, 20.0).patience == float("inf")
+    assert Allowance.of(make_plan(scene()), 20.0).patience == 20.0
 
 
 def test_surfaces_that_overlap_by_more_than_an_element_are_refused():

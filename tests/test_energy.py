@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from checks.validation.scenes import rotating
-from raceway.core.ring.energy import _cumulative
+from raceway.core.ring.energy import cumulative_integral
 from raceway.extend import energy_balance, stored_energy
 from raceway.testing import model_of, simulate, solve_equilibrium
 
@@ -77,5 +77,5 @@ def test_cumulative_integral_is_of_fourth_order():
     errors = []
     for n in (41, 81):
         t = np.linspace(0.0, 2.0, n)
-        errors.append(np.abs(_cumulative(np.cos(3.0 * t), t[1]) - np.sin(3.0 * t) / 3.0).max())
+        errors.append(np.abs(cumulative_integral(np.cos(3.0 * t), t[1]) - np.sin(3.0 * t) / 3.0).max())
     assert errors[0] / errors[1] > 12.0  # 16 inside, the ends are of third order locally

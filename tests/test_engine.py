@@ -6,10 +6,13 @@ from contextlib import closing
 
 import pytest
 
+from checks.validation.scenes import built_in
 from raceway import RacewayError
 from raceway.extend import Item, work_through, written
-from raceway.plugins.executors.processes import Processes, Serial
 from raceway.testing import Registry, default_registry
+
+Processes = built_in("executor", "processes")
+Serial = built_in("executor", "serial")
 
 REGISTRY = default_registry()
 ITEMS = [Item(f"key {number}", f"number {number}", number) for number in range(6)]

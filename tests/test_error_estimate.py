@@ -13,8 +13,8 @@ from checks.validation.series_errors import SERIES, series
 from raceway import run
 from raceway.answers.table import number_within
 from raceway.pipeline import error as error_estimate
-from raceway.pipeline.error import _more_equilibria
-from raceway.pipeline.simulate import _at_speed, settles_elsewhere
+from raceway.pipeline.error import equilibria_of_second_series
+from raceway.pipeline.simulate import model_at_speed, settles_elsewhere
 from raceway.planning.resolve import recorded_per_turn, samples_per_turn
 from raceway.testing import b7206c
 
@@ -25,7 +25,7 @@ def test_a_series_that_cannot_be_told_from_a_finer_one_states_its_residual():
 
 
 def test_a_finer_series_has_other_harmonics():
-    assert all(_more_equilibria(n) > 2 * n and _more_equilibria(n) % n for n in range(8, 3000))
+    assert all(equilibria_of_second_series(n) > 2 * n and equilibria_of_second_series(n) % n for n in range(8, 3000))
 
 
 def test_of_equilibria_every_step_is_recorded_up_to_the_limit_of_long_runs():
@@ -90,7 +90,7 @@ def test_a_run_up_is_held_against_the_steady_motion_at_its_last_speed(monkeypatc
     tables["identifier"] = {"kind": "order_tracking"}
     speeds = []
     monkeypatch.setattr(
-        "raceway.pipeline.simulate._at_speed", lambda *given: (speeds.append(given[1]), _at_speed(*given))[1]
+        "raceway.pipeline.simulate.model_at_speed", lambda *given: (speeds.append(given[1]), model_at_speed(*given))[1]
     )
     found = run(tables)
     assert speeds == [speed for speed, _ in found.identification.series]  # for both error and series: once

@@ -9,9 +9,11 @@ import attrs
 import pytest
 
 from checks.validation.command_line import invoke
+from checks.validation.scenes import built_in
 from raceway import SceneError, load_scene, make_plan
-from raceway.plugins.bodies.condensed import Condensed
 from raceway.testing import run
+
+Condensed = built_in("bodies", "condensed")
 
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
 #: Scenes for `raceway view --mesh`: too large to run here.

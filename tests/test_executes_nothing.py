@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from raceway_meshing.gmsh import Gmsh
 
 from checks.validation.command_line import EXAMPLES, invoke, python
+from checks.validation.scenes import built_in
 from checks.validation.solids import write
 from raceway import load_scene
+
+Gmsh = built_in("mesher", "gmsh")
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 SCENE = """

@@ -6,14 +6,16 @@ import pytest
 
 import raceway as rw
 from checks.validation import film as published
+from checks.validation.scenes import built_in
 from raceway import make_plan
-from raceway.contact_laws.film import Film
 from raceway.core.contact.film import REGIMES, entraining_speed, film, thermal_reduction
 from raceway.extend import TIME_CONSTANTS
 from raceway.pipeline.result import DRY
-from raceway.scene.lubricant import GRADES, Walther, _mineral_thinning, pressure_viscosity
+from raceway.scene.lubricant import GRADES, Walther, mineral_thinning, pressure_viscosity
 from raceway.testing import run
-from raceway.testing.contact_law import _example_pairs
+from raceway.testing.contact_law import example_pairs
+
+Film = built_in("contact_law", "film")
 
 DRY_LAW = {"kind": "hertz"}
 
@@ -57,7 +59,7 @@ def test_the_heat_of_the_inlet_is_that_of_the_equations_it_was_fitted_to():
 
 def test_the_heat_of_the_inlet_thins_all_of_the_film():
     """One inlet feeds the contact's centre and its narrowest place."""
-    law, pairs = Film(viscosity=0.03, pressure_viscosity=2e-8, temperature_viscosity=0.035), _example_pairs(6, nodal=False)
+    law, pairs = Film(viscosity=0.03, pressure_viscosity=2e-8, temperature_viscosity=0.035), example_pairs(6, nodal=False)
     hot, cold = (each.thickness(pairs) for each in (law, attrs.evolve(law, inlet_heating="none")))
     loading = 0.03 * 0.035 * pairs.entraining_speed**2 / 0.14
     for part in (hot.central / cold.central, hot.minimum / cold.minimum):
@@ -72,8 +74,8 @@ def test_oils_thin_with_the_temperature_as_their_lines_do():
     # The slope of a line over 20 K whose own slope changes by a third over it.
     assert oil.thinning(40.0) == pytest.approx(np.log(cooler / warmer) / 20.0, rel=0.02)
     # An oil between two grades thins between them; one beyond all as the last.
-    assert oil.thinning(60.0) < _mineral_thinning(oil.viscosity(60.0) + 2.0, 60.0) < Walther(*GRADES["VG 46"]).thinning(60.0)
-    assert _mineral_thinning(1e-30, -300.0) == Walther(*GRADES["VG 10"]).thinning(0.0)
+    assert oil.thinning(60.0) < mineral_thinning(oil.viscosity(60.0) + 2.0, 60.0) < Walther(*GRADES["VG 46"]).thinning(60.0)
+    assert mineral_thinning(1e-30, -300.0) == Walther(*GRADES["VG 10"]).thinning(0.0)
 
 
 def test_the_heat_of_the_inlet_takes_about_half_of_the_preload_that_a_film_gives_at_spindle_speed():

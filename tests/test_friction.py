@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation.scenes import built_in
 from raceway import RacewayError
 from raceway.core.rolling_friction import measured_factors
-from raceway.plugins.quantities.friction import PARTS, Friction
+from raceway.plugins.quantities.friction import PARTS
 from raceway.testing import run
+
+Friction = built_in("quantity", "friction")
 
 OIL = {"oil": "VG 32", "temperature_c": 60.0}
 TABLES = {

@@ -17,7 +17,7 @@ import pytest
 import raceway as rw
 from checks.validation.command_line import EXAMPLES, invoke, python
 from raceway.extend import as_given
-from raceway.framework.shown import LINES, WIDTH, _as_html, _as_text
+from raceway.framework.shown import LINES, WIDTH, facts_html, facts_text
 from raceway.testing import b7206c
 
 ROOT = EXAMPLES.parent
@@ -244,9 +244,9 @@ def test_a_number_below_its_error_is_none(moving):
 
 
 def test_text_of_a_user_is_escaped_and_long_lists_are_counted():
-    html = _as_html("<b>\n& more", [("a<b", "1 < 2", "x & y")])
+    html = facts_html("<b>\n& more", [("a<b", "1 < 2", "x & y")])
     assert "<b>" not in html and "&lt;b&gt;" in html and "x &amp; y" in html
-    text = _as_text("T", [(f"name {k}", "v", "r" * 200) for k in range(40)])
+    text = facts_text("T", [(f"name {k}", "v", "r" * 200) for k in range(40)])
     assert len(text.splitlines()) == 15 and text.splitlines()[-1] == "  and 27 more"
 
 

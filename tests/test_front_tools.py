@@ -11,8 +11,10 @@ from raceway_rotor.export import point_rows
 
 import raceway as rw
 from checks.validation.command_line import invoke
+from checks.validation.scenes import built_in
 from raceway import ConvergenceError, PluginError, RacewayError, SceneError
-from raceway.plugins.executors.processes import Serial
+
+Serial = built_in("executor", "serial")
 
 SCENE = {
     "title": "tools",

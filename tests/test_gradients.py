@@ -10,13 +10,13 @@ from raceway import SceneError, build_model, scene_from_dict
 from raceway.bodies.columns import why_no_column
 from raceway.extend import continuous_keys, key_of, resolve, with_number
 from raceway.pipeline.gradient import (
-    _FOURTH,
-    _SECOND,
+    FOURTH_ORDER,
+    SECOND_ORDER,
     Gradients,
     NoDerivative,
-    _SteadyOrbit,
-    _unevenness,
+    SteadyOrbit,
     derivatives,
+    unevenness,
     values,
 )
 from raceway.testing import b7206c, settled, solve_equilibrium
@@ -40,7 +40,7 @@ def test_kinks_and_turning_points_are_told_apart():
         (lambda x: x**2, 0.0, 0.0),
     ):
         before, middle, after = (np.array([function(at + k * h)]) for k in (-1, 0, 1))
-        assert _unevenness([before[None], after[None]], middle)[0] == pytest.approx(expected, rel=1e-5)
+        assert unevenness([before[None], after[None]], middle)[0] == pytest.approx(expected, rel=1e-5)
 
 
 def static_gradient(model, still, key):
@@ -62,7 +62,7 @@ def by_runs(model, path, step, of):
 
 def test_weights_of_differences_leave_the_fifth_power():
     """Of odd powers of the step: the first once, the third not at all."""
-    for weights, third in ((_SECOND, 1.0), (_FOURTH, 0.0)):
+    for weights, third in ((SECOND_ORDER, 1.0), (FOURTH_ORDER, 0.0)):
         assert sum(2.0 * weight * k for k, weight in weights.items()) == pytest.approx(1.0, rel=1e-15)
         assert sum(2.0 * weight * k**3 for k, weight in weights.items()) == pytest.approx(third, abs=1e-15)
 
@@ -132,7 +132,7 @@ def test_a_held_displacement_moves_along_orbits():
     """Also where the axial load that it stands for changes."""
     model, still = settled(ORBIT | {"supports": {"axial": "displacement"}, "contact": {}, "load": {"axial": 300.0}})
     found = Gradients(model, still).by_path("load.axial").motion.equivalent_stiffness
-    expected = by_runs(model, "load.axial", 0.1, lambda one, e: _SteadyOrbit.of(one, e).line[2])
+    expected = by_runs(model, "load.axial", 0.1, lambda one, e: SteadyOrbit.of(one, e).line[2])
     assert found == pytest.approx(expected, rel=1e-5)
 
 
@@ -179,7 +179,7 @@ def test_derivatives_of_a_steady_orbit_are_those_of_whole_searches(path):
 
     def line(one, e):
         """Re Z, C, K, amplitude, Im Z."""
-        return _SteadyOrbit.of(one, e).line
+        return SteadyOrbit.of(one, e).line
 
     runs = by_runs(model, path, 2e-4 * key.value, line)
     # Orbits are solved to 1e-10 of their size, which a step of 2e-4 makes 5e-7 of |Z|; C is a small part of |Z|.
@@ -199,7 +199,7 @@ def test_every_number_of_a_motion_has_its_derivative():
     told = values(model, still, gradients.orbit)
     found = derivatives(model, still, gradients.by_path("excitation.speed_rpm"))
     runs = by_runs(
-        model, "excitation.speed_rpm", 1.8, lambda one, e: np.array([*values(one, e, _SteadyOrbit.of(one, e)).values()])
+        model, "excitation.speed_rpm", 1.8, lambda one, e: np.array([*values(one, e, SteadyOrbit.of(one, e)).values()])
     )
     assert set(found) == set(told)
     for name, expected in zip(told, runs, strict=True):

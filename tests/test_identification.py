@@ -8,7 +8,7 @@ import pytest
 import raceway as rw
 from checks.validation.scenes import rotating
 from raceway import run
-from raceway.core.signals import _turns_of, fit_harmonics, identification, stiffness, synchronous_phasor, without_drift
+from raceway.core.signals import fit_harmonics, identification, stiffness, synchronous_phasor, turns_in, without_drift
 from raceway.extend import Motion, Record, Schedule
 from raceway.testing import model_of, solve_equilibrium
 
@@ -106,7 +106,7 @@ def test_one_turn_has_no_drift_to_fit():
 
 def test_turns_and_drift():
     time, _, displacement = signals(4)
-    assert _turns_of(time, FREQUENCY) == pytest.approx(4.0)
+    assert turns_in(time, FREQUENCY) == pytest.approx(4.0)
     slope = 3e-6 * np.arange(len(time))[:, None]
     assert without_drift(time, displacement + slope + 5.0, FREQUENCY) == pytest.approx(displacement, abs=1e-12)
 

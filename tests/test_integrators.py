@@ -10,16 +10,17 @@ import pytest
 from raceway_checks.stability.catalogue import BASE
 
 from checks.validation import orders
-from checks.validation.scenes import rotating
+from checks.validation.scenes import built_in, rotating
 from raceway import PluginError, SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
 from raceway.core.record import State
-from raceway.core.ring.ring import Increment, _SteppedBearing
+from raceway.core.ring.ring import Increment, SteppedBearing
 from raceway.core.signatures import Outer
 from raceway.core.time.compiled import outer_force
 from raceway.core.time.schemes import Drivers, OneStep
 from raceway.extend import Schedule, at_rest, integrate
-from raceway.integrators.methods import Newmark
 from raceway.testing import Registry, model_of, settled, simulate, solve_equilibrium
+
+Newmark = built_in("integrator", "newmark")
 
 INTEGRATORS = orders.INTEGRATORS
 
@@ -286,4 +287,4 @@ def test_a_start_of_another_bearing_is_refused_by_both_loops(bearing, name):
     with pytest.raises(PluginError, match=words):
         integrate(Newmark(), system, start, Schedule(1e-6, 10, 1))
     with pytest.raises(PluginError, match=words):
-        _SteppedBearing(system).begin(start)
+        SteppedBearing(system).begin(start)

@@ -15,13 +15,15 @@ from pathlib import Path
 import pytest
 
 from checks.validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, python, raceway
+from checks.validation.scenes import built_in
 from checks.validation.sessions import left, members
 from raceway import RacewayError
 from raceway.cli.interrupt import Interrupts, farewell
 from raceway.extend import Store, open_store
 from raceway.framework.orphans import WATCH, deaf_to_terminals
-from raceway.plugins.executors.processes import Processes
 from raceway.points.store import connected, exists
+
+Processes = built_in("executor", "processes")
 
 CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 

@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation.scenes import built_in
 from raceway import SceneError
 from raceway.core.life import equivalent_loads, life_factor, reliability_factor, system_life
 from raceway.extend import open_store
-from raceway.plugins.quantities.life import Life
 from raceway.points.dataset import write_csv
 from raceway.scene.lubricant import Lubricant
+
+Life = built_in("quantity", "life")
 
 DGB7 = {"preset": "DGB7-MASTA", "tilt_arm": "pitch"}
 CASE_5 = {"bearing": DGB7, "load": {"radial": [1000.0, 0.0], "axial": 1000.0}, "supports": {"tilt": "free"}}

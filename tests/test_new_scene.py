@@ -9,14 +9,14 @@ import pytest
 
 import raceway as rw
 from checks.validation.command_line import invoke
-from raceway.cli.new_scene import _scene_text
+from raceway.cli.new_scene import scene_text
 from raceway.extend import default_registry
-from raceway.scene.catalogue import _single_presets
+from raceway.scene.catalogue import single_presets
 
 
-@pytest.mark.parametrize("preset", [*_single_presets(), "7014C", "7952A5", "NU206", "N1014"])
+@pytest.mark.parametrize("preset", [*single_presets(), "7014C", "7952A5", "NU206", "N1014"])
 def test_a_new_scene_has_no_mistakes_and_can_run(preset):
-    text = _scene_text(preset, default_registry())
+    text = scene_text(preset, default_registry())
     assert rw.check(text).ok
     assert rw.Scene.from_toml(text).bearing.preset == preset
     assert "" not in [line.partition("#")[2].strip() for line in text.splitlines() if "#" in line], (
@@ -36,7 +36,7 @@ def test_a_new_scene_teaches_what_runs(preset, tmp_path):
 
 
 def test_keys_that_are_comments_can_be_taken_in():
-    text = re.sub(r"^# (\w+ = )", r"\1", _scene_text("B7206C", default_registry()), flags=re.MULTILINE)
+    text = re.sub(r"^# (\w+ = )", r"\1", scene_text("B7206C", default_registry()), flags=re.MULTILINE)
     scene = rw.Scene.from_toml(text)
     assert scene.bearing.arrangement == "DB" and scene.bearing.preload == 200.0 and scene.contact.friction == 0.05
     assert rw.check(scene).ok

@@ -7,17 +7,19 @@ import json
 import numpy as np
 import pytest
 from raceway_measure.fit.signals import recording_of, signals_of
-from raceway_meshing.formats import Vtu
-from raceway_meshing.mesh_files import File
 
 from checks.validation.command_line import ARTICLE, MINIMAL, invoke
 from checks.validation.cubes import block
+from checks.validation.scenes import built_in
 from raceway import ConvergenceError, MeshError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.extend import HexMesh, resolve
 from raceway.framework.estimate import Estimate
 from raceway.pipeline.error import no_error
 from raceway.planning.resolve import fits, record_bytes, recorded_per_turn
 from raceway.testing import b7206c, run
+
+Vtu = built_in("format", "vtu")
+File = built_in("mesher", "file")
 
 HOOK = """
 from raceway import hookimpl

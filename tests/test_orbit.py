@@ -11,7 +11,7 @@ from checks.validation.scenes import rig_force, rotating
 from raceway.core.periodic.floquet import Floquet, floquet_of
 from raceway.core.ring.orbit import differentiation
 from raceway.extend import at_time, from_orbit, steady_orbit
-from raceway.pipeline.simulate import _chosen_start
+from raceway.pipeline.simulate import start_of_motion
 from raceway.testing import b7206c, model_of, solve_equilibrium
 
 
@@ -90,7 +90,7 @@ def test_a_slow_motion_starts_on_its_orbit(built, rpm):
         )
     )
     now = solve_equilibrium(model)
-    start = _chosen_start(model, now)
+    start = start_of_motion(model, now)
     assert start.kind == "orbit" and start.repeats and not start.warnings
     found = np.abs(np.fft.rfft(start.orbit.displacement[:, 1])[1]) * 2.0 / len(start.orbit.displacement)
     # Places of 1e-14 m stand in rounded sums of gaps of 1e-5 m.

@@ -10,7 +10,7 @@ import pytest
 
 from raceway import ConvergenceError, make_plan, run, scene_from_dict
 from raceway.pipeline import transient_error as other_start
-from raceway.pipeline.error import _unresolved
+from raceway.pipeline.error import window_misses_transient
 from raceway.pipeline.transient_error import Clean
 
 
@@ -111,7 +111,7 @@ def test_a_window_whose_halves_differ_by_more_than_it_sees_is_not_believed():
     def unresolved(halves, orbit=None, repeats=True, friction=0.3):
         scene_of = attrs.evolve(scene, contact=attrs.evolve(scene.contact, friction=friction))
         simulation = SimpleNamespace(start=SimpleNamespace(orbit=orbit, repeats=repeats))
-        return _unresolved(SimpleNamespace(problem=scene_of), simulation, Clean(1.0, 0j, "", halves), 1.0)
+        return window_misses_transient(SimpleNamespace(problem=scene_of), simulation, Clean(1.0, 0j, "", halves), 1.0)
 
     assert unresolved(4.0) and unresolved(None) and not unresolved(2.0)
     assert unresolved(4.0, orbit=object()), "with friction the orbit of the start is none"

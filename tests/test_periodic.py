@@ -12,20 +12,21 @@ import pytest
 from scipy.linalg import expm
 
 from checks.validation.command_line import ARTICLE, invoke
-from checks.validation.scenes import rotating
+from checks.validation.scenes import built_in, rotating
 from checks.validation.several import heavy
 from raceway import SceneError, run
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.branches import force_continuation
-from raceway.core.periodic.collocation import Problem, _newton, one_turn, solve, stiff
+from raceway.core.periodic.collocation import Problem, newton_iteration, one_turn, solve, stiff
 from raceway.core.periodic.refinement import motion_at, record
-from raceway.core.periodic.search import Recorded, _neighbour_of, find, guess, highest_order, mesh_of, problem_of, response
-from raceway.core.periodic.steady import _equilibrium
+from raceway.core.periodic.search import Recorded, find, guess, highest_order, mesh_of, neighbour_of, problem_of, response
+from raceway.core.periodic.steady import static_equilibrium
 from raceway.extend import Motion, Schedule, integrate, steady_orbit
-from raceway.integrators.methods import Periodic
 from raceway.pipeline.simulate import steady_record
 from raceway.testing import model_of, solve_equilibrium
 from raceway.testing.systems import PRELOAD, SPEED, along_x, contact_system, exact, linear_system, motion
+
+Periodic = built_in("integrator", "periodic")
 
 
 def scene(kind="periodic", axial=1000.0, tilt="locked", inertia=False, **tables):
@@ -199,12 +200,12 @@ def test_a_motion_is_kept_where_two_exist(softening):
     points = list(force_continuation(problem, q, tangent, mesh_of(problem, highest_order(problem, tangent))))
     turned = int(np.argmax(np.diff([point.parameter for point in points]) < 0.0))
     high, low = points[turned].parameter, min(point.parameter for point in points[turned:])
-    near, share = _neighbour_of(points[-1].solved, q, tangent), points[-1].parameter
+    near, share = neighbour_of(points[-1].solved, q, tangent), points[-1].parameter
     while share > 0.5 * (low + high):
         share *= 0.97
         kept = find(attrs.evolve(problem, share=share), q, tangent, 1e-7, near, True)
         assert not kept.coexisting
-        near = _neighbour_of(kept.refined.solved, q, tangent)
+        near = neighbour_of(kept.refined.solved, q, tangent)
     assert low < share < high
     searched = find(attrs.evolve(problem, share=share), q, tangent, 1e-7, near)
     assert searched.refined.solved.size < 0.7 * kept.refined.solved.size
@@ -228,7 +229,7 @@ def test_a_start_off_the_equilibrium_is_settled():
     equilibrium = solve_equilibrium(model)
     there = equilibrium.displacement + np.array([1e-6, 2e-6, 0.0, 0.0, 0.0])
     off = Motion(there, np.zeros(5), np.zeros(5), equilibrium.ball, equilibrium.ball.copy())
-    q, tangent = _equilibrium(model.system, off)
+    q, tangent = static_equilibrium(model.system, off)
     # Newton's tolerance of 1e-11 of the forces.
     assert q == pytest.approx(equilibrium.displacement, abs=1e-13)
     assert tangent == pytest.approx(equilibrium.stiffness, rel=1e-8, abs=1e-2)
@@ -252,7 +253,8 @@ def test_a_motion_of_which_rounding_is_much_takes_no_finer_mesh(monkeypatch):
     """Of some 1e-13 m beside 1e-5 m from zero, with dashpots: neither finer meshes nor more turns of the rates tell more."""
     taken = []
     monkeypatch.setattr(
-        "raceway.core.periodic.collocation._newton", lambda *given: (taken.append(given[1].intervals), _newton(*given))[1]
+        "raceway.core.periodic.collocation.newton_iteration",
+        lambda *given: (taken.append(given[1].intervals), newton_iteration(*given))[1],
     )
     model = model_of(scene(contact={"damping": 500.0}, excitation={"unbalance": 1e-13}))
     equilibrium = solve_equilibrium(model)

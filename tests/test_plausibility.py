@@ -17,8 +17,8 @@ from raceway import ConvergenceError, SceneError, check, run, scene_from_dict
 from raceway.extend import nearest, resolve
 from raceway.pipeline.plausible import inertia_warnings
 from raceway.pipeline.result import facts
-from raceway.pipeline.simulate import _stride
-from raceway.planning.resolve import _damped_limit, samples_per_turn
+from raceway.pipeline.simulate import recording_stride
+from raceway.planning.resolve import damped_step_limit, samples_per_turn
 from raceway.planning.rules import scene_warnings
 from raceway.testing import b7206c
 
@@ -43,14 +43,14 @@ def test_angles_of_many_states_at_once_are_those_of_each():
 @pytest.mark.parametrize("turns", [1, 12, 200, 201, 1000, 1800, 3000, 20000])
 @pytest.mark.parametrize("steps_per_turn", [8, 9, 120, 180, 360, 361, 720, 1080, 7200])
 def test_recorded_samples_divide_the_turn(turns, steps_per_turn):
-    stride = _stride(steps_per_turn, turns)
+    stride = recording_stride(steps_per_turn, turns)
     assert steps_per_turn % stride == 0
     assert steps_per_turn // stride >= min(steps_per_turn, samples_per_turn(turns))
 
 
 def test_a_long_run_and_its_run_with_half_the_steps_keep_whole_turns():
     short, long = (computed(integrator={"turns": turns, "steps_per_turn": 60}) for turns in (12, 1300))
-    assert len(long.simulation.whole.time) == 1300 * 60 // _stride(60, 1300)
+    assert len(long.simulation.whole.time) == 1300 * 60 // recording_stride(60, 1300)
     # The same steady orbit: what differs is what is left of the start, far below the error of 60 steps per turn.
     assert long.identification.equivalent_stiffness == pytest.approx(short.identification.equivalent_stiffness, rel=1e-4)
 
@@ -224,7 +224,7 @@ def test_check_says_what_is_implausible_and_takes_a_window_as_long_as_the_record
 def test_the_stable_step_with_dashpots_is_that_of_one_damped_mode(time_constant):
     """Velocity Verlet, whose forces see the predicted velocity v + dt a, with c = tau k: eigenvalues on the unit circle at the limit."""
     limit, w = 1e-6, 2e6
-    dt = _damped_limit(limit, time_constant)
+    dt = damped_step_limit(limit, time_constant)
 
     def growth(dt):
         """Of (q, v, a) over a step."""

@@ -10,7 +10,7 @@ from checks.validation.command_line import install, law
 from raceway import PluginError
 from raceway.extend import Registry
 from raceway.framework.packages import packages
-from raceway.scene.reading import _check_requires
+from raceway.scene.reading import check_requirements
 from tests.fake_site import LAW, FakeSite
 
 BROKEN = {
@@ -363,7 +363,7 @@ def test_a_name_that_two_kinds_have_is_ambiguous(tmp_path):
 def test_requires_refuses(site, monkeypatch, table, message):
     _three(site, monkeypatch)
     mistakes = []
-    _check_requires(table, Registry(), mistakes)
+    check_requirements(table, Registry(), mistakes)
     assert len(mistakes) == 1 and message in str(mistakes[0]) and str(mistakes[0]).startswith("`requires")
 
 
@@ -371,7 +371,7 @@ def test_requires_accepts_distribution_entry_point_and_plugin(site, monkeypatch)
     _three(site, monkeypatch)
     mistakes = []
     met = {"good": ">=1.2, <2", "Good": "==1.4", "good_law": ">=1", "good-entry": "", "hertz": "", "raceway": ">=0.1"}
-    _check_requires(met, Registry(), mistakes)
+    check_requirements(met, Registry(), mistakes)
     assert not mistakes
 
 

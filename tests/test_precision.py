@@ -15,7 +15,7 @@ from checks.validation.command_line import ARTICLE, invoke
 from raceway import RacewayError, SceneError, precision, scene_from_dict
 from raceway.extend import Store, read_toml, row_key, written
 from raceway.pipeline.equilibrium import peak
-from raceway.pipeline.transient_error import _hann_line
+from raceway.pipeline.transient_error import hann_line
 from raceway.points import precision as module
 from raceway.points.engine import measured
 from raceway.points.precision import THRESHOLDS
@@ -258,10 +258,10 @@ def test_hanns_line_of_a_periodic_signal_is_exact_and_leaks_less_of_another():
     periodic = 3.0 + 2.0 * np.cos(2.0 * np.pi * t - 0.3) + 0.5 * np.cos(4.0 * np.pi * t)
     exact = 2.0 * np.exp(-0.3j)
     # Rounding of 1440 terms.
-    assert abs(_hann_line(t, periodic[:, None], 1.0)[0] - exact) < 1e-12
+    assert abs(hann_line(t, periodic[:, None], 1.0)[0] - exact) < 1e-12
     free = periodic + np.cos(2.0 * np.pi * 5.37 * t)
     plain = 2.0 * (np.exp(-2j * np.pi * t) * free).mean()
-    assert abs(_hann_line(t, free[:, None], 1.0)[0] - exact) < 0.05 * abs(plain - exact)
+    assert abs(hann_line(t, free[:, None], 1.0)[0] - exact) < 0.05 * abs(plain - exact)
 
 
 def test_a_peak_between_samples_is_found():

@@ -6,12 +6,14 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.scenes import built_in
 from raceway import FORCE, LAW, PluginError, build_model, jit, scene_from_dict
-from raceway.contact_laws.hertz import Hertz
 from raceway.framework.probe import probe_excitation, probe_law
-from raceway.plugins.excitations.harmonic import Bidirectional
 from raceway.testing import b7206c, run, solve_equilibrium
 from tests import broken_laws
+
+Hertz = built_in("contact_law", "hertz")
+Bidirectional = built_in("excitation", "bidirectional")
 
 N = 24
 

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 import raceway as rw
+from checks.validation.scenes import built_in
 from raceway.extend import K, blamed
-from raceway.integrators.methods import Periodic
-from raceway.plugins.bodies.rigid import Rigid
-from raceway.plugins.identifiers.one_frequency import Fft1x
 from raceway.testing import default_registry
+
+Periodic = built_in("integrator", "periodic")
+Rigid = built_in("bodies", "rigid")
+Fft1x = built_in("identifier", "fft_1x")
 
 SCENE = {
     "bearing": {"preset": "B7206C"},

@@ -12,10 +12,12 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import raceway as rw
+from checks.validation.scenes import built_in
 from raceway import SceneError, build_model, make_plan, scene_from_dict
-from raceway.contact_laws.line import Line
 from raceway.extend import solve_equilibrium
-from raceway.plugins.bodies.rollers import CylindricalRollers
+
+Line = built_in("contact_law", "line")
+CylindricalRollers = built_in("bodies", "cylindrical_rollers")
 
 N = 10.0 / 9.0
 LENGTH, FORCE = 9e-3, 4000.0

@@ -7,9 +7,9 @@ from scipy.optimize import minimize_scalar
 from scipy.special import ellipe
 
 from checks.validation import rolling_friction as published
-from raceway.core.contact.losses import _mean_slip
+from raceway.core.contact.losses import mean_slip
 from raceway.core.elementary import exponential, logarithm
-from raceway.core.rolling_friction import MEASURED, _spin_shape, losses
+from raceway.core.rolling_friction import MEASURED, losses, spin_shape
 
 
 @pytest.mark.parametrize("load", [50.0, 500.0])
@@ -55,15 +55,15 @@ def test_the_mean_slip_is_the_least_over_the_place_of_rolling(spin, curvature):
         return np.trapezoid(0.75 * (1.0 - t * t) * np.abs(spin * t + curvature * (t * t - c)), t)
 
     least = minimize_scalar(mean, bounds=(-0.5, 0.5), method="bounded").fun
-    assert _mean_slip(spin, curvature) == pytest.approx(least, rel=1e-4)
+    assert mean_slip(spin, curvature) == pytest.approx(least, rel=1e-4)
 
 
 def test_slip_has_the_published_limits():
     """Houpert: 3/8 mu Q a of spin and 0.0806 mu Q a^2 / R of the contact's curvature, whose slip is y^2 / (2 R)."""
-    assert _mean_slip(1.0, 0.0) == 0.375
-    assert f"{0.5 * _mean_slip(0.0, 1.0):.4f}" == "0.0806"
+    assert mean_slip(1.0, 0.0) == 0.375
+    assert f"{0.5 * mean_slip(0.0, 1.0):.4f}" == "0.0806"
     k = np.array([1.0, 1.5, 4.0, 9.0, 30.0])
-    assert _spin_shape(k) == pytest.approx(ellipe(1.0 - 1.0 / k**2), abs=4e-5)
+    assert spin_shape(k) == pytest.approx(ellipe(1.0 - 1.0 / k**2), abs=4e-5)
 
 
 def test_spin_with_curvature_over_the_whole_ellipse():
@@ -79,8 +79,8 @@ def test_spin_with_curvature_over_the_whole_ellipse():
             return float((pressure * np.hypot(along, spin * z / k)).sum())
 
         least = minimize_scalar(mean, bounds=(-0.5, 0.5), method="bounded").fun
-        shaped = float(spin * _spin_shape(np.array(k)))
-        assert _mean_slip(shaped, curvature) == pytest.approx(least, rel=0.01 if k > 5.0 else 0.04)
+        shaped = float(spin * spin_shape(np.array(k)))
+        assert mean_slip(shaped, curvature) == pytest.approx(least, rel=0.01 if k > 5.0 else 0.04)
 
 
 def test_balls_roll_at_both_races_and_one_contact_does_not_spin():

@@ -19,12 +19,11 @@ import numpy as np
 import pytest
 
 from checks.validation.command_line import ARTICLE, EXAMPLES, PATIENCE_S, invoke
+from checks.validation.scenes import built_in
 from raceway import PluginError, RacewayError, SceneError, __version__, scene_from_dict
 from raceway import sweep as front
 from raceway.extend import open_store, read_toml, tables_at, written
 from raceway.framework.contracts import Lost, Refused
-from raceway.plugins.executors.dask import Dask
-from raceway.plugins.executors.processes import Processes, Serial
 from raceway.points.axes import Design, design_file, grid, listed_points, parse_axes
 from raceway.points.dataset import values_of
 from raceway.points.engine import Work
@@ -33,6 +32,8 @@ from raceway.points.sweep import Point, prepare
 from raceway.points.sweep import fill_store as study
 from raceway.testing import default_registry, run
 from tests.deadly_work import Deadly
+
+Dask, Processes, Serial = (built_in("executor", name) for name in ("dask", "processes", "serial"))
 
 SCENE: dict[str, Any] = {
     "title": "test",

@@ -8,10 +8,13 @@ import attrs
 import pytest
 
 from checks.validation.command_line import ARTICLE, invoke
+from checks.validation.scenes import built_in
 from raceway import PluginError, option
-from raceway.contact_laws.hertz import Hertz
 from raceway.framework.options import unused_options
-from raceway.plugins.excitations.harmonic import Bidirectional, Unidirectional
+
+Hertz = built_in("contact_law", "hertz")
+Bidirectional = built_in("excitation", "bidirectional")
+Unidirectional = built_in("excitation", "unidirectional")
 
 
 @pytest.mark.parametrize(

@@ -13,12 +13,9 @@ import numpy as np
 import pytest
 from raceway_measure.fit.signals import signals_of
 from raceway_meshing import formats
-from raceway_meshing.abaqus import Abaqus
-from raceway_meshing.formats import Msh, Vtu
-from raceway_meshing.gmsh import Gmsh
-from raceway_meshing.mesh_files import File
 
 from checks.validation.cubes import block
+from checks.validation.scenes import built_in
 from raceway import MeshError, RacewayError, SceneError, scene_from_dict
 from raceway.extend import memory_for, read_numbers, size_words
 from raceway.framework import sources as plugin_sources
@@ -27,6 +24,12 @@ from raceway.points import axes as design
 from raceway.points.axes import design_file
 from raceway.storage import number_table
 from raceway.testing import b7206c
+
+Abaqus = built_in("format", "abaqus")
+Msh = built_in("format", "msh")
+Vtu = built_in("format", "vtu")
+Gmsh = built_in("mesher", "gmsh")
+File = built_in("mesher", "file")
 
 BEARING = scene_from_dict(b7206c()).bearing
 

@@ -8,8 +8,10 @@ from numpy.testing import assert_allclose
 
 import raceway as rw
 from checks.validation import warm as published
+from checks.validation.scenes import built_in
 from raceway.extend import open_store
-from raceway.plugins.quantities.heat import Temperatures
+
+Temperatures = built_in("quantity", "heat")
 
 
 def test_infinite_conductances_give_the_isothermal_bearing():

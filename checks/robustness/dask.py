@@ -14,10 +14,12 @@ import attrs
 from checks.robustness import Row, below
 from checks.validation.cluster import POINTS, START_S, Cluster, installed, prepared
 from checks.validation.cluster import rows as rows_of
+from checks.validation.scenes import built_in
 from raceway import PluginError
-from raceway.plugins.executors.dask import Dask
-from raceway.plugins.executors.processes import Serial
 from raceway.points.sweep import fill_store
+
+Dask = built_in("executor", "dask")
+Serial = built_in("executor", "serial")
 
 TITLE = "Sweeps on a dask scheduler: killed, unfit and silent partners"
 COMMAND = "python -m checks dask"

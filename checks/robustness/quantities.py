@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from itertools import product
 
-from raceway_catalogue.infer import _sizes_of
+from raceway_catalogue.infer import lines_by_size
 from raceway_catalogue.inferred import infer_printed
 from raceway_catalogue.printed import printed_by
 from raceway_catalogue.rating_conventions import CONFORMITY
 
 from checks.robustness import Row, below, near
 from checks.validation import lives, rolling_friction, warm
-from raceway.core.contact.losses import _mean_slip
+from raceway.core.contact.losses import mean_slip
 from raceway.core.life import life_factor
 from raceway.core.rolling_friction import measured_factors
 
@@ -29,7 +29,7 @@ def rows() -> list[Row]:
         *case, expected, within = lives.MASTA[line]
         life = lives.reference_life(*case)
         out.append(near(f"L10r, 1000 N {words} [1e6 revolutions]", round(life, 4), expected, within, COMMAND))
-    sizes = [infer_printed(one, conformity=CONFORMITY) for one in _sizes_of(printed_by("nsk"))]
+    sizes = [infer_printed(one, conformity=CONFORMITY) for one in lines_by_size(printed_by("nsk"))]
     count = sum(len(one.printed.ratings) for one in sizes)
     for kind, bound in (("dynamic", 0.00614), ("static", 0.008)):
         error = max(one.worst(f"{kind} rating") for one in sizes)
@@ -45,8 +45,8 @@ def _friction() -> list[Row]:
     return [
         near("moment by the oil's shear, printed by D-BRAIN [N m]", moment, expected, 2e-5, COMMAND),
         Row("hysteresis of a ball on a plane, over the elastic work", loss, "from 0.01 to 0.03", 0.01 <= loss <= 0.03, COMMAND, "Johnson"),
-        near("slip by a contact's curvature, Houpert's 0.0806", 0.5 * _mean_slip(0.0, 1.0), 0.0806, 5e-4, COMMAND),
-        near("slip by spin, 3/8 mu Q a", _mean_slip(1.0, 0.0), 0.375, 1e-12, COMMAND),
+        near("slip by a contact's curvature, Houpert's 0.0806", 0.5 * mean_slip(0.0, 1.0), 0.0806, 5e-4, COMMAND),
+        near("slip by spin, 3/8 mu Q a", mean_slip(1.0, 0.0), 0.375, 1e-12, COMMAND),
         near("drag of a ball over that of a sphere in the mixture", rolling_friction.drag_over_sphere(), 1.0, 1e-9, COMMAND),
         below("torque of pure rolling without oil [N m]", rolling_friction.rolling_without_oil(), 1e-12, COMMAND),
     ]  # fmt: skip

@@ -8,7 +8,7 @@ from typing import Any
 from raceway_article import elastic
 from raceway_article import study as driver
 from raceway_article.design import Curves, article_tables, design
-from raceway_article.elastic import ElasticArticle, _Run
+from raceway_article.elastic import ElasticArticle, ElasticRun
 from raceway_article.study import RIG_LOADS, RIG_SPEEDS, Article
 
 from raceway.extend import Tables, read_toml
@@ -79,12 +79,12 @@ def study(found: Curves) -> Article:
     return Article("invented", found, rig, tuple(static(0.01)), compared, scan, 1.0, 1.0, 0.5, 10, 0)
 
 
-def elastic_rows() -> dict[_Run, Tables]:
+def elastic_rows() -> dict[ElasticRun, Tables]:
     """Invented rows of ``raceway study article --bodies elastic``: elastic bodies are a little off condensed ones, these off Hertz."""
     return {run: _elastic_row(run) for run in elastic.design(read_toml(elastic.SCENE)).runs()}
 
 
-def elastic_study(failed: Sequence[_Run] = ()) -> ElasticArticle:
+def elastic_study(failed: Sequence[ElasticRun] = ()) -> ElasticArticle:
     """The study around them; of ``failed`` runs there is a reason."""
     made = elastic.design(read_toml(elastic.SCENE))
     rows = elastic_rows() | {
@@ -93,7 +93,7 @@ def elastic_study(failed: Sequence[_Run] = ()) -> ElasticArticle:
     return ElasticArticle("invented", made, [rows[run] for run in made.runs()], 60.0, 60.0, 0)
 
 
-def _elastic_row(run: _Run) -> Tables:
+def _elastic_row(run: ElasticRun) -> Tables:
     off = float(run.bodies == "elastic")
     loads = [200.0, 100.0, 50.0, 0.0]
     balls = [_ball(place, load, 1.0 + 0.005 * off * (place == 0), run.bodies != "rigid", 0.02 + 0.01 * (place == 2))
@@ -123,6 +123,6 @@ def _ball(place: int, load: float, factor: float, points: bool, off: float) -> T
     return ball
 
 
-def _cost(run: _Run) -> Tables:
+def _cost(run: ElasticRun) -> Tables:
     return {"cpu_s": 3.0, "wall_s": 3.0, "compile_s": 0.0, "peak_memory_bytes": 2**30, "peak_memory_of": "run",
             "elements": 1_060_152 if run.bodies == "elastic" else None, "steps": 80, "newton_iterations": 200, "predicted_s": 3.0}  # fmt: skip

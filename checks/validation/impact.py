@@ -13,7 +13,7 @@ from checks.validation.reference.elastic import grid
 from raceway.contact_laws.penalty import linear
 from raceway.core.fem.elastic.assembly import Assembly, Body
 from raceway.core.fem.elastic.bearing import ElasticSystem
-from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, _plane, penalty_stiffness
+from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, penalty_stiffness
 from raceway.core.fem.elastic.surface import Facets, surface_points
 from raceway.core.fem.mesh.ball_mesh import ball_mesh
 from raceway.extend import FACES, HexOperator, Motion, solve_static
@@ -23,6 +23,12 @@ RADIUS, HEIGHT, HALF_WIDTH = 4.7625e-3, 8e-3, 8e-3
 MODULUS = YOUNG / (2.0 * (1.0 - POISSON**2))
 #: Q = FACTOR delta^1.5 of a ball on a plane of the same steel (Johnson, Contact Mechanics, 1985, equation 4.23).
 FACTOR = 4.0 / 3.0 * MODULUS * np.sqrt(RADIUS)
+
+
+def plane(point: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """(8,) a plane through a point [m] as ``NodalContact`` takes surfaces; the normal points away from the body."""
+    n = np.asarray(normal, dtype=float)
+    return np.concatenate([[0.0], point, n / np.linalg.norm(n), [0.0]])
 
 
 @attrs.frozen(eq=False)
@@ -63,7 +69,7 @@ def model(fine: float, zone: float, formulation: str = "one_point", hourglass: f
     under = _surface(ball, lambda p: (np.hypot(p[:, 0], p[:, 1]) < 1.2 * zone) & (p[:, 2] < RADIUS), RADIUS)
     top = _surface(block, lambda p: p[:, 2] > -1e-9, None)
     points = surface_points(ball[0], under, np.array([0.0, 0.0, RADIUS]))
-    pair = Pair("ball on block", points, _plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(block[0], top), first)
+    pair = Pair("ball on block", points, plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(block[0], top), first)
     stiffness = penalty_stiffness(MODULUS, 2.0 * np.sqrt(points.area))
     contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear(), stiffness[:, None]))
     system = ElasticSystem(assembly, contact, MODULUS, np.zeros(assembly.size))

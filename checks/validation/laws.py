@@ -7,9 +7,11 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
+from checks.validation.scenes import built_in
 from raceway import LAW, hookimpl, jit, option, positive
-from raceway.contact_laws.hertz import Hertz
 from raceway.framework.contracts import ContactPairs
+
+Hertz = built_in("contact_law", "hertz")
 
 
 @jit(LAW)

@@ -221,7 +221,7 @@ def compliances() -> Rule:
     from raceway import load_scene
     from raceway.core.fem import structural
     from raceway.extend import make_basis, resolve
-    from raceway.plugins.bodies.condensed_bearing import _BODIES, elastic_bodies
+    from raceway.plugins.bodies.condensed_bearing import BODIES_BY_SECTION, elastic_bodies
 
     problem = resolve(load_scene(SCENE, ("bodies.kind=condensed",)))
     basis, count = make_basis(problem), problem.bearing.ball_count
@@ -231,7 +231,7 @@ def compliances() -> Rule:
         found = []
         try:
             for _ in range(times):
-                _BODIES.clear()
+                BODIES_BY_SECTION.clear()
                 bodies = elastic_bodies(problem, basis)
                 found.append(np.concatenate([bodies.inner.direct, bodies.outer.direct, [bodies.ball_direct]]))
         finally:
@@ -252,7 +252,7 @@ def mirror() -> Rule:
     from scipy.sparse import diags_array
 
     from raceway import load_scene
-    from raceway.core.fem.revolution.body import Revolution, _factorised
+    from raceway.core.fem.revolution.body import Revolution, symmetric_factors
     from raceway.core.fem.structural import ring_section
     from raceway.extend import ring_shape
 
@@ -265,11 +265,11 @@ def mirror() -> Rule:
     whole = [(diags_array(turn) @ one @ diags_array(turn.conj())).tocsc() for one in real]
 
     def halves() -> Answer:
-        return np.array([_factorised(one, ordered=False).solve(loads) for one in real])
+        return np.array([symmetric_factors(one, ordered=False).solve(loads) for one in real])
 
     def both() -> Answer:
         pushed = turn[:, None] * loads
-        found = (_factorised(one, ordered=False).solve(pushed) for one in whole)
+        found = (symmetric_factors(one, ordered=False).solve(pushed) for one in whole)
         return np.array([turn.conj()[:, None] * one for one in found])
 
     why = "the same systems, solved in complex numbers"

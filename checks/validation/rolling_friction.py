@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 
 from raceway.core.columns import Number
-from raceway.core.rolling_friction import BallContacts, Lubrication, _spin_shape, losses
+from raceway.core.rolling_friction import BallContacts, Lubrication, losses, spin_shape
 from raceway.extend import ellipse
 
 _SIDES = np.array([[-1.0], [1.0]])
@@ -139,7 +139,7 @@ def torques(
     q, a, diameter = contacts.load, contacts.semi_major, contacts.ball_diameter
     across = 2.0 * f * diameter / (2.0 * f + 1.0)
     with np.errstate(divide="ignore", invalid="ignore"):  # of open contacts
-        slip = mean_slip(rates.spin * a * _spin_shape(a / contacts.semi_minor), rates.rolling * a**2 / (2.0 * across))
+        slip = mean_slip(rates.spin * a * spin_shape(a / contacts.semi_minor), rates.rolling * a**2 / (2.0 * across))
         sliding = traction_coefficient(contacts, oil, slip * w, rates.entraining * w) * q * slip
         rolling = rates.entraining * hydrodynamic_force(contacts, oil, rates.entraining * w)
     able = oil.traction_limit * q

@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 from raceway_rotor.rig_table import rig_of
 from raceway_rotor.ross_file import ross
-from raceway_rotor.shaft import _Beam, rotor, shaft
+from raceway_rotor.shaft import Beam, rotor, shaft
 
 from checks.validation.command_line import EXAMPLES
 from raceway import RacewayError, load_scene
@@ -72,7 +72,7 @@ def compared() -> Compared:
     return Compared(frequencies, np.array(rows))
 
 
-def forward_whirl(line: _Beam, spin: float) -> np.ndarray:
+def forward_whirl(line: Beam, spin: float) -> np.ndarray:
     """Natural frequencies of forward whirl [rad/s], ascending, of K - l^2 (M_t + M_r) + l W G at the spin speed W [rad/s]."""
     size = len(line.stiffness)
     inverse = np.linalg.inv(line.mass + line.rotary)
@@ -86,7 +86,7 @@ def _stiffness(bearing: Any, speed: float) -> np.ndarray:
     return np.asarray(bearing.node_bearing.dynamic_stiffness(speed, speed).real[np.ix_([1, 4], [1, 4])])
 
 
-def _in_ross(rig: Any, line: _Beam) -> tuple[Any, list[Any]]:
+def _in_ross(rig: Any, line: Beam) -> tuple[Any, list[Any]]:
     """Rotor and bearings in ROSS on the nodes of our beam."""
     program = ross("the comparison of shafts")
     from raceway.ross import RollingBearing

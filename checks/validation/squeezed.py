@@ -6,9 +6,11 @@ import subprocess
 
 import attrs
 import numpy as np
-from raceway_meshing.abaqus import Abaqus
 
 from checks.validation.cubes import block
+from checks.validation.scenes import built_in
+
+Abaqus = built_in("format", "abaqus")
 
 YOUNG, POISSON, PRESSURE = 212e9, 0.29, 1e9
 

@@ -15,13 +15,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from checks.validation.scenes import built_in
 from checks.validation.sessions import left
 from raceway import RacewayError, load_scene, scene_from_dict
 from raceway.extend import default_registry, open_store, read_toml, run, tables_at, with_value
-from raceway.plugins.executors.processes import Serial
 from raceway.points.axes import grid
 from raceway.points.sweep import fill_store as study
 from raceway.points.sweep import prepare
+
+Serial = built_in("executor", "serial")
 
 SCENE = Path(__file__).parents[2] / "examples" / "b7206.toml"
 #: A machine whose processors are busier than this with other programs is not quiet.

@@ -115,7 +115,7 @@ def _law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarra
     return force, -d_gap
 
 
-def _approach_at(ring: Ring, diameter: float, race: int, load: np.ndarray) -> np.ndarray:
+def approach_at_load(ring: Ring, diameter: float, race: int, load: np.ndarray) -> np.ndarray:
     """(n,) approach [m] at which the law gives a load (n,) [N], by bisection; 0 where there is none."""
     load = np.asarray(load, dtype=float)
     low, high = np.zeros_like(load), np.full_like(load, 1e-3 * diameter)
@@ -148,7 +148,7 @@ def contact_ellipse(
     if not problem.traits.resultants or not is_foundation(contact.law):
         return ellipse.peak_pressure(load), *ellipse.semi_axes(load)
     a, b = ellipse.curvatures
-    approach = _approach_at(ring, basis.geometry.ball_diameter, race, load)
+    approach = approach_at_load(ring, basis.geometry.ball_diameter, race, load)
     slope = _law_of_pair(ring, race, approach)[1]
     return np.sqrt(a * b) / np.pi * slope, np.sqrt(approach / a), np.sqrt(approach / b)
 

@@ -73,13 +73,13 @@ def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
     file = Path(f"{re.sub(r'[^A-Za-z0-9-]+', '-', preset)}.toml") if out is None else out
     if file.exists():
         raise RacewayError(f"`{file}` exists: choose another file with --out, or remove it")
-    write_whole(_scene_text(preset, default_registry()).encode(), file)
+    write_whole(scene_text(preset, default_registry()).encode(), file)
     words = f"written: {file}\nnext:    raceway check {file}\n         raceway run {file}"
     show({"file": str(file)}, as_json, None, lambda: Text(words, no_wrap=True, overflow="ignore"))
     return 0
 
 
-def _scene_text(preset: str, registry: Registry) -> str:
+def scene_text(preset: str, registry: Registry) -> str:
     """The scene; what its comments say of a key is the key's own declaration."""
     from raceway.scene.catalogue import preset_of
 

@@ -86,7 +86,7 @@ def take_compile_seconds() -> float:
 
 
 @cache
-def _kernel_folder() -> OpenFolder | None:
+def kernel_folder() -> OpenFolder | None:
     """The folder that this process reads and writes compiled kernels in; None when there is none."""
     folder = opened(current_folder())
     if isinstance(folder, OpenFolder):
@@ -332,7 +332,7 @@ class Kernel(_Dispatcher):
         clock["loaded" if hit else "compiled"] += 1
 
     def _through_cache(self) -> None:
-        folder = _kernel_folder()
+        folder = kernel_folder()
         if folder is None:
             clock["unkept"] += 1
             super().compile(self.signature)
@@ -453,7 +453,7 @@ class _Part(_Inlined, Kernel):
     get_call_template, get_overload = _Dispatcher.get_call_template, _Dispatcher.get_overload
 
     def _through_cache(self) -> None:
-        folder = _kernel_folder()
+        folder = kernel_folder()
         if folder is None:
             _Dispatcher.compile(self, self.signature)
             return

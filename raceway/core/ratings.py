@@ -7,7 +7,7 @@ tabulated over g = D cos(a) / d_m for grooves of 0.52 D; one row of balls, lengt
 
 Below g = 0.1 the table of f_0 bends down, because it allows an outer groove of 0.53 D, which then carries less than the inner one.
 Makers whose outer groove is as narrow as the inner one go on with the inner race (one prints f_0 up to 16.8 for bearings of
-g = 0.08): ``_static_factor`` is the table from 0.1 on and the inner race's Hertz load at 4200 MPa below.
+g = 0.08): ``static_load_factor`` is the table from 0.1 on and the inner race's Hertz load at 4200 MPa below.
 
 References
 ----------
@@ -78,11 +78,11 @@ class BallRow:
     def _grooves(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """Curvature sum and difference at the inner and at the outer race."""
         races = ((self.inner, True), (self.outer, False))
-        return [_groove(self.diameter, self.gamma, conformity, inner) for conformity, inner in races]
+        return [groove_curvatures(self.diameter, self.gamma, conformity, inner) for conformity, inner in races]
 
     def load_factor(self, modulus: float) -> np.ndarray:
         """K [N/m^1.5] of Q = K delta^1.5, both contacts in series, for a contact modulus E* [Pa]."""
-        compliance = sum(_load_factor(*shape, modulus) ** (-2.0 / 3.0) for shape in self._grooves)
+        compliance = sum(hertz_load_factor(*shape, modulus) ** (-2.0 / 3.0) for shape in self._grooves)
         return np.asarray(np.asarray(compliance) ** -1.5)
 
     def dynamic_rating(self) -> np.ndarray:
@@ -95,7 +95,7 @@ class BallRow:
 
     def static_rating(self) -> np.ndarray:
         """C0 of ISO 76 [N], by its table, whatever the conformities."""
-        return np.asarray(_static_factor(self.gamma) * self.count * (1e3 * self.diameter) ** 2 * np.cos(self.angle))
+        return np.asarray(static_load_factor(self.gamma) * self.count * (1e3 * self.diameter) ** 2 * np.cos(self.angle))
 
     def static_rating_of_grooves(self, modulus: float = STEEL) -> np.ndarray:
         """C0 [N] of the grooves: Z Q cos(a) / 5 with Q the ball load at 4200 MPa on the race that reaches it first.
@@ -185,7 +185,9 @@ def _table() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return difference, area, 2.0 * first / np.pi * (np.pi / (2.0 * chi2 * second)) ** (1.0 / 3.0)
 
 
-def _groove(diameter: ArrayLike, g: ArrayLike, conformity: ArrayLike, inner: bool) -> tuple[np.ndarray, np.ndarray]:
+def groove_curvatures(
+    diameter: ArrayLike, g: ArrayLike, conformity: ArrayLike, inner: bool
+) -> tuple[np.ndarray, np.ndarray]:
     """Curvature sum [1/m] and difference of a ball in a groove, at g = D cos(a) / d_m; arrays that broadcast."""
     d, g, f = np.asarray(diameter), np.asarray(g), np.asarray(conformity)
     rolling = 2.0 * g / (1.0 - g) if inner else -2.0 * g / (1.0 + g)
@@ -199,7 +201,7 @@ def _load_at_pressure(curvature: np.ndarray, difference: np.ndarray, modulus: fl
     return (2.0 * np.pi * area * pressure / 3.0) ** 3 * (1.5 / (curvature * modulus)) ** 2
 
 
-def _load_factor(curvature: np.ndarray, difference: np.ndarray, modulus: float) -> np.ndarray:
+def hertz_load_factor(curvature: np.ndarray, difference: np.ndarray, modulus: float) -> np.ndarray:
     """K [N/m^1.5] of Q = K delta^1.5."""
     differences, _, delta = _table()
     unit = 2.0 / (curvature * np.interp(difference, differences, delta))
@@ -213,10 +215,10 @@ def _closed(g: np.ndarray, fi: np.ndarray, fo: np.ndarray) -> np.ndarray:
     return (1.0 + both ** (10.0 / 3.0)) ** -0.3 * wide
 
 
-def _static_factor(g: ArrayLike) -> np.ndarray:
+def static_load_factor(g: ArrayLike) -> np.ndarray:
     """f_0 [N/mm2] of ISO 76, below g = 0.1 that of the inner race."""
     g = np.asarray(g, dtype=float)
     low = np.clip(g, 1e-3, 0.1)
-    inner = _load_at_pressure(*_groove(1.0, low, _STANDARD, True), STEEL, _PERMITTED)
-    edge = _load_at_pressure(*_groove(1.0, np.array(0.1), _STANDARD, True), STEEL, _PERMITTED)
+    inner = _load_at_pressure(*groove_curvatures(1.0, low, _STANDARD, True), STEEL, _PERMITTED)
+    edge = _load_at_pressure(*groove_curvatures(1.0, np.array(0.1), _STANDARD, True), STEEL, _PERMITTED)
     return np.where(g < 0.1, _F_0[_INNER_LIMITS] * inner / edge, np.interp(g, _G, _F_0))

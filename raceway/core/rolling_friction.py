@@ -126,7 +126,7 @@ class BallContacts:
             inertia=self.inertia,
             drag=drag * diameter**2,
             major=a,
-            spin=a * _spin_shape(k),
+            spin=a * spin_shape(k),
             curvature=a * a / (2.0 * across),
             pressure=1.0 / (np.pi * a * b),
             strain=e**0.073 / (2.69 * (1.0 - 0.61 * np.exp(-0.73 * k))),
@@ -246,7 +246,7 @@ def losses(
     return Losses(speed, rolling, elastic, sliding, drag, np.broadcast_to(seals, speed.shape), gyroscopic)
 
 
-def _spin_shape(k: np.ndarray) -> np.ndarray:
+def spin_shape(k: np.ndarray) -> np.ndarray:
     """Complete elliptic integral of the second kind at 1 - 1/k^2, by which 3/8 mu Q a is the moment of spin, to 4e-5.
 
     References

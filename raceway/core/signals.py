@@ -129,7 +129,7 @@ def fit_harmonics(
     """
     wt = 2.0 * np.pi * frequency_hz * time[:, None] * np.arange(1, harmonics + 1)
     columns = [np.cos(wt), np.sin(wt), np.ones((len(time), 1))]
-    if _turns_of(time, frequency_hz) >= 1.5:
+    if turns_in(time, frequency_hz) >= 1.5:
         span = time - time.mean()
         columns.append((span / np.abs(span).max())[:, None])
     basis = np.hstack(columns)
@@ -138,14 +138,14 @@ def fit_harmonics(
     return lines, signal - basis @ solution
 
 
-def _turns_of(time: np.ndarray, frequency_hz: float) -> float:
+def turns_in(time: np.ndarray, frequency_hz: float) -> float:
     """Turns that n equidistant samples cover, each standing for one step."""
     return float(len(time) * (time[1] - time[0]) * frequency_hz)
 
 
 def without_drift(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
     """The signal (n, k) less mean and straight line through the means of its whole turns; of one turn the mean only."""
-    turns = max(int(_turns_of(time, frequency_hz) + 1e-6), 1)
+    turns = max(int(turns_in(time, frequency_hz) + 1e-6), 1)
     samples_per_turn = round(1.0 / (frequency_hz * (time[1] - time[0])))
     samples = min(turns * samples_per_turn, len(time))
     if turns < 2:

@@ -30,14 +30,14 @@ class Shown:
 
     def __repr__(self) -> str:
         title, facts = self._shown()
-        return _as_text(title, facts)
+        return facts_text(title, facts)
 
     def _repr_html_(self) -> str:
         title, facts = self._shown()
-        return _as_html(title, facts)
+        return facts_html(title, facts)
 
 
-def _as_text(title: str, facts: Sequence[Fact]) -> str:
+def facts_text(title: str, facts: Sequence[Fact]) -> str:
     """A title and facts in columns; what is more than fits is counted."""
     head = [shorten(line, WIDTH, placeholder=" ...") for line in title.splitlines()[:2]]
     room = LINES - len(head)
@@ -50,7 +50,7 @@ def _as_text(title: str, facts: Sequence[Fact]) -> str:
     return "\n".join([*head, *(line if len(line) <= WIDTH else f"{line[: WIDTH - 4]} ..." for line in lines)])
 
 
-def _as_html(title: str, facts: Sequence[Fact]) -> str:
+def facts_html(title: str, facts: Sequence[Fact]) -> str:
     """A table that needs nothing else; on a narrow screen its cells become narrower, and none is cut off."""
     first, _, body = title.partition("\n")
     head = f"<strong>{escape(first)}</strong>{f'<br>{escape(body)}' if body else ''}"

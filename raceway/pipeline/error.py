@@ -237,7 +237,7 @@ def _sampling(run: Identified) -> Part:
     """Of a series of equilibria, by a second one with more of them."""
     tolerance = getattr(run.model.problem.integrator.method, "tolerance", 0.0)
     steps = run.motion.steps_per_turn
-    count = _more_equilibria(steps)
+    count = equilibria_of_second_series(steps)
     if not fits(run.model.plan.turns, count, run.model.system.ball_count, inertial=False):
         return Part(None, Estimate.SECOND_SERIES_TOO_LARGE(count=count))
     try:
@@ -249,7 +249,7 @@ def _sampling(run: Identified) -> Part:
     return Part(float(abs(shift)), Estimate.SECOND_SERIES(count=count, steps=steps), shift)
 
 
-def _more_equilibria(steps: int) -> int:
+def equilibria_of_second_series(steps: int) -> int:
     """Equilibria a turn of the second series: more than twice as many, and no few."""
     return max(2 * steps + 1, _LEAST_EQUILIBRIA)
 
@@ -305,12 +305,12 @@ def _transient(run: Identified, step: Part) -> Part:
     if clean is None:
         return Part(None, Estimate.SINGLE_TURN()) if spread is None else by_turns
     shift = (value - clean.value + clean.lasting) / abs(value)
-    if (spread or 0.0) > abs(shift) and _unresolved(model, run.motion, clean, abs(shift * value)):
+    if (spread or 0.0) > abs(shift) and window_misses_transient(model, run.motion, clean, abs(shift * value)):
         return by_turns
     return Part(float(abs(shift)), clean.how, shift)
 
 
-def _unresolved(model: Model, simulation: Simulation, clean: Clean, leakage: float) -> bool:
+def window_misses_transient(model: Model, simulation: Simulation, clean: Clean, leakage: float) -> bool:
     """Whether the window over the turns may miss a part of the transient.
 
     Parameters

@@ -68,8 +68,8 @@ from raceway.scene.tolerance import stated_tolerances, tolerances_of
 from raceway.storage.tables import Tables
 
 #: Weights of values at shifts by so many steps: their sum over the step is the derivative, of second and of fourth order.
-_SECOND = {1: 1.0 / 2.0}
-_FOURTH = {1: 8.0 / 12.0, 2: -1.0 / 12.0}
+SECOND_ORDER = {1: 1.0 / 2.0}
+FOURTH_ORDER = {1: 8.0 / 12.0, 2: -1.0 / 12.0}
 #: Steps over the number, of the two orders; what a step is divided by where differences are uneven, down to the least.
 _STEP, _WIDE, _SMALLER, _LEAST_STEP = 1e-4, 5e-4, 10.0, 2e-6
 #: Least steps by unit, unless that is more than a part of the number.
@@ -153,7 +153,7 @@ class Gradient:
 
 
 @attrs.define(eq=False)
-class _SteadyOrbit:
+class SteadyOrbit:
     """The steady orbit of a model under its excitation.
 
     Attributes
@@ -169,7 +169,7 @@ class _SteadyOrbit:
         return self.orbit.refined.solved
 
     @classmethod
-    def of(cls, model: Model, equilibrium: Equilibrium) -> _SteadyOrbit:
+    def of(cls, model: Model, equilibrium: Equilibrium) -> SteadyOrbit:
         """Search for it.
 
         Raises
@@ -241,7 +241,7 @@ class Gradients:
         refuse_points(self.model.problem)
 
     @cached_property
-    def orbit(self) -> _SteadyOrbit | None:
+    def orbit(self) -> SteadyOrbit | None:
         """The steady orbit, searched for once; None in a static scene.
 
         Raises
@@ -250,7 +250,7 @@ class Gradients:
             The force has none, or none was found.
         """
         searched = self.moving and self.model.excitation is not None
-        return _SteadyOrbit.of(self.model, self.equilibrium) if searched else None
+        return SteadyOrbit.of(self.model, self.equilibrium) if searched else None
 
     @cached_property
     def _plugins(self) -> list[str]:
@@ -482,12 +482,12 @@ def _gradients(
     slopes = {}
     for name in base:
         # In pairs, so that what does not change gives exactly nothing.
-        weights = _FOURTH if 2 in solutions else _SECOND
+        weights = FOURTH_ORDER if 2 in solutions else SECOND_ORDER
         pairs = [weight * (solutions[k][name] - solutions[-k][name]) for k, weight in weights.items()]
         slopes[name] = (np.sum(pairs, axis=0).T / steps).T
-    bends = largest = _unevenness([solutions[k]["stiffness"] for k in (-1, 1)], base["stiffness"])
+    bends = largest = unevenness([solutions[k]["stiffness"] for k in (-1, 1)], base["stiffness"])
     if "line" in base:  # Z
-        largest = np.maximum(bends, _unevenness([solutions[k]["line"][:, ::4] for k in (-1, 1)], base["line"][::4]))
+        largest = np.maximum(bends, unevenness([solutions[k]["line"][:, ::4] for k in (-1, 1)], base["line"][::4]))
     loaded = base["contact_force"] > 0.0
     edges = np.any([((solution["contact_force"] > 0.0) != loaded).any(axis=1) for solution in solutions.values()], axis=0)
     answers, uneven = {}, []
@@ -506,7 +506,7 @@ def _gradients(
     return answers, uneven
 
 
-def _unevenness(sides: Sequence[np.ndarray], middle: np.ndarray) -> np.ndarray:
+def unevenness(sides: Sequence[np.ndarray], middle: np.ndarray) -> np.ndarray:
     """(m,) second difference over the first, of values (m, ...) before and after those in the middle; 0 of a turning point."""
     before, after = (side.reshape(len(side), -1) for side in sides)
     first = np.abs(after - before).max(axis=1)
@@ -514,7 +514,7 @@ def _unevenness(sides: Sequence[np.ndarray], middle: np.ndarray) -> np.ndarray:
     return np.where(first > 0.1 * second, np.maximum(second, 0.0) / np.maximum(first, 1e-300), 0.0)
 
 
-def values(model: Model, equilibrium: Equilibrium, orbit: _SteadyOrbit | None) -> dict[str, float]:
+def values(model: Model, equilibrium: Equilibrium, orbit: SteadyOrbit | None) -> dict[str, float]:
     """The numbers that a scene has, by their symbols: of the steady orbit, and at rest."""
     numbers: dict[str, float] = {}
     if orbit is not None:

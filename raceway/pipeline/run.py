@@ -139,7 +139,7 @@ def _run(
 ) -> Result:
     started, processor = working_clock(), working_process_time()
     plan = steady_plan(scene)
-    allowance = _Allowance.of(plan, patience)
+    allowance = Allowance.of(plan, patience)
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)
     built = working_clock()
@@ -217,7 +217,7 @@ class _Answer:
 
 
 def _answer(
-    model: Model, equilibrium: Equilibrium, motions: list[Simulation], allowance: _Allowance, doubts: list[str]
+    model: Model, equilibrium: Equilibrium, motions: list[Simulation], allowance: Allowance, doubts: list[str]
 ) -> _Answer:
     """What the scene's identifier finds in the motions, and its error.
 
@@ -257,7 +257,7 @@ def _motions(
 
 
 def _moved(
-    model: Model, move: Callable[[Model], list[Simulation]], allowance: _Allowance, registry: Registry
+    model: Model, move: Callable[[Model], list[Simulation]], allowance: Allowance, registry: Registry
 ) -> tuple[Model, list[Simulation], list[str]]:
     """The motions; integrated over time, with a warning, where planning chose a steady orbit that is not found or is unstable."""
     automatic = model.problem.integrator.method.steady and model.problem.integrator_why != ""
@@ -383,7 +383,7 @@ def _environment(problem: Problem, registry: Registry) -> Tables:
 
 
 @attrs.define
-class _Allowance:
+class Allowance:
     """Processor time [s] and memory [B] that a run may take; kernels that compile do not count.
 
     Attributes
@@ -399,7 +399,7 @@ class _Allowance:
     held: float = attrs.field(factory=lambda: _resident_bytes())
 
     @classmethod
-    def of(cls, plan: ScenePlan, patience: float) -> _Allowance:
+    def of(cls, plan: ScenePlan, patience: float) -> Allowance:
         """Without an end where the plan knows no more than what a run takes at least."""
         planned = max(plan.predicted_wall_s, _LEAST_S)
         if plan.at_least or patience == inf:

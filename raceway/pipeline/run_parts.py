@@ -122,12 +122,12 @@ def equilibrium_rows(result: ReadTables) -> list[Row]:
     if tilt != "locked":
         tilts = ", ".join(in_micro(moved[name]) for name in ("tilt_y", "tilt_z"))
         rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
-    rows += _mounted(found)
+    rows += mounting_rows(found)
     rows += loaded_balls(result, ["most", "least"] if dynamic else ["least"])
     return rows + (tangent_rows(result) if dynamic else [])
 
 
-def _mounted(found: ReadTables) -> list[Row]:
+def mounting_rows(found: ReadTables) -> list[Row]:
     """Preload and held axial force: running, mounted and before mounting."""
     rows, preload, held = [], found["preload"], found["held_axial"]
     if preload is not None:

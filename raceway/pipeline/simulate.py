@@ -119,7 +119,7 @@ def simulate(
     method, turns = model.problem.integrator.method, model.plan.turns
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
     watch = None if on_progress is None else (lambda: on_progress("the search for orbits", 0, 0))
-    start = start or _chosen_start(model, equilibrium, watch)
+    start = start or start_of_motion(model, equilibrium, watch)
     # Stable limit of explicit steps: the shortest of the states known before the run.
     slopes = [(equilibrium.stiffness_rows_held, equilibrium.damping_rows_held)]
     orbit = start.orbit
@@ -129,7 +129,7 @@ def simulate(
     step_warnings = _step_warnings(model, equilibrium, period, steps_per_turn, critical)
     ramp_length = ramp_turns(model.problem.excitation) or 2.0 * model.plan.turns / 3.0
     ramp = min(ramp_length, float(turns)) if start.kind == "ramp" else 0.0
-    stride = _stride(steps_per_turn, turns, method.inertial)
+    stride = recording_stride(steps_per_turn, turns, method.inertial)
     schedule = Schedule(period / steps_per_turn, steps_per_turn, turns, stride, ramp * period)
     motion = _motion(model, equilibrium, start, schedule.dt)
     if near is not None:
@@ -157,7 +157,7 @@ def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list
     return motions
 
 
-def _chosen_start(model: Model, equilibrium: Equilibrium, watch: Watch | None = None) -> Start:
+def start_of_motion(model: Model, equilibrium: Equilibrium, watch: Watch | None = None) -> Start:
     """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
     problem, method = model.problem, model.problem.integrator.method
     if method.steady:
@@ -255,7 +255,7 @@ def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:
     return stable_steps_per_turn(period, critical)
 
 
-def _stride(steps_per_turn: int, turns: int, inertial: bool = True) -> int:
+def recording_stride(steps_per_turn: int, turns: int, inertial: bool = True) -> int:
     """Every how many steps are recorded: a divisor that leaves the plan's samples per turn, or all when there is none."""
     return steps_per_turn // recorded_per_turn(steps_per_turn, turns, inertial)
 
@@ -285,7 +285,7 @@ class SteadyMotions:
         return self.values[speed]
 
     def _solved(self, speed: float) -> complex | None:
-        model = _at_speed(self.model, speed)
+        model = model_at_speed(self.model, speed)
         if model is None or self.missed >= _GIVEN_UP:
             return None
         near = None if self.last is None else self.last.solution
@@ -300,7 +300,7 @@ class SteadyMotions:
         )
 
 
-def _at_speed(model: Model, speed: float) -> Model | None:
+def model_at_speed(model: Model, speed: float) -> Model | None:
     """The same scene at one speed [rad/s], of an excitation that has a steady form."""
     steady = steady_form(model.excitation)
     if steady is None:

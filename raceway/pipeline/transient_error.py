@@ -161,7 +161,7 @@ def without_free_vibration(motion: Simulation) -> Clean | None:
 
 def _windowed(record: Record, part: slice, frequency_hz: float) -> complex:
     """Z [N/m] of some whole turns under Hann's window."""
-    lines = _hann_line(record.time[part], np.hstack([record.force, record.displacement])[part], frequency_hz)
+    lines = hann_line(record.time[part], np.hstack([record.force, record.displacement])[part], frequency_hz)
     return stiffness(lines[:5], lines[5:])
 
 
@@ -184,7 +184,7 @@ def _closed(motion: Simulation, per_turn: int) -> complex:
     return stiffness(synchronous_phasor(record.time[turn], record.force[turn], w / (2.0 * np.pi)), line)
 
 
-def _hann_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
+def hann_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
     """1x phasor (k,) of a signal (n, k) under Hann's window over two or more whole turns.
 
     Notes

@@ -287,7 +287,7 @@ class Problem(SceneTables):
         stable = self.stable_step if explicit else None
         if stable is None:
             return STEPS_PER_TURN, f"'auto' ({key})"
-        steps = stable_steps_per_turn(self.period, _damped_limit(stable, self.time_constant))
+        steps = stable_steps_per_turn(self.period, damped_step_limit(stable, self.time_constant))
         return steps, f"'auto' ({key}): the stable step of '{self.integrator.kind}'"
 
     @cached_property
@@ -457,7 +457,7 @@ def resolve(scene: Scene) -> Problem:
     return problem.integrated("periodic", "the force repeats every turn and contacts have no memory")
 
 
-def _damped_limit(limit: float, time_constant: float) -> float:
+def damped_step_limit(limit: float, time_constant: float) -> float:
     """Rough stable limit of explicit steps [s] with dashpots c = tau k at the contacts, from that without them.
 
     Notes

@@ -37,7 +37,7 @@ from raceway.points.axes import Axis, shown
 from raceway.storage.tables import Tables
 
 
-def _factorial_effects(values: np.ndarray) -> np.ndarray:
+def factorial_effects(values: np.ndarray) -> np.ndarray:
     """Effects of a two-level factorial.
 
     Parameters
@@ -77,7 +77,7 @@ class Effect:
 
 
 @attrs.frozen(eq=False, slots=False)
-class _Factorial:
+class Factorial:
     """One quantity at all corners.
 
     Attributes
@@ -102,7 +102,7 @@ class _Factorial:
     @cached_property
     def effects(self) -> list[Effect]:
         """All terms, the largest first."""
-        coefficients = _factorial_effects(np.log(self.corners))
+        coefficients = factorial_effects(np.log(self.corners))
         squares = float((coefficients**2).sum() - coefficients[(0,) * coefficients.ndim] ** 2)
         terms = []
         for order in range(1, len(self.keys) + 1):
@@ -138,7 +138,7 @@ class _Factorial:
         return float(values[tuple(index)].mean())
 
 
-def _whole_part(usable: np.ndarray) -> tuple[int | None, ...] | None:
+def complete_factorial(usable: np.ndarray) -> tuple[int | None, ...] | None:
     """The largest factorial without holes: for each axis None (both ends) or the end it must be held at.
 
     Parameters
@@ -280,16 +280,16 @@ class Findings:
     @cached_property
     def held(self) -> Tables:
         """Axes that the effects hold at one end, because corners of the other end cannot be used."""
-        part = self._whole_part
+        part = self.complete_factorial
         if part is None:
             return {}
         held = zip(self.varied, part, strict=True)
         return {axis.key: axis.ends[end] for axis, end in held if end is not None}
 
     @cached_property
-    def factorials(self) -> dict[str, _Factorial]:
+    def factorials(self) -> dict[str, Factorial]:
         """For each quantity its corners; empty when there is nothing to analyse."""
-        part = self._whole_part
+        part = self.complete_factorial
         if part is None or all(end is not None for end in part):
             return {}
         index = tuple(slice(None) if end is None else end for end in part)
@@ -299,7 +299,7 @@ class Findings:
         for name in self.quantities:
             values, errors = (np.array([of(row, name) for row in corners.flat]) for of in (Row.value, Row.error_of))
             if (values > 0.0).all():  # x may have either sign: then it has no logarithm
-                factorials[name] = _Factorial(keys, values.reshape(corners.shape), errors.reshape(corners.shape))
+                factorials[name] = Factorial(keys, values.reshape(corners.shape), errors.reshape(corners.shape))
         return factorials
 
     @cached_property
@@ -313,11 +313,11 @@ class Findings:
         return corners
 
     @cached_property
-    def _whole_part(self) -> tuple[int | None, ...] | None:
+    def complete_factorial(self) -> tuple[int | None, ...] | None:
         if not self.varied:
             return None
         usable = [row is not None and row.doubt is None for row in self._corners.flat]
-        return _whole_part(np.array(usable).reshape(self._corners.shape))
+        return complete_factorial(np.array(usable).reshape(self._corners.shape))
 
     @cached_property
     def effects(self) -> list[Tables]:
@@ -465,7 +465,7 @@ def _courses(comparison: Findings) -> list[str]:
     return words
 
 
-def _together(factorial: _Factorial, key: str, partner: str) -> float:
+def _together(factorial: Factorial, key: str, partner: str) -> float:
     """Size of the interaction of two axes."""
     return max((abs(e.log_change) for e in factorial.effects if set(e.term) == {key, partner}), default=0.0)
 

@@ -117,7 +117,7 @@ def parse_at(texts: Iterable[str]) -> Tables:
     return values
 
 
-def _keys_of(dataset: Dataset) -> list[str]:
+def swept_keys(dataset: Dataset) -> list[str]:
     """The keys of the scene that a sweep varied, in its order."""
     if LIST in dataset.dims:
         return [str(name) for name, coordinate in dataset.coords.items() if coordinate.dims == (LIST,) and name != LIST]
@@ -137,7 +137,7 @@ def select(dataset: Dataset, at: ReadTables) -> Selection:
     SceneError
         An unknown key, or a value that the sweep does not hold; the nearest one is named.
     """
-    keys = _keys_of(dataset)
+    keys = swept_keys(dataset)
     mistakes, fixed_values = [], Tables()
     for key, requested in at.items():
         if key not in keys:

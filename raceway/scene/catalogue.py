@@ -133,7 +133,7 @@ def _tables(facts: Iterable[Fact]) -> Tables:
 @cache
 def catalogue() -> dict[str, Preset]:
     """All presets by name: those with a file of their own, then the series."""
-    presets = dict(_single_presets())
+    presets = dict(single_presets())
     for stem in _series_files():
         for name, entry in _series_presets(stem).items():
             presets.setdefault(name, entry)
@@ -152,7 +152,7 @@ def _series_presets(stem: str) -> dict[str, Preset]:
 
 
 @cache
-def _single_presets() -> dict[str, Preset]:
+def single_presets() -> dict[str, Preset]:
     """Presets with a file of their own; they go before those of a series."""
     return {entry.name: entry for entry in map(_single, _tomls(files("raceway").joinpath("data/bearings")))}
 
@@ -227,7 +227,7 @@ def _designated(name: str, entry: Preset, designation: Designation) -> Preset:
 def _named(name: str) -> Preset | None:
     """By its name in the catalogue; only the series that it begins with are read."""
     series = (stem for stem in _series_files() if name.startswith(stem.partition("_")[0]))
-    return _single_presets().get(name) or next(filter(None, (_series_presets(stem).get(name) for stem in series)), None)
+    return single_presets().get(name) or next(filter(None, (_series_presets(stem).get(name) for stem in series)), None)
 
 
 def _tomls(folder: Traversable) -> list[Traversable]:

@@ -58,7 +58,7 @@ class Walther:
         return log(self.viscosity(temperature - 0.01) / self.viscosity(temperature + 0.01)) / 0.02
 
 
-def _mineral_thinning(viscosity: Number, temperature: Number) -> Number:
+def mineral_thinning(viscosity: Number, temperature: Number) -> Number:
     """beta [1/K] of the mineral oil that has this kinematic viscosity [mm2/s] at a temperature [C], between those of ``GRADES``."""
     at, logarithm = least(largest(temperature, COLDEST), HOTTEST), log(viscosity)
     oils = [Walther(*pair) for pair in GRADES.values()]
@@ -188,7 +188,7 @@ class Oil:
             return self.temperature_viscosity
         if self.viscosity is None:
             return self._walther.thinning(at)
-        return _mineral_thinning(1e6 * self.viscosity / self.density, at)
+        return mineral_thinning(1e6 * self.viscosity / self.density, at)
 
     def inlet(self, pairs: ContactPairs) -> tuple[np.ndarray, np.ndarray]:
         """Thermal loading of the contacts' inlets (n,), and the part of the isothermal film that their heat leaves (n,)."""

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from packaging.specifiers import SpecifierSet
 
 
-def _check_requires(table: object, registry: Registry, mistakes: list[Mistake]) -> None:
+def check_requirements(table: object, registry: Registry, mistakes: list[Mistake]) -> None:
     """Append a mistake for every requirement that is missing, too old, or not a requirement at all.
 
     Parameters
@@ -295,7 +295,7 @@ def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake
         if name != "title" and not isinstance(plain[name], dict):
             mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
             plain[name] = {}
-    _check_requires(plain.get("requires", {}), registry, mistakes)
+    check_requirements(plain.get("requires", {}), registry, mistakes)
     if "bearing" not in plain:
         mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
     return title, plain

@@ -65,7 +65,7 @@ _PAIR_UNITS = {
 }  # fmt: skip
 
 
-def _example_pairs(n: int, seed: int = 1, nodal: bool = True) -> ContactPairs:
+def example_pairs(n: int, seed: int = 1, nodal: bool = True) -> ContactPairs:
     """n running contacts, each within a factor two of those of a bearing of 30 mm bore; resultants have no ``area``."""
     rng = np.random.default_rng(seed)
     pairs = ContactPairs(*(np.array(_CONTACT)[:, None] * rng.uniform(0.7, 1.4, (6, n))))
@@ -89,7 +89,7 @@ def _third(pairs: ContactPairs) -> ContactPairs:
 
 def _pairs_of(law: ContactLaw, n: int, nodal: bool = False) -> ContactPairs:
     """What the suite drives a law at: resultants where it knows them."""
-    return _example_pairs(n, nodal=nodal or "resultant" not in law.discretisations)
+    return example_pairs(n, nodal=nodal or "resultant" not in law.discretisations)
 
 
 @attrs.define(eq=False)

@@ -7,7 +7,7 @@ from contextlib import suppress
 
 import pytest
 
-from checks.presets import CONFORMITY, FOLDER, _roller_texts, _rows, _sizes_of, every, infer_printed, printed_by
+from checks.presets import CONFORMITY, FOLDER, _roller_texts, _rows, every, infer_printed, lines_by_size, printed_by
 from raceway.errors import SceneError
 
 #: As they are written: of two digits with a power of ten, of ten digits.
@@ -30,7 +30,7 @@ def test_some_rows_are_what_the_inference_gives():
     texts = {path.stem: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.toml")}
     lines = {line.partition(" = ")[0]: line for text in texts.values() for line in text.splitlines()}
     rows = {}
-    for one in [*_sizes_of(printed_by("nsk"))[::30], *printed_by("nsk_deep_groove")[::30]]:
+    for one in [*lines_by_size(printed_by("nsk"))[::30], *printed_by("nsk_deep_groove")[::30]]:
         with suppress(SceneError):
             rows |= _rows(infer_printed(one, "NSK", **({} if one.deep_groove else {"conformity": CONFORMITY})))
     written = [name for name in rows if name in lines]  # others' printed ratings are met less closely

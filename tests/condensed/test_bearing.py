@@ -12,7 +12,7 @@ from checks.validation.command_line import EXAMPLES, invoke
 from raceway import SceneError, make_plan, scene_from_dict
 from raceway.bodies.elastic_change import elastic_change
 from raceway.core.fem import structural as calibration
-from raceway.core.fem.revolution.body import _seat_areas
+from raceway.core.fem.revolution.body import seat_areas
 from raceway.testing import b7206c, run, settled
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
@@ -57,7 +57,7 @@ def test_rings_that_do_not_deform_are_in_series_with_their_beds(seats):
     firm = at_rest(**plain, supports={"tilt": "locked"})[1].stiffness[0, 0]
     bed = 5e10
     case, found = at_rest(**plain, supports={"tilt": "locked", **{f"{seat}_seat": bed for seat in seats}})
-    areas = (_seat_areas(case.bearing.ring_section(case, seat == "inner"), 360).sum() * 360 for seat in seats)
+    areas = (seat_areas(case.bearing.ring_section(case, seat == "inner"), 360).sum() * 360 for seat in seats)
     expected = 1.0 / (1.0 / firm + sum(1.0 / (bed * area) for area in areas))
     assert expected < 0.8 * firm
     assert found.stiffness[0, 0] == pytest.approx(expected, rel=1e-3)

@@ -7,7 +7,7 @@ import pytest
 from scipy.interpolate import CubicSpline
 
 from raceway import ConvergenceError
-from raceway.core.fem.structural import ElasticBodies, _RingCompliance, elastic_system
+from raceway.core.fem.structural import ElasticBodies, RingCompliance, elastic_system
 from raceway.core.ring.kernels import STORED
 from raceway.core.ring.kernels.layout import CENTRIFUGAL
 from raceway.core.ring.orbit import static_orbit
@@ -26,7 +26,7 @@ BED = 1e-9 * np.array([
 ])  # fmt: skip
 
 
-def ring(own: float, slope: float = 0.0, balls: int = 12, between: np.ndarray | None = None) -> _RingCompliance:
+def ring(own: float, slope: float = 0.0, balls: int = 12, between: np.ndarray | None = None) -> RingCompliance:
     """A ring whose own compliance [m/N] changes by ``slope`` [m/N/rad] and as much again by its square.
 
     between : (7, 3) compliances between groove centres; the first one is added to the ring's own.
@@ -40,7 +40,7 @@ def ring(own: float, slope: float = 0.0, balls: int = 12, between: np.ndarray | 
             table[:, :, k] = axial * np.outer(sine, sine) + radial * np.outer(cosine, cosine)
             table[:, :, k] += cross * (np.outer(sine, cosine) + np.outer(cosine, sine))
         values = values + np.diagonal(table[:, :, 0])
-    return _RingCompliance(ANGLES, values, table, 1, np.array([1e-3]), 1e-3)
+    return RingCompliance(ANGLES, values, table, 1, np.array([1e-3]), 1e-3)
 
 
 def elastic(

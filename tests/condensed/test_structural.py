@@ -8,7 +8,14 @@ import pytest
 
 from raceway import scene_from_dict
 from raceway.core.contact.hertz import ball_compliance
-from raceway.core.fem.structural import _between_grooves, _nodal_weights, first_frequency, half_space, reach, ring_compliance
+from raceway.core.fem.structural import (
+    between_grooves,
+    first_frequency,
+    half_space,
+    line_load_weights,
+    reach,
+    ring_compliance,
+)
 from raceway.extend import ring_shape
 from raceway.testing import b7206c
 
@@ -30,7 +37,7 @@ def rings(bearing):
 
 def test_nodal_weights_carry_force_and_place_of_the_line():
     places = np.sort(np.random.default_rng(1).uniform(-1.0, 1.0, 40))
-    weights = _nodal_weights(places, 0.1, 0.3)
+    weights = line_load_weights(places, 0.1, 0.3)
     assert weights.sum() == pytest.approx(1.0, abs=1e-14)
     # Linear functions are kept by linear shape functions, whatever the nodes.
     assert weights @ places == pytest.approx(0.1, abs=1e-14)
@@ -71,7 +78,7 @@ def test_what_a_contact_feels_of_another_ball_is_a_motion_of_its_groove_centre(b
     """n.M n' of three numbers for all pairs of contact angles within the width of the fit: to 0.03 nm/N, 0.3 % of what a contact gives."""
     soft = ring_compliance(ring_shape(bearing, True), bearing.ball_diameter, 12, HALF, YOUNG, POISSON, 5e11)
     near = np.flatnonzero(np.abs(soft.angles - 0.3) < 0.2)
-    found = _between_grooves(soft, np.full(12, 0.3))
+    found = between_grooves(soft, np.full(12, 0.3))
     n = np.column_stack([np.sin(soft.angles), np.cos(soft.angles)])[near]
     for k in (1, 2, 6):
         matrix = found[k][[0, 1, 1, 2]].reshape(2, 2)

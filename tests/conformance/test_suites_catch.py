@@ -8,17 +8,22 @@ import attrs
 import numpy as np
 import pytest
 
-from raceway.contact_laws.hertz import Hertz
+from checks.validation.scenes import built_in
 from raceway.core.time.schemes import Drivers
-from raceway.integrators.methods import CentralDifference, GeneralizedAlpha, Newmark, Periodic
-from raceway.plugins.excitations.harmonic import Bidirectional
-from raceway.plugins.identifiers.one_frequency import SineFit
 from raceway.testing import BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, suite_of
 from raceway.testing import suite as suites
 from raceway.testing.contact_law import exponents
 from raceway.testing.suite import EXPECTED_FAILURES
 from tests import broken_laws
 from tests.broken_bodies import BROKEN
+
+Hertz = built_in("contact_law", "hertz")
+CentralDifference = built_in("integrator", "central_difference")
+GeneralizedAlpha = built_in("integrator", "generalized_alpha")
+Newmark = built_in("integrator", "newmark")
+Periodic = built_in("integrator", "periodic")
+Bidirectional = built_in("excitation", "bidirectional")
+SineFit = built_in("identifier", "sine_fit")
 
 
 def failed(suite, plugin):

@@ -9,9 +9,11 @@ import click
 import numpy as np
 import pytest
 
+from checks.validation.scenes import built_in
 from raceway import Quantity, RacewayError
-from raceway.plugins.executors.processes import Serial
 from raceway.testing import ExecutorSuite, FormatSuite, MesherSuite, QuantitySuite, StudySuite
+
+Serial = built_in("executor", "serial")
 
 BOX = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
 

@@ -11,7 +11,7 @@ import raceway as rw
 from checks.validation.reference.mounted import approach, axial, row
 from raceway import ConvergenceError
 from raceway.core.ring.kernels.layout import SHIFT
-from raceway.pipeline.run_parts import _mounted
+from raceway.pipeline.run_parts import mounting_rows
 from raceway.testing import b7206c
 
 #: Asked for: a stiffness against slopes of whole runs.  Differences of fourth order leave 1e-8, the spring's force 1e-9.
@@ -219,7 +219,7 @@ def test_a_held_displacement_has_the_same_three_states():
 
 def test_the_screen_names_the_three_states():
     found = rw.run(sprung("TBT", bearing={"second_preload": 600.0}, load={"axial": 0.0})).to_dict()
-    text = " ".join(" ".join(row) for row in _mounted(found["equilibrium"]))
+    text = " ".join(" ".join(row) for row in mounting_rows(found["equilibrium"]))
     assert "preload 600 N running, without loads; before mounting 300 and 600 N, mounted 600 N" in text
 
 

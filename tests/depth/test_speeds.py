@@ -8,14 +8,17 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from checks.validation.scenes import built_in
 from raceway import ConvergenceError, SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.energy import friction_energy
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, SINE
-from raceway.core.ring.ring import _SteppedBearing
+from raceway.core.ring.ring import SteppedBearing
 from raceway.extend import CAGE, Schedule, at_rest, integrate
-from raceway.plugins.excitations.harmonic import Bidirectional, RunUp
 from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c
+
+Bidirectional = built_in("excitation", "bidirectional")
+RunUp = built_in("excitation", "run_up")
 
 
 def steady(rpm=12000.0, **tables):
@@ -332,7 +335,7 @@ def test_steps_from_python_follow_the_speed(built, integrator):
     q, ball, _ = system.solve_equilibrium(model.guess)
     start = at_rest(system, q, ball, False)
     compiled = integrate(model.scene.integrator.method, model.system, start, schedule)
-    stepped = integrate(model.scene.integrator.method, _SteppedBearing(model.system), start, schedule)
+    stepped = integrate(model.scene.integrator.method, SteppedBearing(model.system), start, schedule)
     # 1e-9 of the step's forces is Newton's tolerance.
     assert np.abs(stepped.displacement - compiled.displacement).max() < 1e-6 * np.abs(compiled.displacement).max()
 

@@ -108,12 +108,12 @@ def test_cells_near_a_place_have_a_node_there():
 @pytest.mark.needs("pyvista")
 def test_the_picture_and_the_file_of_the_elements_near_the_contacts(result, tmp_path):
     import pyvista
-    from raceway_view.stress import _Fields, contact_stress_files
+    from raceway_view.stress import StressFields, contact_stress_files
 
     files = contact_stress_files(result)
     assert list(files) == ["contact.vtu", "stress_contact.png"]
     assert files["stress_contact.png"].startswith(b"\x89PNG")
-    grid, whole = pyvista.read(write_whole(files["contact.vtu"], tmp_path / "contact.vtu")), _Fields.of(result)
+    grid, whole = pyvista.read(write_whole(files["contact.vtu"], tmp_path / "contact.vtu")), StressFields.of(result)
     most = {2 + one["ball"] for one in result.to_dict()["model"]["subsurface"]}
     assert set(np.unique(grid.cell_data["body"])) == {0, 1} | most
     assert 0 < grid.n_cells < len(whole.cells)

@@ -10,8 +10,8 @@ import pytest
 from scipy.sparse import csr_array
 
 from raceway.core.fem.elastic.assembly import Cage
-from raceway.core.fem.elastic.bearing import _cage_rows, _cage_stiffness
-from raceway.core.fem.elastic.iterative_solver import _LowRankContacts
+from raceway.core.fem.elastic.bearing import cage_rows, cage_stiffness
+from raceway.core.fem.elastic.iterative_solver import LowRankContacts
 from tests.superelements.bearings import built
 
 #: Nodes, of which the last one is held, and contacts.
@@ -80,7 +80,7 @@ def test_it_is_the_inverse_of_bodies_contacts_and_cage(bodies, contact, held, ra
         asked.append(columns.shape)
         return inverse(columns)
 
-    whole = _LowRankContacts(contact, held, counted, FREE)
+    whole = LowRankContacts(contact, held, counted, FREE)
     residual = np.random.default_rng(4).standard_normal(len(FREE))
     for _ in range(2):
         apply = whole.inverse(inverse, rates)
@@ -104,7 +104,7 @@ def test_a_rigid_motion_gives_its_parts():
     arm = points - mass @ points / mass.sum()
     for row, axis in enumerate((along, along, radius, np.array([1.0, 0.0, 0.0]))):
         u = np.cross(axis, arm) if row else np.tile(axis, (len(points), 1))
-        found = _cage_rows(points, mass, along) @ u.ravel()
+        found = cage_rows(points, mass, along) @ u.ravel()
         wanted = np.eye(4)[row]
         # "radius" is a unit vector of either sign.
         assert np.abs(found) == pytest.approx(wanted, abs=1e-12)
@@ -113,7 +113,7 @@ def test_a_rigid_motion_gives_its_parts():
 def test_with_friction_balls_roll_along_their_orbits_and_not_across():
     """Against the stiffness of a contact at the ball's surface: what rolls is hardly held, what does not is rigid beside it."""
     normal, diameter = 1e8, 0.01
-    orbit, across, *rolling = _cage_stiffness(normal, diameter, friction=True)
+    orbit, across, *rolling = cage_stiffness(normal, diameter, friction=True)
     arm = 0.25 * diameter**2
     assert orbit < 1e-2 * normal
     assert max(rolling) < 1e-2 * normal * arm

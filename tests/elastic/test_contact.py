@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from checks.validation.groove import GROOVE, HERTZ, RADIUS, ROLLING, guess, model, solve
+from checks.validation.impact import plane
 from checks.validation.reference.contact import contact_forces, groove_gap
-from raceway.core.fem.elastic.contact import _forces_and_tangents, _gaps, _plane, groove
+from raceway.core.fem.elastic.contact import forces_and_tangents, groove, surface_gaps
 from raceway.core.fem.elastic.surface import Facets, surface_points
 
 MIDDLE = np.array([0.0, 0.0, -(RADIUS + ROLLING)])
@@ -25,7 +26,7 @@ def evaluate(place, surface=SURFACE):
     """Gaps, normals and the normals' derivatives at places (n, 3)."""
     count = len(place)
     found = np.empty(count), np.empty((count, 3)), np.empty((count, 3, 3))
-    _gaps(np.ascontiguousarray(place), np.zeros(count, dtype=np.int64), surface[None], *found)
+    surface_gaps(np.ascontiguousarray(place), np.zeros(count, dtype=np.int64), surface[None], *found)
     return found
 
 
@@ -47,7 +48,7 @@ def test_gap_of_a_groove_is_the_references_and_its_derivatives_are_differences()
         np.testing.assert_allclose(normal[:, axis], (more[0] - less[0]) / (2 * step), atol=1e-7)
         np.testing.assert_allclose(bend[:, :, axis], (more[1] - less[1]) / (2 * step), atol=2e-6 * np.abs(bend).max())
     gap, normal, bend = evaluate(
-        np.array([[5e-3, 0.0, 1.5e-3]]), _plane(np.array([0.0, 0.0, 1e-3]), np.array([0.0, 0.0, 2.0]))
+        np.array([[5e-3, 0.0, 1.5e-3]]), plane(np.array([0.0, 0.0, 1e-3]), np.array([0.0, 0.0, 2.0]))
     )
     assert gap[0] == pytest.approx(0.5e-3, rel=1e-12)  # rounding
     assert normal.tolist() == [[0.0, 0.0, 1.0]] and not bend.any()
@@ -61,7 +62,7 @@ def test_forces_of_a_soft_law_have_exact_tangents():
         gap, normal, bend = evaluate(place)
         force, stiffness, damping = np.empty((20, 3)), np.empty((20, 3, 3)), np.empty((20, 3, 3))
         pressure, slope, none = soft * (1e-3 - gap), np.full(20, -soft), np.zeros(20)
-        _forces_and_tangents(np.ones(20), pressure, slope, none, normal, bend, force, stiffness, damping)
+        forces_and_tangents(np.ones(20), pressure, slope, none, normal, bend, force, stiffness, damping)
         return force, stiffness, np.abs(pressure[:, None, None] * bend).max()
 
     _, stiffness, curved = forces(where)

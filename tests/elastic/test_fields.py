@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from raceway_view.stress import _Fields, contacts_left_out, field_files
+from raceway_view.stress import StressFields, contacts_left_out, field_files
 
 from checks.validation.command_line import EXAMPLES
 from raceway import scene_from_dict
@@ -18,7 +18,7 @@ def result():
 
 
 def test_a_balls_mean_stress_is_that_of_the_forces_on_it(result):
-    fields, assembly = _Fields.of(result), result.model.bearing.bearing.system.assembly
+    fields, assembly = StressFields.of(result), result.model.bearing.bearing.system.assembly
     most = int(np.argmax(result.equilibrium.contact_force[: result.model.system.ball_count]))
     operator, begin, end = assembly.bodies[2 + most].operator, *assembly.starts[2 + most : 4 + most]
     force = operator.internal_force(fields.displacement[begin:end]).reshape(-1, 3)
@@ -34,7 +34,7 @@ def test_a_balls_mean_stress_is_that_of_the_forces_on_it(result):
 def test_von_mises_and_shear_of_uniaxial_and_pure_shear_stress():
     stress = np.array([[3.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 2.0, 0.0, 0.0]])
     none = np.zeros((0, 3))
-    fields = _Fields(none, none, none, none, stress)
+    fields = StressFields(none, none, none, none, stress)
     assert fields.von_mises == pytest.approx([3.0, 2.0 * np.sqrt(3.0)], rel=1e-14)
     assert fields.largest_shear == pytest.approx([1.5, 2.0], rel=1e-14)
 
@@ -42,7 +42,7 @@ def test_von_mises_and_shear_of_uniaxial_and_pure_shear_stress():
 def test_stresses_beside_contact_resultants_are_named_structure_only_with_hertz_pressure(result):
     """A pressure of gigapascals has a von Mises stress of half of it; the footprints of this mesh leave a few per cent."""
     largest = result.to_dict()["equilibrium"]["largest_pressure_pa"]
-    assert _Fields.of(result).von_mises.max() < 0.2 * largest
+    assert StressFields.of(result).von_mises.max() < 0.2 * largest
     assert "structure only" in contacts_left_out(result) and f"{1e-6 * largest:.4g} MPa" in contacts_left_out(result)
 
 
@@ -50,7 +50,7 @@ def test_stresses_beside_contact_resultants_are_named_structure_only_with_hertz_
 def test_the_files_hold_the_fields(result, tmp_path):
     import pyvista
 
-    fields = _Fields.of(result)
+    fields = StressFields.of(result)
     files = field_files(result)
     assert list(files) == ["fields.vtu", "stress.png"] and files["stress.png"].startswith(b"\x89PNG")
     grid = pyvista.read(write_whole(files["fields.vtu"], tmp_path / "fields.vtu"))

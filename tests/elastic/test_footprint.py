@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import scene_from_dict
-from raceway.core.fem.elastic.resultant import Footprint, _ellipse, footprint
+from raceway.core.fem.elastic.resultant import Footprint, footprint, hertz_weights
 from raceway.core.fem.elastic.surface import Facets
 from raceway.extend import azimuth, mesh_bodies, resolve, ring_shape
 from raceway.testing import b7206c
@@ -76,7 +76,7 @@ def place(bearing, request):
 
 def test_the_pressure_on_the_ellipse_falls_as_a_parabola():
     a, b = WIDE
-    points, weights = _ellipse(WIDE)
+    points, weights = hertz_weights(WIDE)
     share = (points / WIDE) ** 2
     # Gauss points integrate polynomials exactly, angles of equal distance the even powers: rounding is left.
     assert weights.sum() == pytest.approx(1.0, rel=1e-14)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.impact import plane
 from raceway import ConvergenceError
-from raceway.core.fem.elastic.contact import PlaceLaw, _plane, groove
+from raceway.core.fem.elastic.contact import PlaceLaw, groove
 from raceway.core.fem.elastic.resultant import Footprint, ResultantContact, Touch
 from raceway.extend import contact_modulus, ellipse, three_halves
 
@@ -179,7 +180,7 @@ def test_the_bound_of_the_explicit_step_is_below_the_exact_one():
 
 
 def test_a_pair_is_known_by_its_bodies_and_its_overlap():
-    made = contact(surface=_plane(np.array([0.0499e-3, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0])))
+    made = contact(surface=plane(np.array([0.0499e-3, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0])))
     made.evaluate(0.0, np.zeros(36))
     assert made.nodes_of(1) == (0, 6)
     name, depth, size = made.overlap(1)

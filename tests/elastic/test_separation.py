@@ -7,7 +7,7 @@ import pytest
 
 from checks.validation.reference import elastic
 from raceway.core.contact.hertz import ball_compliance, normal_displacement
-from raceway.core.fem.elastic.resultant import LoadedBody, _locate, footprint
+from raceway.core.fem.elastic.resultant import LoadedBody, footprint, interpolation_at
 from raceway.core.fem.elastic.surface import Facets
 from raceway.core.fem.mesh.ball_mesh import ball_mesh
 from raceway.extend import HexOperator
@@ -176,7 +176,7 @@ def places(count: int) -> np.ndarray:
 def test_linear_functions_are_interpolated_exactly(distorted):
     points, cells = distorted
     where = places(200)
-    nodes, weights = _locate(points, cells, where)
+    nodes, weights = interpolation_at(points, cells, where)
     assert nodes.shape == weights.shape == (200, 8)
     # Newton's method ends at rounding of the coordinates, and the shape functions sum to one.
     np.testing.assert_allclose(weights.sum(axis=1), 1.0, atol=1e-13)
@@ -184,12 +184,12 @@ def test_linear_functions_are_interpolated_exactly(distorted):
     # Inside of the cell that holds the point no weight is negative; the nodes are those of one cell.
     assert weights.min() > -1e-9
     assert set(map(tuple, nodes.tolist())) <= set(map(tuple, cells.tolist()))
-    nodes, weights = _locate(points, cells, points)
+    nodes, weights = interpolation_at(points, cells, points)
     own = np.where(nodes == np.arange(len(points))[:, None], weights, 0.0).sum(axis=1)
     np.testing.assert_allclose(own, 1.0, atol=1e-12)  # Newton's method ends at rounding
     # Fewer cells than are tried are enough: trilinear shape functions, to rounding.
     one, cells = elastic.block((1.0, 1.0, 1.0), (1, 1, 1))
-    nodes, weights = _locate(one, cells, np.array([[0.25, 0.5, 0.75]]))
+    nodes, weights = interpolation_at(one, cells, np.array([[0.25, 0.5, 0.75]]))
     assert weights[0][(one[nodes[0]] == 1.0).all(axis=1)] == pytest.approx([0.25 * 0.5 * 0.75], rel=1e-12)
 
 
@@ -197,7 +197,7 @@ def test_a_point_slightly_outside_is_extrapolated_from_the_nearest_cell(distorte
     points, cells = distorted
     where = places(40)
     where[:, 2] = SIZE[2] * 1.02  # a twelfth of a cell above the top
-    nodes, weights = _locate(points, cells, where)
+    nodes, weights = interpolation_at(points, cells, where)
     np.testing.assert_allclose(np.einsum("nk,nka->na", weights, points[nodes]), where, atol=1e-13 * SIZE.max())
     assert weights.min() < -0.05
     assert (points[nodes][:, :, 2].max(axis=1) == SIZE[2]).all()  # a cell of the top layer

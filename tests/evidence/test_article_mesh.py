@@ -21,7 +21,7 @@ from raceway.core.fem.elastic.assembly import Assembly
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.ring import ElasticRing
 from raceway.extend import mesh_bodies, resolve, solve_equilibrium
-from raceway.plugins.bodies.elastic import _elastic_cost
+from raceway.plugins.bodies.elastic import elastic_cost
 from raceway.storage.kernel_cache import cache_root
 
 # One process for all: the cases share superelements on the disk.
@@ -139,7 +139,7 @@ def test_cost_at_rest(claim):
 @pytest.mark.parametrize("name", SIZES)
 def test_plan(claim, name):
     """Before this process grows: a child's peak memory begins with its parent's."""
-    cost = _elastic_cost(resolve(load_scene(SCENE, [f"{key}={value}" for key, value in SIZES[name].items()])))
+    cost = elastic_cost(resolve(load_scene(SCENE, [f"{key}={value}" for key, value in SIZES[name].items()])))
     run = measured(dict(SIZES[name])) if SIZES[name] else static("1000 N")
     size = f"plan, {run['model']['mesh']['cells']} elements"
     twice = {"at_least": 0.5, "at_most": 2.0, "source": "a plan decides whether to start"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from raceway_article.design import Setting, article_tables, design
-from raceway_article.study import _curve
+from raceway_article.study import rows_of_curve
 
 from raceway.extend import default_registry
 
@@ -23,7 +23,7 @@ def test_every_point_has_an_answer(claim):
     found = []
     for amplitude, tilt, inertia, load in CURVES:
         setting = Setting("unidirectional", amplitude, tilt, inertia, "rigid")
-        found += _curve([made.point(setting, load, speed, registry) for speed in made.speeds], registry)
+        found += rows_of_curve([made.point(setting, load, speed, registry) for speed in made.speeds], registry)
     assert len(found) == 36
     lost = sum(point["status"] in ("failed", "refused") or "not integrated" in point["reason"] for point in found)
     claim("points without an answer, of 36", lost, at_most=0, basis="closed form", source="a motion exists at every speed")

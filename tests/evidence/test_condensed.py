@@ -14,7 +14,7 @@ import pytest
 
 from checks.validation.condensed import cost, largest, quantities, tables
 from checks.validation.scenes import rotating
-from raceway.core.fem.revolution.body import Revolution, _seat_areas
+from raceway.core.fem.revolution.body import Revolution, seat_areas
 from raceway.core.fem.revolution.sections import ball_profile, coarse_profile, dofs, graded_profile
 from raceway.extend import Schedule, from_orbit, integrate, steady_orbit
 from raceway.testing import model_of, settled
@@ -184,7 +184,7 @@ def test_foundations_in_series(claim):
         softness = 1.0 / settled(tables(**given))[1].stiffness[0, 0]
         model, found = settled(tables(**given, supports={f"{seat}_seat": bed for seat in seats}))
         for seat in seats:
-            softness += 1.0 / (bed * 360 * _seat_areas(model.bearing.ring_section(model, seat == "inner"), 360).sum())
+            softness += 1.0 / (bed * 360 * seat_areas(model.bearing.ring_section(model, seat == "inner"), 360).sum())
         errors.append(abs(found.stiffness[0, 0] * softness - 1.0))
     quantity = "rings of 2e17 Pa on 10 and 50 N/mm3: axial stiffness: largest relative error"
     source = "springs in series; half the error that is stated for elastic rings"

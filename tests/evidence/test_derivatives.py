@@ -8,9 +8,9 @@ import pytest
 from raceway import ConvergenceError, SceneError, band, build_model, load_scene, scene_from_dict, sensitivities
 from raceway.core.jit import working_processor_time
 from raceway.extend import continuous_keys, run, solve_equilibrium, with_number
-from raceway.pipeline.gradient import Gradients, NoDerivative, _SteadyOrbit
+from raceway.pipeline.gradient import Gradients, NoDerivative, SteadyOrbit
 from raceway.points.band import design, indices
-from raceway.scene.catalogue import _single_presets
+from raceway.scene.catalogue import single_presets
 
 pytestmark = pytest.mark.night
 
@@ -23,7 +23,7 @@ LIMIT = {"at_most": 1e-6, "basis": "own other method"}
 
 def drawn(rng, bodies):
     axial = float(10.0 ** rng.uniform(1.7, 3.3))
-    names = sorted(_single_presets())
+    names = sorted(single_presets())
     tables = {
         "bearing": {"preset": "B7206C" if bodies == "condensed" else str(rng.choice(names))},
         "bodies": {"kind": bodies},
@@ -161,7 +161,7 @@ def error_of_orbit(tables, step):
             continue
         lines = {}
         for k, one in moved(model, key, step * abs(key.value)).items():
-            there = _SteadyOrbit.of(one, solve_equilibrium(one))
+            there = SteadyOrbit.of(one, solve_equilibrium(one))
             lines[k] = there.line[[0, 4]]
         other = complex(*derivative(lines, step * abs(key.value)))
         off.append(abs(gradient.motion.dynamic_stiffness - other) * abs(key.value))

@@ -16,17 +16,19 @@ from math import log2
 import attrs
 import numpy as np
 import pytest
-from raceway_meshing.formats import Vtu
 
 from checks.validation.below_groove import below
 from checks.validation.command_line import EXAMPLES
 from checks.validation.condensed import largest, quantities, tables
 from checks.validation.groove import HERTZ, pressed, solve
+from checks.validation.scenes import built_in
 from raceway import load_scene, scene_from_dict
 from raceway.extend import mesh_bodies, resolve
-from raceway.plugins.bodies.condensed import Condensed
 from raceway.scene.growth import ring_inertia
 from raceway.testing import run, settled
+
+Vtu = built_in("format", "vtu")
+Condensed = built_in("bodies", "condensed")
 
 pytestmark = pytest.mark.night
 

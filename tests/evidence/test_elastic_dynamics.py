@@ -13,15 +13,18 @@ import pytest
 from checks.validation.block import Block
 from checks.validation.command_line import EXAMPLES
 from checks.validation.impact import MODULUS, expected, model, moving, structural_compliances
+from checks.validation.scenes import built_in
 from raceway import build_model, make_plan, scene_from_dict
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.friction import CoulombFriction
-from raceway.core.fem.elastic.iterative_solver import _sticking
+from raceway.core.fem.elastic.iterative_solver import sticking_stiffness
 from raceway.core.fem.elastic.ring import from_orbit
 from raceway.core.record import largest_share
 from raceway.extend import Schedule, drift, integrate, steady_orbit
-from raceway.integrators.methods import CentralDifference, Newmark
 from raceway.testing import run, solve_equilibrium
+
+CentralDifference = built_in("integrator", "central_difference")
+Newmark = built_in("integrator", "newmark")
 
 pytestmark = pytest.mark.night
 
@@ -185,7 +188,7 @@ def test_iterations_with_friction(claim, bearing):
     guess = ring.bodies.guess(place, places if places[:, 1].any() else ring._on_the_line(place, places))
     _, without = ring.equilibrium_under(guess, ring.load)
     contact = system.contact
-    contact.friction = CoulombFriction(0.03, _sticking(ring.bodies.setup, contact.area))
+    contact.friction = CoulombFriction(0.03, sticking_stiffness(ring.bodies.setup, contact.area))
     system.locate(guess)
     contact.friction.begin((contact.move @ system.assembly.nodal(guess)).reshape(-1, 3))
     found = system.solve_equilibrium(guess, 1e-7)

@@ -22,11 +22,13 @@ from checks.validation.film import (
     springs,
 )  # fmt: skip
 from checks.validation.ross_rotor import in_ross
+from checks.validation.scenes import built_in
 from raceway import build_model, scene_from_dict
-from raceway.contact_laws.film import Film
 from raceway.core.contact.film import REGIMES, film, thermal_reduction
 from raceway.extend import TIME_CONSTANTS, run, simulate, solve_equilibrium
 from raceway.scene.lubricant import GRADES, Walther
+
+Film = built_in("contact_law", "film")
 
 pytestmark = pytest.mark.night
 

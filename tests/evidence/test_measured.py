@@ -13,13 +13,13 @@ from pathlib import Path
 import attrs
 import numpy as np
 import pytest
-from raceway_measure.fit.identify import _coefficients, identify_recording
+from raceway_measure.fit.identify import coefficients_of_state, identify_recording
 from raceway_measure.fit.signals import write_recording
 from raceway_measure.fit.synchronous import slow_roll
-from raceway_measure.rig.signals import _silent, record, response, slow_roll_record, white_noise
+from raceway_measure.rig.signals import quiet_signals, record, response, slow_roll_record, white_noise
 from raceway_measure.rig.study import rig as rig_study
 from raceway_rotor.rig_table import Rig, rig_of
-from raceway_rotor.shaft import _beam, balance, bearing, rotor, shaft
+from raceway_rotor.shaft import balance, bearing, make_beam, rotor, shaft
 
 from checks.validation.shaker import hammer_record
 from checks.validation.shaker import record as record_of_shaker
@@ -85,7 +85,7 @@ def undisturbed(rig: Rig, own, state, signals, true=None):
 def test_beam(claim):
     young, diameter, span, a, mass = 212e9, 0.03, 0.175, 0.025, 4.0
     stiffness = 48.0 * young * pi / 64.0 * diameter**4
-    line = _beam(np.array([0.0, a, 0.5 * span, span]), diameter, young, 0.29, 1e-6, shear=False)
+    line = make_beam(np.array([0.0, a, 0.5 * span, span]), diameter, young, 0.29, 1e-6, shear=False)
     line = line.with_spring(0.0, 1e16).with_spring(span, 1e16)
     load = np.zeros(len(line.stiffness))
     load[2 * line.node(0.5 * span)] = 1.0
@@ -119,7 +119,7 @@ def test_inverted_beam(claim):
     for side, kept in ratios.items():
         rig = RIG if RIG.sensor_side == side else attrs.evolve(RIG, sensor_side=side)
         for state, own in points(rig):
-            clean.append(off(undisturbed(rig, own, state, _silent(rig.signals)), state))
+            clean.append(off(undisturbed(rig, own, state, quiet_signals(rig.signals)), state))
             for seed in range(SEEDS):
                 found = disturbed(rig, own, state, seed)
                 noisy.append(off(found, state))
@@ -146,7 +146,7 @@ def test_files(claim, tmp_path):
     found = studied()[0]
     found.write_signals(tmp_path)
     stiffness, wide, uneven, random = [], [], [], np.random.default_rng(11)
-    drifting = attrs.evolve(_silent(RIG.signals), speed_drift=0.01, sampling_hz=8e4)
+    drifting = attrs.evolve(quiet_signals(RIG.signals), speed_drift=0.01, sampling_hz=8e4)
     for point, (state, own) in zip(found.points, points(), strict=True):
         loaded = with_number(SCENE, "load.axial", point.axial)
         signals, slow = (tmp_path / f"{kind}-{point.name}.csv" for kind in ("signals", "slow-roll"))
@@ -181,7 +181,7 @@ def test_files(claim, tmp_path):
 def test_speed_and_length(claim, words, changes, limit):
     errors = []
     for change in changes:
-        signals = attrs.evolve(_silent(RIG.signals), **change)
+        signals = attrs.evolve(quiet_signals(RIG.signals), **change)
         errors += [off(undisturbed(RIG, own, state, signals), state) for state, own in points()]
     quantity = f"clean signals, {words}, six points: largest relative error of K"
     claim(quantity, max(errors), at_most=limit, basis="own other method", source="the bearing that made the signals")
@@ -189,7 +189,7 @@ def test_speed_and_length(claim, words, changes, limit):
 
 def test_speed_column_instead_of_a_mark(claim):
     """The phase is taken as zero, and C is not identified."""
-    errors, signals = [], _silent(RIG.signals)
+    errors, signals = [], quiet_signals(RIG.signals)
     for state, own in points():
         without = attrs.evolve(record(RIG, response(RIG, own, state, signals), signals, 1), key=None)
         errors.append(off(identify_recording(attrs.evolve(without, speed=1.001 * without.speed), RIG, own), state))
@@ -203,7 +203,7 @@ def test_damping(claim):
     for axial in RIG.axial_loads:
         own = bearing(damped, axial, default_registry())
         state = balance(rotor(RIG, 13000.0 * pi / 30.0), own)
-        found = undisturbed(RIG, own, state, _silent(RIG.signals))
+        found = undisturbed(RIG, own, state, quiet_signals(RIG.signals))
         clean.append(abs(found.state.damping / state.damping - 1.0))
         noisy = [disturbed(RIG, own, state, seed) for seed in range(SEEDS)]
         widths.append(rms([(one.state.damping - state.damping) / one.uncertainty[1] for one in noisy]))
@@ -250,7 +250,7 @@ def test_noise_on_the_probe(claim):
             except (RacewayError, ValueError) as why:
                 failed.append(str(why))
                 continue
-            ratios.append((_coefficients(found.state) - _coefficients(state))[:2] / found.uncertainty[:2])
+            ratios.append((coefficients_of_state(found.state) - coefficients_of_state(state))[:2] / found.uncertainty[:2])
         shares.append(np.mean(np.abs(ratios) <= 1.0, axis=0))
         widths.append(np.sqrt(np.mean(np.square(ratios), axis=0)))
     where = f"0 to 5 % of noise on the probe, {RECORDS} records of each"

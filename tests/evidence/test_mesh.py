@@ -15,9 +15,11 @@ import pytest
 from checks.validation.command_line import EXAMPLES
 from checks.validation.natural_modes import natural_modes
 from checks.validation.reference import annulus, elastic
+from checks.validation.scenes import built_in
 from raceway import load_scene
 from raceway.extend import HexOperator, solve_static
-from raceway.plugins.meshers.structured import Structured
+
+Structured = built_in("mesher", "structured")
 
 pytestmark = pytest.mark.night
 

@@ -17,7 +17,7 @@ from checks.validation.reference.ring import Ring
 from checks.validation.reference.shooting import periodic as shooting
 from checks.validation.reference.shooting import rotating as turning
 from checks.validation.reference.shooting import swinging
-from checks.validation.scenes import rig_force, rotating
+from checks.validation.scenes import built_in, rig_force, rotating
 from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, special_points
 from raceway.core.periodic.branches import force_continuation
 from raceway.core.periodic.collocation import one_turn
@@ -25,10 +25,12 @@ from raceway.core.periodic.refinement import displacements, states
 from raceway.core.periodic.search import directly, highest_order, mesh_of, problem_of
 from raceway.core.signals import stiffness
 from raceway.extend import Motion, Schedule, integrate
-from raceway.integrators.methods import Newmark, Periodic
 from raceway.scene.growth import ring_inertia
 from raceway.testing import model_of, run, simulate, solve_equilibrium
 from raceway.testing.systems import SPEED, linear_system, motion
+
+Newmark = built_in("integrator", "newmark")
+Periodic = built_in("integrator", "periodic")
 
 pytestmark = pytest.mark.night
 

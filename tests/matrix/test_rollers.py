@@ -11,10 +11,12 @@ from functools import cache
 
 import pytest
 
+from checks.validation.scenes import built_in
 from raceway import SceneError, scene_from_dict
-from raceway.plugins.bodies.rollers import CylindricalRollers
 from raceway.testing import default_registry, run
 from tests.matrix.combinations import crossed, options
+
+CylindricalRollers = built_in("bodies", "cylindrical_rollers")
 
 
 @cache

@@ -7,7 +7,7 @@ import pytest
 from checks.validation.cubes import block
 from checks.validation.solids import facet_normals
 from raceway import MeshError
-from raceway.core.fem.mesh.quality import _quality
+from raceway.core.fem.mesh.quality import cell_quality
 from raceway.extend import HexMesh, merged, refuse_bad_cells, summary
 
 #: Sums of a few hundred terms in double precision.
@@ -65,14 +65,14 @@ def test_volume_of_a_distorted_cell_is_that_of_its_faces():
 
 
 def test_quality_of_a_cuboid_and_of_a_shear():
-    found = _quality(block(2, 2, 2, (1.0, 2.0, 4.0)))
+    found = cell_quality(block(2, 2, 2, (1.0, 2.0, 4.0)))
     assert found.scaled_jacobian == pytest.approx(1.0, abs=ROUNDING)
     assert found.aspect == pytest.approx(4.0, rel=ROUNDING)
     assert found.skew == pytest.approx(0.0, abs=ROUNDING)
     cube = block(1, 1, 1, (1.0, 1.0, 1.0))
     slanted = attrs.evolve(cube, points=cube.points @ np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 1.0]]))
     # The third edge leans by 45 degrees: determinant 1, lengths 1, 1 and sqrt 2.
-    found = _quality(slanted)
+    found = cell_quality(slanted)
     assert found.scaled_jacobian == pytest.approx(np.sqrt(0.5), rel=ROUNDING)
     assert found.skew == pytest.approx(np.sqrt(0.5), rel=ROUNDING)
 

@@ -7,15 +7,17 @@ from typing import ClassVar
 
 import attrs
 import pytest
-from raceway_meshing.abaqus import Abaqus
-from raceway_meshing.gmsh import Gmsh
 
 from checks.validation import solids
 from checks.validation.command_line import EXAMPLES, invoke
+from checks.validation.scenes import built_in
 from raceway import MeshError, PluginError, SceneError, load_scene, make_plan, scene_from_dict
 from raceway.extend import mesh_bodies, resolve
 from raceway.plugins.bodies.mesh import predicted_mesh
-from raceway.plugins.meshers.structured import Structured
+
+Abaqus = built_in("format", "abaqus")
+Gmsh = built_in("mesher", "gmsh")
+Structured = built_in("mesher", "structured")
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 

@@ -8,16 +8,18 @@ import pytest
 
 from checks.validation.command_line import EXAMPLES
 from checks.validation.quarter import quarter_groove
+from checks.validation.scenes import built_in
 from checks.validation.solids import facet_normals
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.core.fem.mesh import ball_mesh as sphere
 from raceway.core.fem.mesh.ball_mesh import ball_cells, ball_mesh
 from raceway.core.fem.mesh.hex_mesh import EDGES, graded, growing
-from raceway.core.fem.mesh.quality import _quality
+from raceway.core.fem.mesh.quality import cell_quality
 from raceway.core.fem.mesh.ring_mesh import ring_mesh
 from raceway.extend import mesh_bodies, refuse_bad_cells, resolve, ring_shape, summary
 from raceway.plugins.bodies.mesh import mesher_of
-from raceway.plugins.meshers.structured import Structured
+
+Structured = built_in("mesher", "structured")
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 COARSE = Structured(element_size=1.5e-3, nodes_per_semi_axis=2, growth=1.6)
@@ -183,6 +185,6 @@ def test_what_cannot_be_meshed_is_refused_with_numbers(mesher, change, words):
 def test_other_bearings_of_the_catalogue():
     known, unknown = (scene_from_dict({"bearing": {"preset": name}}).bearing for name in ("7206A", "DGB7-MASTA"))
     for mesh in COARSE.mesh(known).values():
-        assert _quality(mesh).scaled_jacobian.min() > 0.2
+        assert cell_quality(mesh).scaled_jacobian.min() > 0.2
     with pytest.raises(MeshError, match="is missing"):
         COARSE.mesh(unknown)

@@ -9,7 +9,7 @@ import pytest
 from checks.validation.single import Single, single
 from raceway import LAW, ConvergenceError, MeshError, jit
 from raceway.core.fem.patches.patch import Spacing
-from raceway.core.fem.patches.pressure import BeyondPatch, Contact, PointLaw, _Factor, pressure_field
+from raceway.core.fem.patches.pressure import BeyondPatch, ComplianceFactor, Contact, PointLaw, pressure_field
 from raceway.extend import three_halves
 
 
@@ -58,7 +58,7 @@ def test_nothing_penetrates_and_nothing_pulls(coarse):
     contact = Contact(coarse.patch, None)
     coarse.press(contact, approach)
     gap = contact._gap.reshape(-1)
-    rest = gap + _Factor(coarse.patch).displacement(np.arange(len(gap)), pressed.nodes, pressed.load)
+    rest = gap + ComplianceFactor(coarse.patch).displacement(np.arange(len(gap)), pressed.nodes, pressed.load)
     assert pressed.load.min() > 0.0
     # Rounding of gaps that are differences of lengths a thousand times larger.
     assert np.abs(rest[pressed.nodes]).max() < 1e-9 * approach

@@ -14,10 +14,10 @@ from raceway import make_plan, scene_from_dict
 from raceway.core.fem.patches.balls import Gyroscopic
 from raceway.core.fem.patches.friction import Friction, Traction
 from raceway.core.fem.patches.pressure import Contact, SlipState
-from raceway.core.fem.patches.system import _History
+from raceway.core.fem.patches.system import SlipHistory
 from raceway.core.ring.ring import Increment
 from raceway.extend import resolve
-from raceway.plugins.bodies.condensed import _patch_cost
+from raceway.plugins.bodies.condensed import patch_cost
 from raceway.scene.unused import unused
 from tests.patches.test_bearing import RESULTANT, at_rest, off_tangent, tables
 
@@ -136,7 +136,7 @@ def test_a_bearing_with_friction_has_exact_tangents_and_a_history():
     assert again.force == pytest.approx(rest.force, abs=1e-2)
     back = system.evaluate(found.displacement, ball=now.ball, step=Increment(memory=now.memory))
     assert np.abs(back.force - rest.force)[:3].max() > 1.0
-    assert _History.of(now.memory, 12).lost.sum() > 0.0
+    assert SlipHistory.of(now.memory, 12).lost.sum() > 0.0
 
 
 def test_points_that_get_more_neighbours_keep_their_memory():
@@ -152,7 +152,7 @@ def test_points_that_get_more_neighbours_keep_their_memory():
     wide = system.evaluate(far, ball=again.ball, step=Increment(memory=again.memory))
     # Rows lie elsewhere on the wider patches: some percent with 2 points along a semi-axis.
     assert there.force[0] == pytest.approx(wide.force[0], rel=0.02)
-    assert _History.of(there.memory, 12).lost.sum() == pytest.approx(_History.of(wide.memory, 12).lost.sum(), rel=0.1)
+    assert SlipHistory.of(there.memory, 12).lost.sum() == pytest.approx(SlipHistory.of(wide.memory, 12).lost.sum(), rel=0.1)
 
 
 def test_what_a_plan_says_of_friction_and_inertia():
@@ -161,7 +161,7 @@ def test_what_a_plan_says_of_friction_and_inertia():
     assert {"friction", "inertia of the balls in their meridian planes"} <= kept
     slow = scene_from_dict(tables(**ROTATING, integrator={"kind": "quasi_static"}))
     assert "inertia of the balls in their meridian planes" in {part.part for part in make_plan(slow).left_out}
-    assert _patch_cost(resolve(found)).step_s > _patch_cost(resolve(slow)).step_s
+    assert patch_cost(resolve(found)).step_s > patch_cost(resolve(slow)).step_s
     assert any("stick_stiffness" in one and "compliance of rings and balls" in one for one in unused(found))
 
 

@@ -9,7 +9,7 @@ from scipy.sparse.linalg import eigsh
 
 from checks.validation.reference.swept import Swept
 from raceway import MeshError
-from raceway.core.fem.revolution.body import Revolution, _seat_areas, solved_harmonics
+from raceway.core.fem.revolution.body import Revolution, seat_areas, solved_harmonics
 from raceway.core.fem.revolution.sections import dofs
 from tests.revolution.sections import STEEL, ball, ring
 
@@ -44,7 +44,7 @@ def test_a_clamped_ring_equals_the_full_solve(inner, formulation):
 
 def test_a_ring_on_a_bed_equals_the_full_solve():
     profile = ring(False)
-    areas = _seat_areas(profile, DIVISIONS)
+    areas = seat_areas(profile, DIVISIONS)
     assert DIVISIONS * areas.sum() == pytest.approx(2.0 * np.pi * 31e-3 * 16e-3, rel=1e-12)  # the exact cylinder
     assert apart(profile, BED, lambda swept, force: swept.bedded(force, areas, BED)) < 1e-10
 

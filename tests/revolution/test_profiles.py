@@ -6,15 +6,17 @@ import attrs
 import numpy as np
 import pytest
 
+from checks.validation.scenes import built_in
 from raceway import MeshError, SceneError, scene_from_dict
-from raceway.core.fem.patches.patch import _BallMesh, _free_ball
+from raceway.core.fem.patches.patch import BallElements, free_ball
 from raceway.core.fem.revolution.body import Revolution
 from raceway.core.fem.revolution.sections import Profile, coarse_profile, dofs, graded_profile
 from raceway.extend import refuse_bad_cells, ring_shape
-from raceway.plugins.meshers.structured import Structured
 from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c
 from tests.revolution.sections import BEARING, RADIUS, STEEL, ball
+
+Structured = built_in("mesher", "structured")
 
 WINDOW = (np.deg2rad(5.0), np.deg2rad(28.0))
 #: Chamfers at every corner of the inner ring; an outer ring with one shoulder only.
@@ -72,14 +74,14 @@ def test_a_folded_section_is_refused():
 def test_one_ball_serves_all_sizes_and_materials(tmp_path, monkeypatch):
     monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path))
     offsets = np.array([0, 1, 12])
-    small = _free_ball(4e-3, 0.29, _BallMesh(24, 0.2e-3, 0.4e-3, 0.3e-3, 1e-3), offsets)
-    large = _free_ball(8e-3, 0.29, _BallMesh(24, 0.4e-3, 0.8e-3, 0.6e-3, 2e-3), offsets)
+    small = free_ball(4e-3, 0.29, BallElements(24, 0.2e-3, 0.4e-3, 0.3e-3, 1e-3), offsets)
+    large = free_ball(8e-3, 0.29, BallElements(24, 0.4e-3, 0.8e-3, 0.6e-3, 2e-3), offsets)
     assert np.array_equal(small.dimensionless, large.dimensionless)
     assert len(list(tmp_path.rglob("*.arrays"))) == 1
     assert large.compliance(8e-3, 3e11) * 8e-3 * 3e11 == pytest.approx(small.dimensionless, rel=1e-14)
     profile = ball(0.3e-3)
     direct = Revolution(profile, 24, *STEEL, seat="free").compliance(dofs(profile.race), dofs(profile.race), [0], "all")
-    one = _free_ball(RADIUS, 0.29, _BallMesh(24, 0.3e-3, 0.6e-3, 0.6e-3, 2e-3), np.array([0]))
+    one = free_ball(RADIUS, 0.29, BallElements(24, 0.3e-3, 0.6e-3, 0.6e-3, 2e-3), np.array([0]))
     # Sizes over the radius are kept to nine digits, so that equal balls find the same entry.
     assert one.compliance(RADIUS, STEEL[0])[0] == pytest.approx(direct[0], rel=1e-6, abs=1e-8 * np.abs(direct).max())
     assert one.latitudes == pytest.approx(profile.angles, rel=1e-8)

@@ -11,14 +11,13 @@ import pytest
 from checks.validation.scenes import rotating
 from raceway import StabilityError
 from raceway.core.ring.orbit import static_orbit
-from raceway.core.ring.ring import _SteppedBearing
+from raceway.core.ring.ring import SteppedBearing
 from raceway.core.time.schemes import Drivers
 from raceway.extend import Schedule, at_rest, integrate
-from raceway.integrators import raceway_integrators
-from raceway.testing import IntegratorSuite, settled
+from raceway.testing import IntegratorSuite, default_registry, settled
 
 #: Those that march in time.
-METHODS = [m for m in raceway_integrators() if not m.steady]
+METHODS = [entry.plugin for entry in default_registry().of_kind("integrator") if not entry.plugin.steady]
 
 
 @attrs.frozen
@@ -58,7 +57,7 @@ CHANGES = [
 def test_records_equal_the_compiled_loops(kind, changes):
     method, system, start, schedule = case(kind, **changes)
     wanted = integrate(method, system, start, schedule)
-    found = integrate(method, _SteppedBearing(system), start, schedule)
+    found = integrate(method, SteppedBearing(system), start, schedule)
     assert (found.time == wanted.time).all()
     for name in ("displacement", "velocity", "force", "gap", "contact_force", "ball"):
         a, b = getattr(wanted, name), getattr(found, name)
@@ -82,7 +81,7 @@ def test_loops_conform(method):
 def test_two_halves_are_the_whole(kind):  # tolerance: a share of the largest force so far, unknown to a restart
     method, system, start, schedule = case(kind, contact={"damping": 300.0, "friction": 0.05})
     half = attrs.evolve(schedule, steps_per_turn=20)
-    for loops in (system, _SteppedBearing(system)):
+    for loops in (system, SteppedBearing(system)):
         whole, first = (integrate(method, loops, start, one) for one in (schedule, half))
         second = integrate(method, loops, first.final, attrs.evolve(half, first=20))
         for name in ("time", "displacement", "force", "ball", "contact_force", "velocity")[
@@ -96,4 +95,4 @@ def test_step_above_the_stable_limit_is_refused_with_the_limit():
     method, system, start, schedule = case("central_difference")
     limit = system.critical_time_step(system.evaluate(start.q, ball=start.ball).stiffness)
     with pytest.raises(StabilityError, match=f"{limit:.4g} s"):
-        integrate(method, _SteppedBearing(system), start, attrs.evolve(schedule, dt=1.01 * limit))
+        integrate(method, SteppedBearing(system), start, attrs.evolve(schedule, dt=1.01 * limit))

@@ -8,13 +8,15 @@ from functools import cache
 import numpy as np
 import pytest
 
+from checks.validation.scenes import built_in
 from raceway import StabilityError
-from raceway.core.fem.elastic.assembly import _fitting_threads
+from raceway.core.fem.elastic.assembly import threads_for
 from raceway.core.threads import ThreadPool
 from raceway.extend import Schedule, integrate, standstill
-from raceway.integrators.methods import CentralDifference
 from raceway.testing import settled
 from tests.test_elastic_scene import EXCITED, TINY
+
+CentralDifference = built_in("integrator", "central_difference")
 
 #: Friction on rigid seats; dashpots, a shaft and elastic seats, whose ring rides on its bed, with the other element.
 CASES = {
@@ -136,6 +138,6 @@ def test_threads_live_over_a_run_and_end_with_it_also_where_it_fails():
 
 def test_small_bodies_are_stepped_by_one_thread(monkeypatch):
     monkeypatch.setattr("raceway.core.fem.elastic.assembly.usable_cores", lambda: 16)
-    assert _fitting_threads(500) == 1
-    assert 1 < _fitting_threads(60_000) < 16
-    assert _fitting_threads(1_000_000) == 16
+    assert threads_for(500) == 1
+    assert 1 < threads_for(60_000) < 16
+    assert threads_for(1_000_000) == 16

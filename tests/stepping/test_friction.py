@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from checks.validation.block import POISSON, YOUNG, Block
+from checks.validation.scenes import built_in
 from raceway import ConvergenceError
 from raceway.core.fem.elastic.friction import CoulombFriction
 from raceway.extend import Schedule, drift, integrate
-from raceway.integrators.methods import CentralDifference, Newmark
+
+CentralDifference = built_in("integrator", "central_difference")
+Newmark = built_in("integrator", "newmark")
 
 WEIGHT, MU = 2.0, 0.3
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from checks.validation.reference import elastic
-from raceway.core.fem.elastic.assembly import _BodyForces, _CopiedStiffness
+from raceway.core.fem.elastic.assembly import BodyForces, CopiedStiffness
 from raceway.core.fem.elastic.superelement import Copies, same_bodies, sectors, turn
 from raceway.core.fem.hexahedron.rows import BlockRows
 from raceway.core.threads import ThreadPool
@@ -136,7 +136,7 @@ def test_forces_of_all_bodies_are_those_of_their_elements(formulation):
     found = np.zeros_like(u)
     for group in assembly.groups:
         assert len(group.copies.turns) == 3
-        part = _CopiedStiffness(group.copies, assembly.bodies[group.members[0]].operator).apply(u)
+        part = CopiedStiffness(group.copies, assembly.bodies[group.members[0]].operator).apply(u)
         assert not (found.any() and (found * part).any()), "a node is written twice"
         found += part
     assert np.abs(found - wanted).max() < ROUNDING * np.abs(wanted).max()
@@ -147,7 +147,7 @@ def test_bodies_in_groups_and_others_stand_side_by_side(threads):
     """One ring and all balls by matrices, the other ring by its elements: to the last bit the same for all threads."""
     assembly = assembly_of("incompatible")
     u = moved_by_chance(assembly)
-    forces = _BodyForces([body.operator for body in assembly.bodies], assembly.starts, assembly.groups[1:])
+    forces = BodyForces([body.operator for body in assembly.bodies], assembly.starts, assembly.groups[1:])
     seen = np.zeros(len(u), dtype=int)
 
     def also(force, begin, end):

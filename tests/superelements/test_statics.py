@@ -8,7 +8,7 @@ import pytest
 from raceway.core.fem.elastic import superelement_solver as linearised
 from raceway.core.fem.elastic.interface import Motions
 from raceway.core.fem.elastic.superelement import Closed, Loose
-from raceway.core.fem.elastic.superelement_solver import _BallTangent, _Linearised
+from raceway.core.fem.elastic.superelement_solver import BallTangent, LinearisedContacts
 from tests.superelements.bearings import built, start_of, unreduced, with_node_moved
 
 #: Of Newton's residual over the forces that balance; the iterated solver needs some ten iterations to it.
@@ -134,7 +134,7 @@ def test_forces_balance(way, held, monkeypatch):
     some = rng.standard_normal((len(chosen), 3, 3))
     blocks = 1e7 * (some @ some.transpose(0, 2, 1)) + 2e6 * rng.standard_normal((len(chosen), 3, 3))  # not symmetric
     ball = contact.pair[chosen] % face.ball_count
-    tangents = {k: _BallTangent.of(nodes[ball == k], weights[ball == k], blocks[ball == k]) for k in range(face.ball_count)}
+    tangents = {k: BallTangent.of(nodes[ball == k], weights[ball == k], blocks[ball == k]) for k in range(face.ball_count)}
     m = assembly.frame_size
     unknown = ~np.isin(np.arange(m), held)
     frame = 1e3 * np.eye(m)
@@ -142,7 +142,7 @@ def test_forces_balance(way, held, monkeypatch):
         1e-6 * rng.standard_normal((len(face.numbers), 3)), 1e-6 * rng.standard_normal((face.ball_count, face.extra)),
         rng.standard_normal(m),
     )  # fmt: skip
-    force, q = _Linearised(face, tangents, frame, unknown).forces(driver)
+    force, q = LinearisedContacts(face, tangents, frame, unknown).forces(driver)
     back = face.moved(Motions(-force.nodes, -force.balls, q), q)
     x, mean = driver.nodes + back.nodes, driver.balls + back.balls
     wanted = np.zeros_like(x)

@@ -5,12 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.scenes import built_in
 from raceway.core.fem.elastic.iterative_solver import LinearSolver
 from raceway.core.fem.elastic.superelement import Closed
 from raceway.extend import Schedule, integrate, standstill
-from raceway.integrators.methods import GeneralizedAlpha, Newmark
 from raceway.testing import solve_equilibrium
 from tests.superelements.bearings import built
+
+GeneralizedAlpha = built_in("integrator", "generalized_alpha")
+Newmark = built_in("integrator", "newmark")
 
 #: 15 000 r/min: a turn of 4 ms.  A force of a tenth of the load that acts at once.
 TURNING = {

@@ -136,7 +136,7 @@ class _Exponent:
         return NEAREST[0] <= self.value <= NEAREST[1] and not self.low <= _STRAIGHT <= self.high
 
 
-def _exponent(x: np.ndarray, y: np.ndarray, errors: np.ndarray, constant: bool) -> _Exponent | None:
+def power_exponent(x: np.ndarray, y: np.ndarray, errors: np.ndarray, constant: bool) -> _Exponent | None:
     """p of y = c x^p, or of y = a + c x^p with a ``constant``; None where the numbers are too few for an interval.
 
     x : (n,) positive;  y : (n,), nan where a number is missing;  errors : (n,) absolute
@@ -167,7 +167,7 @@ def _residuals(powers: np.ndarray, y: np.ndarray, constant: bool) -> np.ndarray:
 _ORDER = ("friction", "tilt", "inertia", "bodies", "speed", "load")
 
 
-def _where(findings: Sequence[Finding], holds: bool | None) -> str:
+def region_of(findings: Sequence[Finding], holds: bool | None) -> str:
     """The region with one outcome; "everywhere", "nowhere", or phrases between semicolons."""
     keys = [key for key in _ORDER if any(key in finding.at for finding in findings)]
     phrases = _phrases([(dict(finding.at), finding.holds is holds) for finding in findings], keys)
@@ -236,7 +236,7 @@ def _by_tilt(findings: Sequence[Finding], scale: float = 1.0, unit: str = "", fo
     return ". ".join(f"{FRICTION_WORDS[friction].capitalize()}: {text}" for friction, text in texts.items())
 
 
-def _judge(number: str, claim: str, rule: str, computed: str, findings: Sequence[Finding]) -> Verdict:
+def verdict_of(number: str, claim: str, rule: str, computed: str, findings: Sequence[Finding]) -> Verdict:
     """The verdict that follows from the outcomes of a rule.
 
     Failed places never count as holding: with one of them a claim that holds everywhere else holds only for the remaining ones.
@@ -245,7 +245,7 @@ def _judge(number: str, claim: str, rule: str, computed: str, findings: Sequence
     failed = region = ""
     if len(judged) < len(findings):
         reason = next(finding.why for finding in findings if finding.holds is None)
-        failed = f"{_where(findings, None)} (the first reason: {reason or 'a run is missing'})"
+        failed = f"{region_of(findings, None)} (the first reason: {reason or 'a run is missing'})"
     if not judged:
         kind = FAILED
     elif not any(judged):
@@ -253,7 +253,7 @@ def _judge(number: str, claim: str, rule: str, computed: str, findings: Sequence
     elif all(finding.holds for finding in findings):
         kind = HOLDS
     else:
-        kind, region = PARTLY, _where(findings, True)
+        kind, region = PARTLY, region_of(findings, True)
     return Verdict(number, claim, rule, computed, kind, region, failed, tuple(findings))
 
 
@@ -264,12 +264,12 @@ def verdicts(curves: Curves, static: Sequence[ReadTables]) -> list[Verdict]:
     ----------
     static : rows of the static verification, as ``raceway verify`` computes them
     """
-    out = [*_not_testable(static), *(_judge(*row) for row in _unidirectional(curves))]
+    out = [*_not_testable(static), *(verdict_of(*row) for row in _unidirectional(curves))]
     for measure in MEASURES:
         rows = [*_hardening(curves, measure), *_axial(curves, measure), *_combined(curves, measure)]
         mark, ending = ("", "") if measure == "K" else (f" {measure}", f" k = {measure}.")
         for number, claim, rule, computed, findings in rows:
-            out.append(_judge(f"{number}{mark}", f"{claim}{ending}", rule, computed, findings))
+            out.append(verdict_of(f"{number}{mark}", f"{claim}{ending}", rule, computed, findings))
     # Each claim for K, and at once for |Z|.
     return sorted(out, key=lambda verdict: verdict.number[0])
 
@@ -333,12 +333,12 @@ _Fit = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], _Exponent | No
 
 
 def _in_speed(_w: np.ndarray, speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> _Exponent | None:
-    return _exponent(speeds / speeds[-1], values / values[0], errors * values / values[0], constant=True)
+    return power_exponent(speeds / speeds[-1], values / values[0], errors * values / values[0], constant=True)
 
 
 def _above_lowest(w: np.ndarray, _speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> _Exponent | None:
     star = values / values[0]
-    return _exponent(w[1:], star[1:] - 1.0, (errors * star)[1:], constant=False)
+    return power_exponent(w[1:], star[1:] - 1.0, (errors * star)[1:], constant=False)
 
 
 def _hardening(curves: Curves, measure: str) -> list[_Row]:

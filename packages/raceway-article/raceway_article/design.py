@@ -157,7 +157,7 @@ class Design:
         return tables_at(self.tables, values, registry)
 
 
-def _shaft_tilt_stiffness(diameter: float = _SHAFT_DIAMETER, span: float = _SPAN, young: float = _YOUNG) -> float:
+def shaft_tilt_stiffness(diameter: float = _SHAFT_DIAMETER, span: float = _SPAN, young: float = _YOUNG) -> float:
     """Tilt stiffness of the rig's shaft at the inner ring [N m/rad].
 
     A uniform shaft between two bearings whose rings tilt by the same angle in opposite senses, which is how a force at
@@ -190,7 +190,7 @@ def design(
     """
     excitation, tilt = excitation_of(tables), tables.get("supports", {}).get("tilt")
     if shaft is None:
-        shaft = float(tilt) if isinstance(tilt, int | float) and not isinstance(tilt, bool) else _shaft_tilt_stiffness()
+        shaft = float(tilt) if isinstance(tilt, int | float) and not isinstance(tilt, bool) else shaft_tilt_stiffness()
     if not (math.isfinite(shaft) and shaft > 0.0):
         raise SceneError.at("--shaft", shaft, "must be a tilt stiffness above 0 N m/rad")
     friction = friction_of(tables, friction)

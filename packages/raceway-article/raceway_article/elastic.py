@@ -78,7 +78,7 @@ _DIFFERENCES = (
 
 
 @attrs.frozen
-class _Run:
+class ElasticRun:
     """One run of the study.
 
     bodies : of ``BODIES``;  axial, radial : load [N]
@@ -107,7 +107,7 @@ class _Run:
 
 
 @attrs.frozen
-class _Design:
+class ElasticDesign:
     """All runs of one scene.
 
     tables : of the scene;  friction : Coulomb coefficient of the motions;  turns : of a motion, of ``STEPS`` steps each
@@ -126,13 +126,13 @@ class _Design:
     def speed_rpm(self) -> float:
         return float(self.tables["excitation"]["speed_rpm"])
 
-    def runs(self) -> list[_Run]:
+    def runs(self) -> list[ElasticRun]:
         """Those at rest first, motions last: they cost most."""
-        static = [_Run(bodies, *loads) for loads in self.load_cases for bodies in BODIES]
+        static = [ElasticRun(bodies, *loads) for loads in self.load_cases for bodies in BODIES]
         axial = float(self.tables["load"]["axial"])
-        return static + [_Run(bodies, axial, excitation=pair) for pair in CLAIMED for bodies in BODIES]
+        return static + [ElasticRun(bodies, axial, excitation=pair) for pair in CLAIMED for bodies in BODIES]
 
-    def point(self, run: _Run, registry: Registry) -> Tables:
+    def point(self, run: ElasticRun, registry: Registry) -> Tables:
         """The scene's tables of one run."""
         values: Tables = {
             "bodies.kind": run.bodies,
@@ -161,11 +161,11 @@ class _Design:
         tables = tables_at(scene, values, registry)
         return tables if run.excitation is not None else {k: v for k, v in tables.items() if k not in _OF_MOTION}
 
-    def scene(self, run: _Run, registry: Registry) -> Scene:
+    def scene(self, run: ElasticRun, registry: Registry) -> Scene:
         return scene_from_dict(self.point(run, registry), registry)
 
 
-def design(tables: ReadTables, friction: float | None = None, turns: int = TURNS) -> _Design:
+def design(tables: ReadTables, friction: float | None = None, turns: int = TURNS) -> ElasticDesign:
     """The runs for a scene.
 
     Parameters
@@ -192,7 +192,7 @@ def design(tables: ReadTables, friction: float | None = None, turns: int = TURNS
     if "force" not in excitation and "reference_speed_rpm" not in excitation:
         why = "is needed, or `excitation.force`: one force has a constant amplitude, that at this speed"
         raise SceneError.at("excitation.reference_speed_rpm", None, why)
-    return _Design(with_value(tables, "bodies.kind", "elastic"), friction, turns)
+    return ElasticDesign(with_value(tables, "bodies.kind", "elastic"), friction, turns)
 
 
 def _row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, folder: Path | None = None) -> Tables:
@@ -356,7 +356,7 @@ class ElasticArticle(Answer):
     stem: ClassVar[str] = "article-elastic"
 
     title: str
-    design: _Design
+    design: ElasticDesign
     rows: list[Tables]
     seconds: float
     cpu_s: float
@@ -365,7 +365,7 @@ class ElasticArticle(Answer):
     command: str = "raceway study article --bodies elastic"
 
     @cached_property
-    def of_run(self) -> dict[_Run, Tables]:
+    def of_run(self) -> dict[ElasticRun, Tables]:
         """Completed rows by run."""
         pairs = zip(self.design.runs(), self.rows, strict=True)
         return {run: row for run, row in pairs if row["status"] == "completed"}
@@ -454,7 +454,7 @@ class ElasticArticle(Answer):
         cost = f"{len(runs)} runs, {self.failed} failed; {self.seconds:.0f} s, {self.cpu_s:.0f} s of processor time"
         yield Words(cost + (f"; {self.reused} rows taken from earlier" if self.reused else ""), "dim")
 
-    def _compared(self, run: _Run, row: Tables) -> Tables:
+    def _compared(self, run: ElasticRun, row: Tables) -> Tables:
         """A row with its run and its differences."""
         table: Tables = {"phase": run.phase, "case": run.case, "bodies": run.bodies, "axial_n": run.axial, "radial_n": run.radial, **row}  # fmt: skip
         if row["status"] != "completed":
@@ -470,7 +470,7 @@ class ElasticArticle(Answer):
 
 
 def elastic_article(
-    design: _Design,
+    design: ElasticDesign,
     folder: Path | None,
     kept: Path | None,
     registry: Registry,
@@ -508,14 +508,14 @@ def elastic_article(
     return ElasticArticle(scenes[0].title, design, rows, *spent, reused, store.fault, command)
 
 
-def _scenes_and_items(design: _Design, registry: Registry) -> tuple[list[Scene], list[Item]]:
+def _scenes_and_items(design: ElasticDesign, registry: Registry) -> tuple[list[Scene], list[Item]]:
     runs = design.runs()
     scenes = [design.scene(run, registry) for run in runs]
     keys = [row_key(scene, registry, "article elastic") for scene in scenes]
     return scenes, [Item(key, run.name, k) for k, (key, run) in enumerate(zip(keys, runs, strict=True))]
 
 
-def elastic_workload(design: _Design, kept: Path | None, registry: Registry) -> Workload:
+def elastic_workload(design: ElasticDesign, kept: Path | None, registry: Registry) -> Workload:
     """The runs that are not stored, one after another."""
     scenes, items = _scenes_and_items(design, registry)
     left = [scene for scene, item in zip(scenes, items, strict=True) if not stored_rows(kept, [item.key])]

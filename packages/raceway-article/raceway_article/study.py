@@ -202,7 +202,7 @@ def failure(why: RacewayError) -> Tables:
     return {"status": why.status, "reason": " ".join(str(why).split())}
 
 
-def _curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
+def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
     """One row a point, in order; a run that fails or is refused becomes a row with its reason.
 
     Where the steady motion is unstable, or none is found, ``instead`` states what a ring does, by time integration: from beside
@@ -299,11 +299,13 @@ def _tasks(design: Design, registry: Registry) -> list[_Task]:
     for load in _scan_loads(design):
         ends = points(_base("shaft", design.bodies), [load], [design.speeds[0], design.speeds[-1]])
         scan = [with_value(tables, "supports.tilt", stiffness) for stiffness in STIFFNESSES for tables in ends]
-        tasks.append((f"tilt stiffness at {load:g} N", _curve, scan))
-    tasks += [("the rig's speeds", _curve, points(setting, RIG_LOADS, RIG_SPEEDS)) for setting in _rig_settings(design)]
+        tasks.append((f"tilt stiffness at {load:g} N", rows_of_curve, scan))
+    tasks += [
+        ("the rig's speeds", rows_of_curve, points(setting, RIG_LOADS, RIG_SPEEDS)) for setting in _rig_settings(design)
+    ]
     for setting, load in design.tasks():
         name = "curves over speed" if setting.friction == "none" else "curves over speed, friction"
-        tasks.append((name, _curve, points(setting, [load], design.speeds_of(setting))))
+        tasks.append((name, rows_of_curve, points(setting, [load], design.speeds_of(setting))))
     return tasks
 
 

@@ -9,7 +9,7 @@ import re
 import attrs
 import pytest
 from raceway_article import study as driver
-from raceway_article.design import ARTICLE, FRICTIONS, ROTATING, Setting, _shaft_tilt_stiffness, article_tables, design
+from raceway_article.design import ARTICLE, FRICTIONS, ROTATING, Setting, article_tables, design, shaft_tilt_stiffness
 from raceway_article.figures import Picture, drawings
 from raceway_article.page import page
 
@@ -30,7 +30,7 @@ def quick(monkeypatch):
 @pytest.mark.slow
 def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, quick, monkeypatch):
     done = []
-    real = driver._curve
+    real = driver.rows_of_curve
 
     def stop(points, registry):
         if len(done) == 30:
@@ -39,12 +39,12 @@ def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, qu
         return real(points, registry)
 
     stop.__qualname__ = real.__qualname__  # a part of the key of finished work
-    monkeypatch.setattr(driver, "_curve", stop)
+    monkeypatch.setattr(driver, "rows_of_curve", stop)
     words = ("study", "article", *SMALL, "--out", tmp_path)
     found = invoke(*words)
     assert found.exit_code == 130
     assert "the same command continues" in found.stderr
-    monkeypatch.setattr(driver, "_curve", real)
+    monkeypatch.setattr(driver, "rows_of_curve", real)
     found = invoke(*words, "--json")
     assert found.exit_code == 0
     content = json.loads(found.stdout)
@@ -141,7 +141,7 @@ def test_friction_on_balls_that_stand_reverses_the_trend_at_a_heavy_load_with_ti
     made = design(article_tables())
     for friction, sense in (("none", 1.0), ("standing", -1.0), ("orbiting", 1.0)):
         setting = Setting(**ROTATING, tilt="free", inertia=True, bodies="rigid", friction=friction)
-        first, last = driver._curve(
+        first, last = driver.rows_of_curve(
             [made.point(setting, 2000.0, speed, default_registry()) for speed in (10980.0, 15000.0)], default_registry()
         )
         # The changes are 2.7 to 7.6 %; runs with friction are known to half a percent.
@@ -183,8 +183,8 @@ def test_the_scene_that_comes_along_is_the_examples():
 
 def test_shaft_of_a_known_beam():
     # 2 E I / L with I = pi d^4 / 64: 2 * 212e9 * 3.9761e-8 / 0.175, by hand.
-    assert _shaft_tilt_stiffness() == pytest.approx(9.6335e4, rel=1e-4)
-    assert _shaft_tilt_stiffness(diameter=0.060) == pytest.approx(16.0 * _shaft_tilt_stiffness())
+    assert shaft_tilt_stiffness() == pytest.approx(9.6335e4, rel=1e-4)
+    assert shaft_tilt_stiffness(diameter=0.060) == pytest.approx(16.0 * shaft_tilt_stiffness())
 
 
 @pytest.mark.parametrize(
@@ -226,7 +226,7 @@ def test_where_no_ring_stays_on_a_steady_motion_it_is_told_what_it_does_instead(
         Setting("unidirectional", a, t, True, "rigid") for a, t in (("constant", "free"), ("unbalance", "shaft"))
     )
     points = made.point(constant, 600.0, 13492.5, registry), made.point(growing, 400.0, 14497.5, registry)
-    first, second = (driver._curve([point], registry)[0] for point in points)
+    first, second = (driver.rows_of_curve([point], registry)[0] for point in points)
     assert (first["status"], second["status"]) == ("unstable", "unsteady") and "k" in first and "k" not in second
     for one in (first, second):
         instead = one["instead"]

@@ -10,7 +10,7 @@ import tomllib
 
 import pytest
 from raceway_article import elastic
-from raceway_article.elastic import SCENE, _Design, _Run, design
+from raceway_article.elastic import SCENE, ElasticDesign, ElasticRun, design
 from raceway_article.elastic_page import drawings, page
 
 import raceway as rw
@@ -40,7 +40,7 @@ def tables(**more):
 @pytest.fixture
 def short(monkeypatch):
     """One load case, one excitation, a dozen steps: seconds."""
-    monkeypatch.setattr(_Design, "load_cases", property(lambda _: [(1000.0, 500.0)]))
+    monkeypatch.setattr(ElasticDesign, "load_cases", property(lambda _: [(1000.0, 500.0)]))
     monkeypatch.setattr(elastic, "CLAIMED", elastic.CLAIMED[:1])
     monkeypatch.setattr(elastic, "STEPS", 12)
 
@@ -169,7 +169,7 @@ def test_a_scene_that_the_study_cannot_use_is_refused(change, path):
 
 @pytest.mark.slow
 def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_is_tried_again(tmp_path, monkeypatch):
-    monkeypatch.setattr(_Design, "load_cases", property(lambda _: [(1000.0, 500.0), (2000.0, 0.0)]))
+    monkeypatch.setattr(ElasticDesign, "load_cases", property(lambda _: [(1000.0, 500.0), (2000.0, 0.0)]))
     monkeypatch.setattr(elastic, "CLAIMED", ())
     real, wrong, tried = elastic.run, [MemoryError(), ConvergenceError("no equilibrium")], []
 
@@ -275,6 +275,6 @@ def test_progress_tells_the_run_and_when_all_of_them_end(monkeypatch):
 
 
 def test_rows_of_bodies_name_their_runs():
-    assert _Run("elastic", 400.0).name == "static 400 N axial with elastic bodies"
-    assert _Run("rigid", 1000.0, 500.0).case == "1000 N axial + 500 N radial"
+    assert ElasticRun("elastic", 400.0).name == "static 400 N axial with elastic bodies"
+    assert ElasticRun("rigid", 1000.0, 500.0).case == "1000 N axial + 500 N radial"
     assert len(elastic_rows()) == 18

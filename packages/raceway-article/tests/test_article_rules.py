@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from raceway_article import claims
-from raceway_article.claims import _exponent, _judge, _where, verdicts
+from raceway_article.claims import power_exponent, region_of, verdict_of, verdicts
 from raceway_article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding
 
 from checks.validation.article_study import curves, static
@@ -88,14 +88,14 @@ def test_exponents_and_their_intervals():
     none = np.zeros(9)
     for p in (1.0, 2.0, 3.7):
         for constant in (False, True):
-            found = _exponent(x, 4.0 * constant + 0.3 * x**p, none, constant)
+            found = power_exponent(x, 4.0 * constant + 0.3 * x**p, none, constant)
             assert abs(found.value - p) <= 0.011 and found.high - found.low < 0.05, "the grid's step"
             assert found.roughly_quadratic is (p == 2.0)
-    noisy = _exponent(x, 0.3 * x**2, np.full(9, 0.1), False)
+    noisy = power_exponent(x, 0.3 * x**2, np.full(9, 0.1), False)
     assert noisy.low < 1.0 < noisy.high and not noisy.roughly_quadratic
-    assert _exponent(x[:3], x[:3], none[:3], True) is None
+    assert power_exponent(x[:3], x[:3], none[:3], True) is None
     gap = np.where(np.arange(9) == 4, np.nan, x**2)
-    assert _exponent(x, gap, none, False).roughly_quadratic
+    assert power_exponent(x, gap, none, False).roughly_quadratic
 
 
 def test_a_claim_that_holds_in_a_region_names_it_and_mentions_nothing_else():
@@ -202,14 +202,14 @@ def test_regions_in_words():
             for tilt in ("locked", "shaft", "free") for inertia in (True, False) for load in (400.0, 600.0, 800.0)
         ]  # fmt: skip
 
-    assert _where(findings(lambda *_: True), True) == "everywhere"
-    assert _where(findings(lambda *_: False), True) == "nowhere"
-    assert _where(findings(lambda tilt, *_: tilt != "free"), True) == "tilt locked or against the shaft"
-    assert _where(findings(lambda t, inertia, load: inertia), True) == "with ball inertia"
-    assert _where(findings(lambda t, i, load: load != 600.0), True) == "400 and 800 N"
-    mixed = _where(findings(lambda tilt, i, load: tilt == "free" or (tilt == "shaft" and load < 700.0)), True)
+    assert region_of(findings(lambda *_: True), True) == "everywhere"
+    assert region_of(findings(lambda *_: False), True) == "nowhere"
+    assert region_of(findings(lambda tilt, *_: tilt != "free"), True) == "tilt locked or against the shaft"
+    assert region_of(findings(lambda t, inertia, load: inertia), True) == "with ball inertia"
+    assert region_of(findings(lambda t, i, load: load != 600.0), True) == "400 and 800 N"
+    mixed = region_of(findings(lambda tilt, i, load: tilt == "free" or (tilt == "shaft" and load < 700.0)), True)
     assert mixed == "tilt against the shaft, 400 to 600 N; tilt free"
 
 
 def test_a_verdict_of_nothing_has_failed():
-    assert _judge("0", "claim", "rule", "text", []).kind == FAILED
+    assert verdict_of("0", "claim", "rule", "text", []).kind == FAILED

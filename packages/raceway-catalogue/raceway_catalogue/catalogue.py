@@ -29,7 +29,7 @@ _POINTS = 60
 def _section(name: str, bearing: Bearing) -> Figure:
     """The figure: left the whole bearing, right one ball."""
     try:
-        rings = [_outline(bearing, inner) for inner in (True, False)]
+        rings = [ring_outline(bearing, inner) for inner in (True, False)]
     except MeshError as why:
         raise SceneError.at("bearing", name, f"cannot be drawn: {why}") from None
     figure = new_figure(9.0, 5.2)
@@ -64,7 +64,7 @@ def _section(name: str, bearing: Bearing) -> Figure:
     return figure
 
 
-def _outline(b: Bearing, inner: bool) -> np.ndarray:
+def ring_outline(b: Bearing, inner: bool) -> np.ndarray:
     """Places (n, 2) [m] along the outline of a ring, axial and radial, with its groove and shoulders."""
     shape = ring_shape(b, inner)
     side = 0.5 * shape.width

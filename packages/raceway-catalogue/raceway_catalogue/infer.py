@@ -222,7 +222,7 @@ def _line(answer: Inferred) -> dict[str, str]:
     return line
 
 
-def _sizes_of(lines: Iterable[Printed]) -> list[Printed]:
+def lines_by_size(lines: Iterable[Printed]) -> list[Printed]:
     """Lines that differ in the contact angle alone, together: the same designation but for its suffix, or the same dimensions
     where they say no internals of their own."""
     groups: dict[object, list[Printed]] = {}
@@ -249,7 +249,7 @@ def _infer_table(table: str, maker: str | None = None, conformity: float | None 
     """
     packaged = table.lower() in _TABLES and not Path(table).exists()
     read = Table(printed_by(table.lower()), ()) if packaged else read_table(Path(table))
-    sizes = _sizes_of(read.lines)
+    sizes = lines_by_size(read.lines)
     maker = maker or (_TABLES[table.lower()] if packaged else None)
     answers: list[Inferred | tuple[str, str]] = [(fault.path, str(fault)) for fault in read.faults]
     faults: list[SceneError] = []

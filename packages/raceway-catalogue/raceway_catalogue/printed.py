@@ -145,7 +145,7 @@ class Printed:
 def printed_by(maker: str) -> tuple[Printed, ...]:
     """One entry a designation of a table that comes with the package: the name of its file in raceway/data/printed."""
     text = files("raceway_catalogue").joinpath(f"data/printed/{maker}.csv").read_text(encoding="utf-8")
-    return _parse_table(text, f"{maker}.csv").lines
+    return table_in_text(text, f"{maker}.csv").lines
 
 
 @attrs.frozen
@@ -171,10 +171,10 @@ def read_table(path: Path) -> Table:
         raise SceneError.at(str(path), None, "no such file") from None
     except (OSError, ValueError) as why:
         raise SceneError.at(str(path), None, f"cannot be read: {why_unreadable(why)}") from None
-    return _parse_table(text, str(path))
+    return table_in_text(text, str(path))
 
 
-def _parse_table(text: str, name: str) -> Table:
+def table_in_text(text: str, name: str) -> Table:
     """One ``Printed`` a line of a CSV text; lines that start with # are remarks.
 
     SceneError: as ``read_table``.

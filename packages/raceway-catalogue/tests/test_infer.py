@@ -8,16 +8,16 @@ from contextlib import suppress
 import attrs
 import numpy as np
 import pytest
-from raceway_catalogue.infer import _sizes_of
+from raceway_catalogue.infer import lines_by_size
 from raceway_catalogue.inferred import infer_printed
-from raceway_catalogue.printed import Printed, Rating, _parse_table, printed_by
+from raceway_catalogue.printed import Printed, Rating, printed_by, table_in_text
 from raceway_catalogue.rating_conventions import CONFORMITY, pair_stiffness
 
 import raceway as rw
 from checks.validation.command_line import invoke
 from raceway import SceneError
 from raceway.core.contact.geometry import BallBearing
-from raceway.core.ratings import _groove, _load_factor, _static_factor
+from raceway.core.ratings import groove_curvatures, hertz_load_factor, static_load_factor
 from raceway.extend import BallRow, contact_modulus
 
 #: 7206C: 12 balls of 9.525 mm on 46 mm, 15 deg.
@@ -28,7 +28,7 @@ HEAD = "name,bore_mm,outer_diameter_mm,width_mm,contact_angle_deg,dynamic_rating
 @pytest.fixture(scope="module")
 def series():
     """The printed sizes of the series 70, 72, 79, inferred with one conformity."""
-    return {one.names[0]: infer_printed(one, conformity=CONFORMITY) for one in _sizes_of(printed_by("nsk"))}
+    return {one.names[0]: infer_printed(one, conformity=CONFORMITY) for one in lines_by_size(printed_by("nsk"))}
 
 
 # --- standards
@@ -45,13 +45,13 @@ def test_the_table_of_f0_is_the_load_at_4200_mpa():
     """ISO 76's table is rounded to 0.1: 0.7 % of 14."""
     for g in (0.12, 0.2, 0.3, 0.4):
         exact = BallRow(1, 1e-3, 1e-3 / g, 0.0, 0.52, 0.53).static_rating_of_grooves()
-        assert exact == pytest.approx(_static_factor(g), rel=7e-3)
+        assert exact == pytest.approx(static_load_factor(g), rel=7e-3)
 
 
 def test_below_a_tenth_f0_goes_on_with_the_inner_race():
-    assert _static_factor(0.0999999) == pytest.approx(_static_factor(0.1), rel=1e-5)
+    assert static_load_factor(0.0999999) == pytest.approx(static_load_factor(0.1), rel=1e-5)
     # One maker prints 16.7 for 7922C, of 26 balls of 11.906 mm on 130 mm.
-    assert _static_factor(11.90625 * np.cos(ANGLE) / 130.0) == pytest.approx(16.7, abs=0.05)
+    assert static_load_factor(11.90625 * np.cos(ANGLE) / 130.0) == pytest.approx(16.7, abs=0.05)
 
 
 def test_wider_grooves_carry_less():
@@ -78,7 +78,7 @@ def test_the_load_factor_is_that_of_the_core():
     shape = BallBearing(D, PITCH, Z, ANGLE, 0.522, 0.53)
     g = shape.gamma
     for race, (f, exact) in enumerate(zip((0.522, 0.53), shape.ellipses(modulus), strict=True)):
-        assert _load_factor(*_groove(D, g, f, race == 0), modulus) == pytest.approx(exact.factor, rel=1e-6)
+        assert hertz_load_factor(*groove_curvatures(D, g, f, race == 0), modulus) == pytest.approx(exact.factor, rel=1e-6)
 
 
 # --- the answers
@@ -254,7 +254,7 @@ TABLES = {
 @pytest.mark.parametrize(("text", "words"), TABLES.values(), ids=TABLES)
 def test_a_wrong_table_is_told_with_its_line(text, words):
     with pytest.raises(SceneError, match=words):
-        _parse_table(text, "mine.csv")
+        table_in_text(text, "mine.csv")
 
 
 # --- the commands
@@ -307,10 +307,10 @@ def test_the_catalogue_lists_shows_and_draws(tmp_path):
 
 
 def test_the_section_is_in_proportion():
-    from raceway_catalogue.catalogue import _outline
+    from raceway_catalogue.catalogue import ring_outline
 
     bearing = rw.Scene.from_dict({"bearing": {"preset": "7014C"}}).bearing
-    inner, outer = (_outline(bearing, race) for race in (True, False))
+    inner, outer = (ring_outline(bearing, race) for race in (True, False))
     assert np.ptp(inner[:, 0]) == pytest.approx(0.02) and np.ptp(outer[:, 0]) == pytest.approx(0.02)
     assert inner[:, 1].min() == pytest.approx(0.035) and outer[:, 1].max() == pytest.approx(0.055)
     # Neither ring cuts the ball, and both grooves come close to it: they touch it at the contact angle.

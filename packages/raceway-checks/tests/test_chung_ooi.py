@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from raceway_checks.verify.reference import reference_cases
-from raceway_checks.verify.study import _impact_of, _measure, transient_integrators
+from raceway_checks.verify.study import impact_of, peak_and_duration, transient_integrators
 
 from raceway.core.ring.kernels.layout import DAMPING
 from raceway.extend import default_registry, impact_system, integrate
@@ -28,9 +28,9 @@ def test_the_built_in_transient_integrators_are_among_them():
 @pytest.mark.parametrize("case", CASES)
 def test_order_two_through_touch_and_release(case, name):
     """The contact time converges with the square of the step: a slope within 0.1 of 2 over three halvings."""
-    method, impact = default_registry().find("integrator", name).plugin(), _impact_of(reference_cases()[case].inputs)
+    method, impact = default_registry().find("integrator", name).plugin(), impact_of(reference_cases()[case].inputs)
     steps = np.array([50, 100, 200, 400])
-    errors = [abs(_measure(method, impact, n, 0.5)[1] / impact.contact_time - 1.0) for n in steps]
+    errors = [abs(peak_and_duration(method, impact, n, 0.5)[1] / impact.contact_time - 1.0) for n in steps]
     slope = np.polyfit(np.log(1.0 / steps), np.log(errors), 1)[0]
     assert slope == pytest.approx(2.0, abs=0.1)
 

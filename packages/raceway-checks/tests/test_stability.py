@@ -12,9 +12,9 @@ import attrs
 import numpy as np
 import pytest
 from raceway_checks.stability import scenes, systems
-from raceway_checks.stability.catalogue import BASE, SCENES, _laws_with, _with_law, catalogue, transient
-from raceway_checks.stability.scenes import _axial_displacement, _axial_force
-from raceway_checks.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, _rows_of, measured, stability
+from raceway_checks.stability.catalogue import BASE, SCENES, catalogue, law_changes, laws_with, transient
+from raceway_checks.stability.scenes import displacement_under_axial_load, energy_slope
+from raceway_checks.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, case_rows, measured, stability
 from raceway_checks.stability.systems import Bench
 
 from checks.validation.command_line import ARTICLE, EXAMPLES, invoke
@@ -35,7 +35,7 @@ def rows_named(name, cases=CASES, registry=REGISTRY, **wanted):
     """Rows of the catalogue's cases with a name and a setting."""
     found = [one for one in cases if one.name == name and wanted.items() <= one.setting.items()]
     assert found, (name, wanted)
-    return [row for one in found for row in _rows_of(one, registry)]
+    return [row for one in found for row in case_rows(one, registry)]
 
 
 def verdicts(rows):
@@ -55,7 +55,7 @@ def test_the_catalogue_has():
 
 
 def test_every_law_and_transient_integrator_takes_part_and_a_third_partys_in_the_quick_set_too():
-    assert {*_laws_with(REGISTRY, "resultant"), "unilateral"} <= {one.setting.get("law") for one in CASES}
+    assert {*laws_with(REGISTRY, "resultant"), "unilateral"} <= {one.setting.get("law") for one in CASES}
     for name in ("steps around the limit, linear", "orbit at the safe limit", "undamped steps", "impact"):
         assert {one.setting["integrator"] for one in CASES if one.name == name and one.quick} == set(transient(REGISTRY))
     assert not {"periodic", "quasi_static"} & set(transient(REGISTRY))
@@ -97,7 +97,7 @@ def test_an_unexpected_refusal_fails_and_an_expected_one_does_not():
 
 def extreme_rows(judge, **changes):
     arguments = {"tables": BASE, "changes": {"integrator.turns": 1, **changes}, "judge": judge}
-    return _rows_of(Case("c", "scenes:extreme", {}, arguments), REGISTRY)
+    return case_rows(Case("c", "scenes:extreme", {}, arguments), REGISTRY)
 
 
 def test_a_comparison_that_is_refused_fails_its_case(monkeypatch):
@@ -137,9 +137,9 @@ def test_the_slope_of_the_stored_energy_is_the_load_that_a_sum_over_balls_misses
         model = Bench(BASE, {"bodies.kind": "condensed", "load.axial": load, "excitation": None}, REGISTRY).model()
         found[load] = solve_equilibrium(model)
         # A difference over a thousandth of the penetration errs by the square of that.
-        assert _axial_force(model, found[load]) == pytest.approx(load, rel=1e-5)
+        assert energy_slope(model, found[load]) == pytest.approx(load, rel=1e-5)
     # The state decides, not the load that the model was given.
-    assert _axial_force(model, found[1e5]) == pytest.approx(1e5, rel=1e-5)
+    assert energy_slope(model, found[1e5]) == pytest.approx(1e5, rel=1e-5)
     balls = found[1e5]
     along = balls.contact_force[:12] * np.sin(balls.angle_inner)
     assert along.sum() / 1e5 - 1.0 > 0.02
@@ -173,7 +173,7 @@ def test_friction_is_judged_where_it_acts():
 
 
 def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():
-    (row,) = _rows_of(case("answer"), REGISTRY)
+    (row,) = case_rows(case("answer"), REGISTRY)
     assert row.verdict == FAILED and row.note.startswith("KeyError in stability_cases.py")
     cases = [case("hang"), case("die"), case("answer", value="near"), case("answer", value="far")]
     with written(None) as store:
@@ -202,9 +202,9 @@ def test_the_safe_limit_holds_on_large_orbits():
 @pytest.mark.parametrize("integrator", ["central_difference", "newmark"])
 def test_energy_of_symplectic_steps_has_no_trend(integrator):
     cases = [one for one in CASES if one.name == "undamped steps" and one.quick and one.setting["integrator"] == integrator]
-    assert len(cases) == 2 * len(_laws_with(REGISTRY, "resultant"))
+    assert len(cases) == 2 * len(laws_with(REGISTRY, "resultant"))
     for one in cases:
-        (row,) = _rows_of(attrs.evolve(one, arguments={**one.arguments, "steps": 20_000}), REGISTRY)
+        (row,) = case_rows(attrs.evolve(one, arguments={**one.arguments, "steps": 20_000}), REGISTRY)
         # The catalogue holds a million steps to the same bounds.
         assert row.verdict == AS_EXPECTED, row
 
@@ -256,7 +256,7 @@ def test_expectations_of_any_law_follow_from_its_own_force(name, law):
 def small_motions(**contact):
     changes = {"contact.kind": "hunt_crossley", **{f"contact.{key}": value for key, value in contact.items()}}
     arguments = {"tables": BASE, "integrator": "central_difference", "changes": changes}
-    return _rows_of(Case("c", "motions:small_motions", {}, arguments), registry_with([DAMPED]))
+    return case_rows(Case("c", "motions:small_motions", {}, arguments), registry_with([DAMPED]))
 
 
 def test_the_stable_limit_knows_what_the_law_damps(monkeypatch):
@@ -271,19 +271,19 @@ def test_the_stable_limit_knows_what_the_law_damps(monkeypatch):
 
 
 def test_a_film_that_stands_off_is_part_of_the_displacement_by_the_laws_own_force(monkeypatch):
-    model = Bench(BASE, {**_with_law("film", REGISTRY), "kinematics.ball_inertia": False}, REGISTRY).model()
-    own, found = _axial_displacement(model), solve_equilibrium(model).displacement[0]
+    model = Bench(BASE, {**law_changes("film", REGISTRY), "kinematics.ball_inertia": False}, REGISTRY).model()
+    own, found = displacement_under_axial_load(model), solve_equilibrium(model).displacement[0]
     # Angles and loads that the films are built at meet to 1e-9 and better.
     assert own == pytest.approx(found, rel=1e-6)
     # Deliberate fault: surfaces that touch.
     monkeypatch.setattr(scenes, "reach_of", lambda law, pairs: np.zeros(len(pairs.load)))
-    assert abs(_axial_displacement(model) / found - 1.0) > 0.1
+    assert abs(displacement_under_axial_load(model) / found - 1.0) > 0.1
 
 
 def test_the_axial_displacement_by_a_laws_own_force():
     """Of the cubic law in closed form: delta = (Q / 2e17)^(1/3) at both races."""
     model = Bench(BASE, {"contact.kind": "cubic", "kinematics.ball_inertia": False}, registry_with([CUBIC])).model()
-    axial, radial = np.add(model.geometry.rest, (_axial_displacement(model), 0.0))
+    axial, radial = np.add(model.geometry.rest, (displacement_under_axial_load(model), 0.0))
     approach = np.hypot(axial, radial) - model.geometry.centre_distance
     load = 2e17 * (0.5 * approach) ** 3
     assert 12 * load * axial / np.hypot(axial, radial) == pytest.approx(1000.0, rel=1e-9)
@@ -309,7 +309,7 @@ def test_only_a_law_stiffer_than_hertz_may_be_refused_by_elastic_bodies(law, exp
     monkeypatch.setattr(scenes, "_force_and_slope", rounded)
     changes = {"contact.kind": law, "load.axial": 1e5, "bodies.kind": "condensed"}
     arguments = {"tables": BASE, "changes": changes, "may_be_too_stiff": True}
-    (row,) = _rows_of(Case("c", "scenes:extreme", {}, arguments), registry_with([CUBIC]))
+    (row,) = case_rows(Case("c", "scenes:extreme", {}, arguments), registry_with([CUBIC]))
     assert row.verdict == expected
 
 

@@ -6,9 +6,17 @@ import attrs
 import numpy as np
 import pytest
 from raceway_measure.fit.estimate import Free, estimate, free_keys, judged
-from raceway_measure.fit.linear import _aliased, _free_parts, _Linear, _spectra_of, _spectrum, _tone, _uneven
+from raceway_measure.fit.linear import (
+    LinearResiduals,
+    aliasing_error,
+    free_parts,
+    largest_tone,
+    spectra_of,
+    spectrum_of,
+    uneven_block,
+)
 from raceway_measure.fit.signals import signals_of, write_recording
-from raceway_measure.fit.table import _TableResiduals, measurements_in
+from raceway_measure.fit.table import TableResiduals, measurements_in
 from raceway_measure.rig.signals import record as rig_record
 from raceway_measure.rig.signals import response, slow_roll_record, white_noise
 from raceway_rotor.rig_table import rig_of
@@ -113,7 +121,7 @@ def test_derivatives_of_residuals_are_those_of_the_residuals():
     )
     free = free_keys(scene, [ANGLE, "rotor.mass"])
     measured = measurements_in(table, "made up", scene)
-    problem = _TableResiduals(measured, free, scene)
+    problem = TableResiduals(measured, free, scene)
     at = np.array([15.5, 2.0])
     problem.residuals(at)
     exact = problem.jacobian(at)
@@ -194,11 +202,11 @@ def test_intervals_of_a_record_hold_what_they_state():
 
 
 def test_derivatives_of_a_records_residuals_are_those_of_the_residuals():
-    lines = _spectra_of(signals_of(turning_record(np.diag([5e7, 4e7]), np.diag([800.0, 600.0]), 1.5, 3)))
-    free = _free_parts(["K", "C", "mass"], lines, None)
+    lines = spectra_of(signals_of(turning_record(np.diag([5e7, 4e7]), np.diag([800.0, 600.0]), 1.5, 3)))
+    free = free_parts(["K", "C", "mass"], lines, None)
     colours = np.array([1.0, 0.5, 0.2])[:, None]
     noise = np.stack([colours * [1e-18, 2e-18], colours * [1e-4, 2e-4]])
-    problem = _Linear(lines, free, 0.0, noise, (2.0 * np.pi * 50.0,))
+    problem = LinearResiduals(lines, free, 0.0, noise, (2.0 * np.pi * 50.0,))
     sizes = np.array([one.size for one in (*free, *problem.nuisance)])
     at = sizes * np.linspace(0.5, 1.0, len(sizes))
     exact = problem.jacobian(at) * sizes
@@ -289,9 +297,9 @@ def test_noise_that_is_not_white_is_named_and_its_own_scatter_makes_the_interval
 def test_power_that_is_not_even_is_found_where_it_is():
     """Exponential power with four times the mean over a 16th of the lines, and none of the kind where it is even."""
     power = np.random.default_rng(4).exponential(size=(1600, 1))
-    assert _uneven(power) is None
+    assert uneven_block(power) is None
     power[700:800] *= 4.0
-    where, factor = _uneven(power)
+    where, factor = uneven_block(power)
     assert 700 <= where < 800 and factor == pytest.approx(4.0 / (1.0 + 3.0 / 16.0), rel=0.3)
 
 
@@ -299,11 +307,11 @@ def test_a_tone_between_lines_is_found_at_its_frequency():
     """20.3 lines: the transform of a cosine is that of its window, which falls with the distance."""
     n, random = 2048, np.random.default_rng(5)
     noise, t = random.standard_normal(n), np.arange(n)
-    lines = _spectrum(np.cos(20.3 * 2.0 * np.pi * t / n + 1.0)[:, None])
+    lines = spectrum_of(np.cos(20.3 * 2.0 * np.pi * t / n + 1.0)[:, None])
     white, omega = np.full((200, 1), 1.0 / n), 2.0 * np.pi * np.arange(1, 201) / n
-    small = _spectrum(noise[:, None])[1:201]
-    assert _tone(small, white, omega) is None
-    assert _tone(lines[1:201] + small, white, omega) == pytest.approx(20.3 * 2.0 * np.pi / n, rel=2e-3)
+    small = spectrum_of(noise[:, None])[1:201]
+    assert largest_tone(small, white, omega) is None
+    assert largest_tone(lines[1:201] + small, white, omega) == pytest.approx(20.3 * 2.0 * np.pi / n, rel=2e-3)
 
 
 def test_what_is_folded_back_is_of_the_size_of_what_sampling_adds():
@@ -318,8 +326,8 @@ def test_what_is_folded_back_is_of_the_size_of_what_sampling_adds():
             phase, w0 = (t - begin) / width, np.pi / width
             sampled += np.where((phase > 0.0) & (phase < 1.0), size * np.sin(np.pi * phase), 0.0)
             exact += size * np.exp(-1j * w * begin) * w0 * (1.0 + np.exp(-1j * w * width)) / (w0**2 - w**2) / n
-        error = _spectrum(sampled[:, None])[20:1000, 0] - exact[20:1000]
-        said, part = _aliased(sampled[:, None], np.array([1e-12]))
+        error = spectrum_of(sampled[:, None])[20:1000, 0] - exact[20:1000]
+        said, part = aliasing_error(sampled[:, None], np.array([1e-12]))
         assert 0.0 < part < 1.0
         ratios.append(np.sqrt((np.abs(error) ** 2).mean() / (np.abs(said[20:1000]) ** 2).mean()))
     assert 0.8 < np.exp(np.mean(np.log(ratios))) < 1.25

@@ -6,19 +6,22 @@ import attrs
 import meshio
 import numpy as np
 import pytest
-from raceway_meshing.abaqus import Abaqus
-from raceway_meshing.formats import Msh, Vtu
-from raceway_meshing.gmsh import Gmsh
-from raceway_meshing.mesh_files import File
 
 from checks.validation.command_line import EXAMPLES
 from checks.validation.cubes import block
+from checks.validation.scenes import built_in
 from checks.validation.solids import write, write_msh
 from checks.validation.squeezed import squeezed
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.extend import mesh_bodies, resolve
 from raceway.plugins.bodies.mesh import check_sets
 from raceway.scene.tables import Supports
+
+Abaqus = built_in("format", "abaqus")
+Msh = built_in("format", "msh")
+Vtu = built_in("format", "vtu")
+Gmsh = built_in("mesher", "gmsh")
+File = built_in("mesher", "file")
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
 

@@ -204,7 +204,7 @@ class RossTable(CoefficientFile):
             return through_points(package.BearingElement.load(file))
 
 
-def _ross_table(table: Coefficients, generation: int, tag: str, node: int, origin: tuple[str, ...]) -> RossTable:
+def ross_table(table: Coefficients, generation: int, tag: str, node: int, origin: tuple[str, ...]) -> RossTable:
     """A table of coefficients for ROSS; ``origin``: sentences about where the numbers come from."""
     content, notes = ross_content(table, generation, tag, node), (*origin, *ross_notes(table, generation))
     return RossTable("ross", table, tag, notes, ross_toml(tag, content, notes), generation, content)
@@ -266,7 +266,7 @@ def export_ross(
         generation = int(ross_version)
     else:
         raise SceneError.at("ross_version", ross_version, f"must be one of {', '.join(map(str, GENERATIONS))}")
-    bearing = _ross_table(table, generation, tag, node, origin)
+    bearing = ross_table(table, generation, tag, node, origin)
     if path is not None:
         bearing.write(path)
     return bearing

@@ -176,7 +176,7 @@ def _large_field(value: object) -> str:
     return f"{float(value):.9E}" if isinstance(value, float | np.floating) else str(value)
 
 
-def _ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
+def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
     """Commands of Ansys.
 
     head : sentences for the first lines
@@ -317,7 +317,7 @@ PROGRAMS = {
     "nastran": _Program(
         "Nastran", _nastran_notes, lambda table, head, number, node, _: _nastran_text(table, head, number, node)
     ),
-    "ansys": _Program("Ansys", _ansys_notes, lambda table, head, number, *_: _ansys_text(table, head, number)),
+    "ansys": _Program("Ansys", _ansys_notes, lambda table, head, number, *_: ansys_text(table, head, number)),
     "csv": _Program("CSV", lambda *_: _NUMBERS_NOTES, lambda table, head, *_: _csv_text(table, head)),
     "json": _Program(
         "JSON", lambda *_: _NUMBERS_NOTES, lambda table, head, _number, _node, tag: _json_text(table, head, tag)

@@ -114,7 +114,7 @@ class NodeBearing:
         """Z (n, n) that carries a motion of ``moving`` under its load: the smallest symmetric change of that of small motions."""
         z = self.dynamic_stiffness(speed, speed)
         part = np.ix_(self.moving, self.moving)
-        z[part] = _secant(z[part].real, motion, load, self.units(speed)) + 1j * z[part].imag
+        z[part] = secant_stiffness(z[part].real, motion, load, self.units(speed)) + 1j * z[part].imag
         return z
 
     def units(self, speed: float) -> np.ndarray:
@@ -214,7 +214,7 @@ def node_bearing(
     return NodeBearing(scene, tilt == "node", damping)
 
 
-def _secant(tangent: np.ndarray, motion: np.ndarray, load: np.ndarray, unit: np.ndarray) -> np.ndarray:
+def secant_stiffness(tangent: np.ndarray, motion: np.ndarray, load: np.ndarray, unit: np.ndarray) -> np.ndarray:
     """Real symmetric (n, n) K with K u = f, nearest to the tangent.
 
     tangent : (n, n) [N/m, N, N m/rad]

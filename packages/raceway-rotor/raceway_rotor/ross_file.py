@@ -128,13 +128,13 @@ def _smoothing(table: Coefficients) -> Mapping[str, float]:
     columns = table.columns()
     sizes = largest(columns)
     changes = {
-        name: float(np.max(np.abs(_smoothed(table.axis, values) - values))) / (sizes[name[0]] or 1.0)
+        name: float(np.max(np.abs(ross_spline(table.axis, values) - values))) / (sizes[name[0]] or 1.0)
         for name, values in columns.items()
     }
     return {name: change for name, change in changes.items() if change > 1e-12}
 
 
-def _smoothed(axis: np.ndarray, values: np.ndarray) -> np.ndarray:
+def ross_spline(axis: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Values by ROSS 2 at the points of a table: a cubic smoothing spline with scipy's default bound.
 
     axis, values : (n,), n at least 4

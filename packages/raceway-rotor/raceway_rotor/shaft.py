@@ -39,7 +39,7 @@ _POINTS, _WEIGHTS = (
 
 
 @attrs.frozen(eq=False)
-class _Beam:
+class Beam:
     """Nodes (n,) [m] of a round shaft and its matrices (2 n, 2 n).
 
     stiffness, mass, rotary : K, M_t, M_r; a disc's are added to the last two
@@ -60,7 +60,7 @@ class _Beam:
         """K - lambda^2 (M_t + M_r) + lambda Omega G for speeds [rad/s]."""
         return self.stiffness - whirl**2 * (self.mass + self.rotary) + whirl * spin * self.polar
 
-    def with_disc(self, position: float, mass: float, transverse: float, polar: float) -> _Beam:
+    def with_disc(self, position: float, mass: float, transverse: float, polar: float) -> Beam:
         """A copy with a rigid disc at a node: mass [kg], inertias [kg m2]."""
         k = 2 * self.node(position)
         m, r, p = self.mass.copy(), self.rotary.copy(), self.polar.copy()
@@ -69,7 +69,7 @@ class _Beam:
         p[k + 1, k + 1] += polar
         return attrs.evolve(self, mass=m, rotary=r, polar=p)
 
-    def with_spring(self, position: float, stiffness: float, tilt: float = 0.0) -> _Beam:
+    def with_spring(self, position: float, stiffness: float, tilt: float = 0.0) -> Beam:
         """A copy with a spring against the ground at a node [N/m, N m/rad]."""
         k = 2 * self.node(position)
         s = self.stiffness.copy()
@@ -85,7 +85,7 @@ class _Beam:
         return np.sort(1.0 / np.sqrt(real))
 
 
-def _beam(
+def make_beam(
     nodes: np.ndarray,
     diameter: float,
     young: float,
@@ -93,7 +93,7 @@ def _beam(
     density: float,
     shear: bool = True,
     stiff: np.ndarray | None = None,
-) -> _Beam:
+) -> Beam:
     """A round shaft of one diameter.
 
     nodes : (n,) ascending [m]
@@ -118,7 +118,7 @@ def _beam(
                 k[part, part] += weight * shear_stiffness * np.outer(slope - turn, slope - turn)
             m[part, part] += weight * density * area * np.outer(w, w)
             r[part, part] += weight * density * inertia * np.outer(turn, turn)
-    return _Beam(np.asarray(nodes), k, m, r, 2.0 * r)
+    return Beam(np.asarray(nodes), k, m, r, 2.0 * r)
 
 
 def _shapes(x: float, length: float, phi: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -182,7 +182,7 @@ class Rotor:
 
 
 @lru_cache(maxsize=32)  # one rig is asked for at many speeds, changed rigs again for each record
-def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> _Beam:
+def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
     """The rig's shaft with its disc.
 
     Parameters
@@ -199,7 +199,7 @@ def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> _Beam:
             nodes += np.linspace(before, after, parts + 1)[1:].tolist()
     centres = 0.5 * (np.array(nodes[1:]) + np.array(nodes[:-1]))
     stiff = np.where(np.abs(centres - middle) < half, rig.hub_diameter or rig.shaft_diameter, rig.shaft_diameter)
-    bare = _beam(np.array(nodes), rig.shaft_diameter, rig.young, rig.poisson, rig.density, shear, stiff)
+    bare = make_beam(np.array(nodes), rig.shaft_diameter, rig.young, rig.poisson, rig.density, shear, stiff)
     if not shear:
         bare = attrs.evolve(bare, rotary=0.0 * bare.rotary, polar=0.0 * bare.polar)
     inner, outer, width = 0.5 * rig.shaft_diameter, rig.disc_radius, rig.disc_thickness
@@ -209,7 +209,7 @@ def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> _Beam:
 
 
 @lru_cache(maxsize=32)  # a fit asks for one at all its numbers
-def rotor(rig: Rig, speed: float, model: _Beam | None = None) -> Rotor:
+def rotor(rig: Rig, speed: float, model: Beam | None = None) -> Rotor:
     """The rotor at a speed [rad/s].
 
     Parameters
@@ -233,7 +233,7 @@ def rotor(rig: Rig, speed: float, model: _Beam | None = None) -> Rotor:
     )
 
 
-def _whirling_load(speed: float, force: complex, moment: complex) -> HarmonicLoad:
+def whirling_load(speed: float, force: complex, moment: complex) -> HarmonicLoad:
     """The excitation of a force F_y + j F_z [N] and a moment M_z - j M_y [N m] that turn forward, both at time zero."""
     return harmonic_load(speed, np.array([0.0, force, -1j * force, 1j * moment, moment]))
 
@@ -289,7 +289,7 @@ class Bearing:
         if len(self.answers) < len(self.replayed):
             self.answers.append(self.replayed[len(self.answers)])
             return np.array(self.answers[-1]).view(complex)
-        scene = attrs.evolve(self.scene, excitation=_whirling_load(speed, force, moment))
+        scene = attrs.evolve(self.scene, excitation=whirling_load(speed, force, moment))
         line = self._lines.line(scene, speed)
         if line is None:
             # Loads that are tried one after another belong to one motion of the rig.

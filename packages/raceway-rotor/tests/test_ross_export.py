@@ -11,16 +11,18 @@ import tomllib
 import numpy as np
 import pytest
 from raceway_rotor.coefficients import Coefficients, coefficients
-from raceway_rotor.export import _ross_table
-from raceway_rotor.ross_file import NAMES, _smoothed, through_points
+from raceway_rotor.export import ross_table
+from raceway_rotor.ross_file import NAMES, ross_spline, through_points
 
+from checks.validation.scenes import built_in
 from checks.validation.stores import MASS, SPEEDS, as_list, damping, made, scene, stiffness
 from raceway import RacewayError, SceneError
 from raceway.extend import select
-from raceway.plugins.executors.processes import Serial
 from raceway.points.axes import grid
 from raceway.points.sweep import fill_store, prepare
 from raceway.testing import b7206c
+
+Serial = built_in("executor", "serial")
 
 SPEED, SPIN, DIRECTION = "excitation.speed_rpm", "kinematics.spin_speed_rpm", "excitation.direction_deg"
 RADIANS = np.pi / 30.0
@@ -60,7 +62,7 @@ def test_a_rotating_force_gives_an_isotropic_bearing(shape):
 @pytest.mark.parametrize("generation, axis", [(2, "frequency"), (3, "speed")])
 def test_the_file_holds_every_number_under_the_names_of_ross(tmp_path, ending, generation, axis):
     found = table(made({SPEED: SPEEDS}))
-    path = _ross_table(found, generation, "made-up", 4, ("where from",)).write(tmp_path / f"bearing{ending}")
+    path = ross_table(found, generation, "made-up", 4, ("where from",)).write(tmp_path / f"bearing{ending}")
     section = read(path)
     assert (section["n"], section["tag"]) == (4, "made-up")
     columns = found.columns()
@@ -224,24 +226,24 @@ def test_a_table_over_speed_and_frequency_is_for_ross_3():
     found = table(made({SPEED: SPEEDS, SPIN: spins}))
     np.testing.assert_array_equal(found.speed, spins * RADIANS)
     np.testing.assert_array_equal(found.frequency, SPEEDS * RADIANS)
-    content = _ross_table(found, 3, "t", 0, ()).content
+    content = ross_table(found, 3, "t", 0, ()).content
     assert np.shape(content["kxx"]) == (len(spins), len(SPEEDS))
     np.testing.assert_array_equal(np.array(content["kxx"])[2], stiffness(SPEEDS, 1000.0))
     with pytest.raises(RacewayError, match="ROSS 2 takes one axis"):
-        _ross_table(found, 2, "t", 0, ())
+        ross_table(found, 2, "t", 0, ())
 
 
 def test_a_fixed_spin_speed_makes_it_a_table_over_frequency():
     found = table(made({SPEED: SPEEDS}, scene() | {"kinematics": {"spin_speed_rpm": 12000.0}}))
     assert found.speed is None
-    assert set(_ross_table(found, 3, "t", 0, ()).content) & {"speed", "frequency"} == {"frequency"}
+    assert set(ross_table(found, 3, "t", 0, ()).content) & {"speed", "frequency"} == {"frequency"}
 
 
 def test_what_ross_2_smooths_is_said_and_can_be_undone():
     found = table(made({SPEED: SPEEDS}))
-    told = " ".join(_ross_table(found, 2, "t", 0, ()).notes)
+    told = " ".join(ross_table(found, 2, "t", 0, ()).notes)
     assert "ROSS 2 does not pass through the points" in told
-    changed = np.max(np.abs(_smoothed(found.speed, found.damping[:, 0, 0]) - found.damping[:, 0, 0]))
+    changed = np.max(np.abs(ross_spline(found.speed, found.damping[:, 0, 0]) - found.damping[:, 0, 0]))
     assert f"cyy {changed / np.max(found.damping):.1%}" in told
     assert changed > 0.1  # below the bound of 1 N s/m a point: all that varies is lost
 
@@ -299,7 +301,7 @@ def test_a_static_sweep_has_its_tangent():
 
 def test_another_ending_is_refused(tmp_path):
     with pytest.raises(RacewayError, match="ROSS reads .toml and .json"):
-        _ross_table(table(made({SPEED: SPEEDS})), 3, "t", 0, ()).write(tmp_path / "bearing.xls")
+        ross_table(table(made({SPEED: SPEEDS})), 3, "t", 0, ()).write(tmp_path / "bearing.xls")
     assert issubclass(SceneError, RacewayError)
 
 
@@ -314,7 +316,7 @@ def test_no_two_entries_are_swapped():
     still = np.zeros((5, 5, 5))
     table = Coefficients(SPINS, None, stiffness, damping, np.full(5, 7e7), "tangent", "made up", (), still, still, "locked")
     for generation in (2, 3):
-        content = _ross_table(table, generation, "made_up", 1, ()).content
+        content = ross_table(table, generation, "made_up", 1, ()).content
         for name, (row, column) in PLACES.items():
             np.testing.assert_array_equal(content[f"k{name}"], stiffness[:, row, column])
             np.testing.assert_array_equal(content[f"c{name}"], damping[:, row, column])

@@ -10,7 +10,7 @@ from unittest import mock
 
 import numpy as np
 import pytest
-from raceway_rotor.node_bearing import _secant, node_bearing
+from raceway_rotor.node_bearing import node_bearing, secant_stiffness
 from raceway_rotor.ross_file import ross
 
 import raceway as rw
@@ -37,9 +37,9 @@ def scene(axial, force):
 
 def test_a_circle_changes_both_stiffnesses_alike_and_a_line_only_its_own():
     tangent, u = np.diag([3.0, 3.0]), np.array([1.0, -1.0j])
-    np.testing.assert_allclose(_secant(tangent, u, 2.0 * u, UNITS), 2.0 * np.eye(2), atol=1e-14)
+    np.testing.assert_allclose(secant_stiffness(tangent, u, 2.0 * u, UNITS), 2.0 * np.eye(2), atol=1e-14)
     line = np.array([1.0 + 2.0j, 0.0])
-    np.testing.assert_allclose(_secant(tangent, line, 2.0 * line, UNITS), np.diag([2.0, 3.0]), atol=1e-14)
+    np.testing.assert_allclose(secant_stiffness(tangent, line, 2.0 * line, UNITS), np.diag([2.0, 3.0]), atol=1e-14)
 
 
 def test_a_secant_carries_the_motion_and_is_symmetric():
@@ -47,7 +47,7 @@ def test_a_secant_carries_the_motion_and_is_symmetric():
     true = random.normal(size=(4, 4))
     true, tangent = true + true.T, np.diag([1.0, 2.0, 3.0, 4.0])
     u, units = random.normal(size=4) + 1j * random.normal(size=4), np.array([1.0, 1.0, 0.02, 0.02])
-    found = _secant(tangent, u, true @ u, units)
+    found = secant_stiffness(tangent, u, true @ u, units)
     np.testing.assert_allclose(found @ u, true @ u, rtol=1e-10)
     np.testing.assert_allclose(found, found.T, rtol=1e-10)
 

@@ -111,12 +111,12 @@ def test_ansys_reads_the_matrices_across_the_axis(axial):
 
 def test_unsymmetric_and_absent_entries_are_told_to_ansys():
     from raceway_rotor.coefficients import Coefficients
-    from raceway_rotor.files import _ansys_text
+    from raceway_rotor.files import ansys_text
 
     still, speed = np.zeros((3, 5, 5)), np.array([0.0, 10.0, 20.0])
     turning = np.array([[2e8, 1e7], [-1e7, 2e8]]) + np.zeros((3, 1, 1))
     table = Coefficients(speed, None, turning, 0 * turning, speed, "tangent", "made up", (), still, still, "locked")
-    found, commands = apdl(_ansys_text(table, (), 1))
+    found, commands = apdl(ansys_text(table, (), 1))
     assert ["KEYOPT", "1", "3", "1"] in commands and ["RMORE", "0", "0"] in commands
     np.testing.assert_array_equal(found["K12_1"][1], 1e7)
     np.testing.assert_array_equal(found["K21_1"][1], -1e7)

@@ -109,7 +109,7 @@ def ball(diameter: float, rows: int = 24, columns: int = 36) -> Surface:
     return Surface(0.5 * diameter * normals, normals, _grid(columns + 1, rows + 1))
 
 
-def _contact_patch(
+def contact_patch(
     centre: np.ndarray, towards: np.ndarray, along: np.ndarray, diameter: float, half: tuple[float, float], peak: float
 ) -> Surface:
     """A contact ellipse on a ball, with Hertz's pressure.
@@ -334,7 +334,7 @@ class Bearing:
             if race in races:
                 along = np.array([0.0, -np.sin(state.azimuth[k]), np.cos(state.azimuth[k])])
                 a, b = factor * _MM * state.half[i]
-                patch = _contact_patch(centres[k], towards[i], along, self.diameter, (a, b), 1e-6 * state.peak[i])
+                patch = contact_patch(centres[k], towards[i], along, self.diameter, (a, b), 1e-6 * state.peak[i])
                 parts.append(Part(f"{race} contact {k}", patch, scale="pressure", ball=k))
         return parts
 

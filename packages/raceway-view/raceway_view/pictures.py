@@ -31,7 +31,7 @@ LETTERS, _LETTER = 26, 14.5
 _GAP = 9.0
 
 
-def _ball_labels(
+def ball_labels(
     bearing: Bearing, state: State, top: float, project: Callable[[np.ndarray], np.ndarray]
 ) -> list[tuple[str, tuple[float, float]]]:
     """Texts and their lower left corners [pixels].
@@ -207,7 +207,7 @@ def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int]
         plotter.add_axes(xlabel="x", ylabel="y", zlabel="z", line_width=3, color=INK, viewport=(0.85, 0.0, 1.0, 0.2))
         plotter.enable_anti_aliasing("ssaa")
         look_from(plotter, [(1.7, 0.75, 0.85), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)], 1.08)
-        for text, corner in _ball_labels(bearing, state, top, _screen_points(plotter)):
+        for text, corner in ball_labels(bearing, state, top, _screen_points(plotter)):
             plotter.add_text(text, position=corner, font_size=LETTERS // 2, color=INK)
 
     return rendered(draw, size)

@@ -34,7 +34,7 @@ _SHOWN = 0.95
 
 
 @attrs.frozen(eq=False)
-class _Fields:
+class StressFields:
     """Fields of all bodies in one mesh, at the static equilibrium.
 
     points : (n, 3) float, undeformed nodes [m];  cells : (m, 8) int
@@ -50,7 +50,7 @@ class _Fields:
     stress: np.ndarray
 
     @classmethod
-    def of(cls, result: Result, near: Mapping[int, tuple[np.ndarray, float]] | None = None) -> _Fields:
+    def of(cls, result: Result, near: Mapping[int, tuple[np.ndarray, float]] | None = None) -> StressFields:
         """Of a result with elastic bodies: of all elements, or of those near some places.
 
         near : number of a body -> places (k, 3) [m] and the distance within which an element has a node [m]
@@ -82,7 +82,7 @@ class _Fields:
         return largest_shear(self.stress)
 
 
-def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarray, float] | None) -> _Fields:
+def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarray, float] | None) -> StressFields:
     points, cells = body.points, body.cells
     if near is not None:
         places, reach = near
@@ -90,7 +90,7 @@ def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarra
         used, numbers = np.unique(cells, return_inverse=True)
         points, u, cells = points[used], u[used], numbers.reshape(-1, 8).astype(np.uint32)
     stress = centre_stress(points, cells, u, body.moduli, body.formulation)
-    return _Fields(points, cells.astype(np.int64), np.full(len(cells), index), u, stress)
+    return StressFields(points, cells.astype(np.int64), np.full(len(cells), index), u, stress)
 
 
 def contacts_left_out(result: Result) -> str:
@@ -113,7 +113,7 @@ def field_files(result: Result) -> dict[str, bytes]:
         pyvista or its system libraries are missing.
     """
     pyvista = pyvista_of()
-    grid = _new_grid(pyvista, _Fields.of(result))
+    grid = _new_grid(pyvista, StressFields.of(result))
     balls = result.equilibrium.contact_force[: result.model.system.ball_count]
     most = int(np.argmax(balls))
     title = f"{result.title}\nvon Mises stress at the elements' centres, section through ball {most}, {balls[most]:.4g} N, x to the right"
@@ -121,7 +121,7 @@ def field_files(result: Result) -> dict[str, bytes]:
     return {"fields.vtu": _vtu(grid), "stress.png": _section_image(grid, float(result.model.azimuth[most]), title)}
 
 
-def _new_grid(pyvista: ModuleType, fields: _Fields) -> Grid:
+def _new_grid(pyvista: ModuleType, fields: StressFields) -> Grid:
     """pyvista's grid with the fields in SI units, units in their names."""
     grid = pyvista.UnstructuredGrid({_HEXAHEDRON: fields.cells}, fields.points)
     grid.point_data["displacement [m]"] = fields.displacement
@@ -202,7 +202,7 @@ def _drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Grid]:
     for side in sides:
         places = np.concatenate([near[side.index][0] if side.index in near else np.empty((0, 3)), side.axis.pole[None]])
         near[side.index] = places, _NEAR * max(contact.semi_axes[0] for contact in sides)
-    grid = _new_grid(pyvista, _Fields.of(result, near))
+    grid = _new_grid(pyvista, StressFields.of(result, near))
     races = [[side for side in sides if side.race == race] for race in dict.fromkeys(side.race for side in sides)]
     figure = new_figure(10.4, 4.4 * len(races))
     panels = figure.subplots(len(races), 3, squeeze=False, width_ratios=(1.0, 1.0, 0.75))

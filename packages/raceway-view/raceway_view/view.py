@@ -137,7 +137,7 @@ def at_rest(result: Result) -> State:
     return State(model.azimuth, column("load_{}_n"), angle, half, column("peak_pressure_{}_pa"), np.zeros(5))
 
 
-def _at_peak(result: Result) -> tuple[State, float]:
+def at_peak(result: Result) -> tuple[State, float]:
     """The moment of the last turn when a ball carries most on either race, and how far the turn is by then [deg].
 
     SceneError: a result without motion.
@@ -183,7 +183,7 @@ def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, 
     bearing = Bearing.of(result)
     moments = {"bearing.png": (at_rest(result), "at rest")}
     if result.simulation is not None:
-        state, angle = _at_peak(result)
+        state, angle = at_peak(result)
         moments["bearing-peak.png"] = state, f"when a ball carries most, {angle:.0f} deg into the turn"
     state, when = list(moments.values())[-1]
     images = dict(_images(result, bearing, moments, on_progress))

@@ -7,16 +7,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from raceway_meshing.formats import Vtu
-from raceway_view.bodies import Bearing, _contact_patch
+from raceway_view.bodies import Bearing, contact_patch
 from raceway_view.bodies import ball as solid_ball
-from raceway_view.pictures import LETTERS, _ball_labels, contacts
-from raceway_view.view import _at_peak, at_rest
+from raceway_view.pictures import LETTERS, ball_labels, contacts
+from raceway_view.view import at_peak, at_rest
 
 from checks.validation.command_line import COARSE, EXAMPLES, MINIMAL, invoke, python
+from checks.validation.scenes import built_in
 from raceway import scene_from_dict
 from raceway.extend import picture, ring_shape
 from raceway.testing import b7206c, run
+
+Vtu = built_in("format", "vtu")
 
 
 def volume(surface):
@@ -50,7 +52,7 @@ def test_rings_and_balls_have_their_volume(result):
 
 
 def test_a_contact_ellipse_has_its_axes_and_peak():
-    patch = _contact_patch(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 10.0, (1.0, 0.1), 2000.0)
+    patch = contact_patch(np.zeros(3), np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0]), 10.0, (1.0, 0.1), 2000.0)
     reach = np.abs(patch.points).max(axis=0)
     # Laid on a ball of 5 mm: 1 mm across its tangent plane becomes 5 sin(atan(1/5)) = 0.98 mm, drawn 0.4 % above it.
     assert reach[0] == pytest.approx(0.98 * 1.004, rel=1e-3) and reach[2] == pytest.approx(0.1, rel=6e-3)
@@ -85,7 +87,7 @@ def test_contacts_lie_where_ring_and_ball_meet(result):
 
 
 def test_the_peak_is_the_record_s_largest_load(moving):
-    state, angle = _at_peak(moving)
+    state, angle = at_peak(moving)
     assert 0.0 <= angle < 360.0
     assert state.load[:12].max() == pytest.approx(moving.simulation.record.contact_force[:, :12].max(), rel=1e-9)
 
@@ -103,7 +105,7 @@ def test_labels_lie_on_no_arrow_and_on_no_other_label(ball_count, every):
     bearing = Bearing.of(found := run(scene_from_dict(tables)))
     state = at_rest(found)
     top = float(state.load.max())
-    labels = _ball_labels(bearing, state, top, flat)
+    labels = ball_labels(bearing, state, top, flat)
     assert [int(text.split(":")[0]) for text, _ in labels] == list(range(0, ball_count, every))
     boxes = [np.array([corner, np.add(corner, (12.0 * len(text), LETTERS))]) for text, corner in labels]
     overlap = [(a[0] < b[1]).all() and (b[0] < a[1]).all() for k, a in enumerate(boxes) for b in boxes[:k]]

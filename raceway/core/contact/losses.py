@@ -155,7 +155,7 @@ def _slip_below(t, h, spin, c):
 
 
 @jit(float64(float64, float64), inline=True)
-def _mean_slip(spin, curvature):
+def mean_slip(spin, curvature):
     """Mean of the slip's size over a contact, weighted by the pressure: v = spin t + curvature (t^2 - c), t from -1 to 1 across.
 
     Parameters
@@ -218,7 +218,7 @@ def _contact_losses(at, film, speed, balls):
         heated = 1.0 + 0.29 * exponential(0.78 * log_loading)
         force = at.front[c] * root * along * slope * (rigid * along * along + 1.8 * regime)
         force = force / ((slope * along * along + regime) * heated)
-        slip = _mean_slip(balls.spin[c] * root * at.spin[c], rolling * root * root * at.curvature[c])
+        slip = mean_slip(balls.spin[c] * root * at.spin[c], rolling * root * root * at.curvature[c])
         pressure = at.pressure[c] * root
         thinned = 1.0 + 0.254 * exponential(0.62 * log_loading)
         y = steep + logarithm(at.strain[c] * slip * speed * thinned) + film.pressure_viscosity * pressure

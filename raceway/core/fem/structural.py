@@ -46,7 +46,7 @@ def density(points: int) -> tuple[np.ndarray, np.ndarray]:
     return x, 0.75 * (1.0 - x * x) * w
 
 
-def _nodal_weights(places: np.ndarray, centre: float, half: float) -> np.ndarray:
+def line_load_weights(places: np.ndarray, centre: float, half: float) -> np.ndarray:
     """Consistent nodal forces of a unit line load on piecewise linear shape functions.
 
     Parameters
@@ -94,7 +94,7 @@ ANGLES = 13
 
 
 @attrs.frozen(eq=False)
-class _RingCompliance:
+class RingCompliance:
     """Structural compliance of one ring.
 
     Attributes
@@ -138,7 +138,7 @@ def ring_compliance(
     surface: float | None = None,
     around: float | None = None,
     angles: int = ANGLES,
-) -> _RingCompliance:
+) -> RingCompliance:
     """Structural compliance of a ring at contact angles all over its groove.
 
     Parameters
@@ -174,7 +174,7 @@ def ring_compliance(
     across = arrays["compliance"]
     direct = np.diagonal(across[:, :, 0]) - arrays["half_space"]
     along = shape.groove * float(profile.angles[1] - profile.angles[0])
-    return _RingCompliance(table, direct, across, len(profile.quads) * divisions, depths, along)
+    return RingCompliance(table, direct, across, len(profile.quads) * divisions, depths, along)
 
 
 def ring_section(shape: RingShape, ball_diameter: float, bulk: float | None = None, surface: float | None = None) -> Profile:
@@ -193,7 +193,7 @@ def _columns(
     size = 3 * len(profile.points)
     loads, observed = np.zeros((size, len(table))), np.zeros((size, len(table)))
     for a, angle in enumerate(table):
-        weights = _nodal_weights(profile.angles, angle, half / shape.groove)
+        weights = line_load_weights(profile.angles, angle, half / shape.groove)
         loads[3 * profile.race, a] = weights * sign * np.cos(profile.angles)
         loads[3 * profile.race + 2, a] = weights * sign * np.sin(profile.angles)
         normal = sign * np.array([np.cos(angle), np.sin(angle)])
@@ -409,8 +409,8 @@ class ElasticBodies:
     calibrations : of contacts on the inner and the outer race at their surface points, where those are known
     """
 
-    inner: _RingCompliance
-    outer: _RingCompliance
+    inner: RingCompliance
+    outer: RingCompliance
     ball_direct: float
     ball_opposite: float
     calibrations: tuple[_Calibration | None, _Calibration | None] = (None, None)
@@ -480,7 +480,7 @@ def elastic_scalars(rigid: np.ndarray, bodies: ElasticBodies, angles: np.ndarray
     for race, ring in enumerate((bodies.inner, bodies.outer)):
         values = bodies.direct(race, knots)
         if angles is not None:
-            rings.append(_between_grooves(ring, angles))
+            rings.append(between_grooves(ring, angles))
             values -= along_normal(knots, rings[-1][0])
         tables += [values, distance * CubicSpline(knots, values, bc_type=((1, 0.0), (1, 0.0)))(knots, 1)]
     head = [bodies.ball_opposite, 0.0 if angles is None else 1.0, count, knots[0], distance, len(knots)]
@@ -490,7 +490,7 @@ def elastic_scalars(rigid: np.ndarray, bodies: ElasticBodies, angles: np.ndarray
     return np.concatenate([rigid, np.broadcast_to(elastic, (*rigid.shape[:-1], len(elastic)))], axis=-1)
 
 
-def _between_grooves(ring: _RingCompliance, angles: np.ndarray) -> np.ndarray:
+def between_grooves(ring: RingCompliance, angles: np.ndarray) -> np.ndarray:
     """Compliance of one ring between groove centres, from loads and displacements along the normals of contacts.
 
     Parameters

@@ -507,10 +507,10 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
         With the state at the start of the span that the iteration ended at, finite or the first guess.
     """
     if not stiff(problem, path):
-        return _newton(problem, path, tolerance, patience, limit, np.array(problem.system.rated_columns))
+        return newton_iteration(problem, path, tolerance, patience, limit, np.array(problem.system.rated_columns))
     sweeps, change = 0, np.inf
     for turn in range(_RATES):
-        solved = _newton(problem, path, tolerance, patience, limit, np.empty(0, dtype=np.int64))
+        solved = newton_iteration(problem, path, tolerance, patience, limit, np.empty(0, dtype=np.int64))
         sweeps += solved.sweeps
         last, change = change, float(np.abs((solved.path.q - path.q) / problem.weight).max())
         path = solved.path
@@ -539,7 +539,7 @@ def linearised(problem: Problem, path: Path) -> Eliminated:
     return eliminated
 
 
-def _newton(problem: Problem, path: Path, tolerance: float, patience: int, limit: int, rated: np.ndarray) -> Solved:
+def newton_iteration(problem: Problem, path: Path, tolerance: float, patience: int, limit: int, rated: np.ndarray) -> Solved:
     """The compiled iteration; ``rated``: columns of the balls whose rates are put in after every sweep."""
     eliminated, report = problem.eliminated(path.nodes), np.zeros(REPORT)
     q, v, a, ball, rate = path.q.copy(), path.v.copy(), path.a.copy(), path.ball.copy(), path.rate.copy()

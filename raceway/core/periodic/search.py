@@ -194,7 +194,7 @@ class Recorded:
         return np.ascontiguousarray((waves @ lines).real)
 
 
-def _neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> _Neighbour:
+def neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> _Neighbour:
     """A solved motion, for other problems to start from; ``q``, ``tangent`` as in ``first_guess``."""
     problem, path = solved.problem, solved.path
     first = guess(problem, q, tangent, path.nodes)
@@ -233,7 +233,7 @@ class PeriodicMotion:
     def neighbour(self, q: np.ndarray, tangent: np.ndarray) -> _Neighbour:
         """What the motion lends to others, about the problem's equilibrium q (5,) with its tangent (5, 5); made once."""
         if not self._neighbour:
-            self._neighbour.append(_neighbour_of(self.refined.solved, q, tangent))
+            self._neighbour.append(neighbour_of(self.refined.solved, q, tangent))
         return self._neighbour[0]
 
     @property

@@ -125,7 +125,7 @@ def steady(
     refuse(ring, schedule)
     system = surrogate(ring)
     speed = 2.0 * np.pi / (schedule.dt * schedule.steps_per_turn)
-    q, tangent = _equilibrium(system.without(CAGE), start)
+    q, tangent = static_equilibrium(system.without(CAGE), start)
     problem = problem_of(system, speed, q, symmetric)
     if system.scalars[CAGE] != 0.0 and not problem.symmetry.pitch:
         why = (
@@ -151,7 +151,7 @@ def steady(
     return out
 
 
-def _equilibrium(system: System, start: Motion) -> tuple[np.ndarray, np.ndarray]:
+def static_equilibrium(system: System, start: Motion) -> tuple[np.ndarray, np.ndarray]:
     """The static equilibrium (5,) that the start is at or near, and its tangent (5, 5)."""
     now = system.evaluate(start.q, ball=start.ball)
     imbalance = np.abs((now.force + system.stiffness @ start.q - system.load) * system.free)

@@ -126,14 +126,14 @@ def energy_balance(system: System, record: Record) -> _EnergyBalance:
     stored += friction.stored
     kinetic = 0.5 * np.einsum("ni,ij,nj->n", v, system.mass, v)
     dt = record.time[1] - record.time[0]
-    work = _cumulative(np.einsum("ni,ni->n", record.force, v), dt)
+    work = cumulative_integral(np.einsum("ni,ni->n", record.force, v), dt)
     lost = np.einsum("ni,ij,nj->n", v, system.damping, v)
     if system.scalars[layout.DAMPING] > 0.0:
         speed = np.gradient(record.gap, dt, axis=0)
         lost = lost + system.scalars[layout.DAMPING] * (speed**2 * (record.gap < 0.0)).sum(axis=1)
     if system.scalars[layout.TIME_CONSTANT] > 0.0:
         lost = lost + _lost_in_contacts(system, record, rate(record.gap, dt))
-    losses = _cumulative(lost, dt) + friction.lost
+    losses = cumulative_integral(lost, dt) + friction.lost
     total = kinetic + stored - work + losses
     size = max(kinetic.max(), np.ptp(stored), np.ptp(work), np.ptp(losses), 1e-300)
     return _EnergyBalance(kinetic, stored, work, losses, float(np.abs(total - total[0]).max() / size))
@@ -157,7 +157,7 @@ def rate(values: np.ndarray, dt: float) -> np.ndarray:
     return np.asarray(slope)
 
 
-def _cumulative(values: np.ndarray, dt: float) -> np.ndarray:
+def cumulative_integral(values: np.ndarray, dt: float) -> np.ndarray:
     """Integral from the first sample to each sample, of fourth order inside."""
     parts = 0.5 * dt * (values[1:] + values[:-1])
     if len(values) > 3:

@@ -42,7 +42,7 @@ AT_ONCE = Increment()
 _STIFFER = 1.02
 
 
-class _SteppedBearing:
+class SteppedBearing:
     """``SteppedSystem`` around a system with the interface of ``raceway.core.ring.ring.Ring``.
 
     Parameters
@@ -362,7 +362,7 @@ class Ring(ABC):
     def stepped(self) -> SteppedSystem:
         """What loops in Python step."""
 
-        return _SteppedBearing(self)
+        return SteppedBearing(self)
 
     def of_balls(self, balls: np.ndarray, table: np.ndarray) -> Self:
         """A copy with some of the balls, by their indices (n,), which have the table (n, COLUMNS)."""

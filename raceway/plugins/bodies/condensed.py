@@ -114,7 +114,7 @@ class _PatchCost:
     step_s: float
 
 
-def _patch_cost(problem: Problem) -> _PatchCost:
+def patch_cost(problem: Problem) -> _PatchCost:
     """Predicted cost of the contacts of a scene."""
     n = nodes_of(problem)
     balls = problem.bearing.balls_in_all
@@ -152,8 +152,8 @@ _PATCHES: tuple[Rule[Problem], ...] = (
         f"{_INSTEAD}",
     ),
     Rule(
-        "mesh.nodes_per_semi_axis", lambda s: _patch_cost(s).bytes > _LIMIT,
-        lambda s: f"would take {_patch_cost(s).bytes / 2**30:.1f} GiB, above {_LIMIT / 2**30:.0f} GiB: use fewer points",
+        "mesh.nodes_per_semi_axis", lambda s: patch_cost(s).bytes > _LIMIT,
+        lambda s: f"would take {patch_cost(s).bytes / 2**30:.1f} GiB, above {_LIMIT / 2**30:.0f} GiB: use fewer points",
     ),
 )  # fmt: skip
 
@@ -233,7 +233,7 @@ class Condensed:
         why = "bodies.kind is condensed: finite elements of rings and balls, reduced to structural compliances"
         parts.keep("elastic rings and balls", why)
         if _nodal(problem):
-            cost = _patch_cost(problem)
+            cost = patch_cost(problem)
             why = f"contact.discretisation is nodal: some {cost.points} points carry a contact, {cost.bytes / 2**20:.0f} MiB"
             parts.keep("pressures at surface points", why)
             moves = problem.recorded and problem.integrator.method.inertial and problem.kinematics.ball_inertia
@@ -263,7 +263,7 @@ class Condensed:
             more = _BETWEEN_S * (problem.bearing.ball_count / 12.0) ** 2 if parts.keeps(BETWEEN_BALLS) else 0.0
             once = section_cost(problem).seconds
             return Cost(START_S + once + compiled_motion(problem, balls, motion, _TIMES, more), once)
-        patches = _patch_cost(problem)
+        patches = patch_cost(problem)
         guess = MOTION if problem.excitation is not None and problem.integrator.method.inertial else 0.0
         seconds = patches.setup_s + 3.0 * patches.equilibrium_s + guess * patches.step_s
         steps = motion.turns * motion.steps_per_turn if motion.recorded else 0

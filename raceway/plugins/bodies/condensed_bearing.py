@@ -97,7 +97,7 @@ _PRESSURE = 1.5e9
 _CALIBRATED_BULK = 0.4
 #: Compliances of the last scenes: a run asks for them up to four times, a study for the same bodies again and again.
 _KEPT = 8
-_BODIES: dict[Hashable, ElasticBodies] = {}
+BODIES_BY_SECTION: dict[Hashable, ElasticBodies] = {}
 _LOCK = Lock()
 
 
@@ -127,10 +127,10 @@ def elastic_bodies(problem: Problem, basis: Basis, coarser: float = 1.0) -> Elas
     """
     key = (sections(problem, basis), coarser)
     with _LOCK:
-        bodies = _BODIES.pop(key, None) or _elastic_bodies(problem, basis, coarser)
-        _BODIES[key] = bodies  # the last in, and the last to go
-        if len(_BODIES) > _KEPT:
-            del _BODIES[next(iter(_BODIES))]
+        bodies = BODIES_BY_SECTION.pop(key, None) or _elastic_bodies(problem, basis, coarser)
+        BODIES_BY_SECTION[key] = bodies  # the last in, and the last to go
+        if len(BODIES_BY_SECTION) > _KEPT:
+            del BODIES_BY_SECTION[next(iter(BODIES_BY_SECTION))]
     b, (a, across) = problem.bearing, (float(x) for x in basis.inner.semi_axes(basis.ball_load))
     direct, opposite = ball_compliance(0.5 * b.ball_diameter, b.balls.young, b.balls.poisson, a, across)
     if not abs(direct) * basis.ball_load < b.ball_diameter:

@@ -78,7 +78,7 @@ class _ElasticCost:
     step_s: float
 
 
-def _elastic_cost(problem: Problem) -> _ElasticCost | None:
+def elastic_cost(problem: Problem) -> _ElasticCost | None:
     """Predicted cost of the bodies of a scene; None where the mesher cannot tell before it meshes."""
     mesh = predicted_mesh(problem)
     if mesh is None:
@@ -259,7 +259,7 @@ class Elastic:
         unmeshed = points or mesh_faults(problem)
         if faults or unmeshed:
             return faults + unmeshed
-        cost, most = _elastic_cost(problem), _SHARE * allowed_bytes()
+        cost, most = elastic_cost(problem), _SHARE * allowed_bytes()
         if cost is None or cost.bytes <= most:
             return []
         why = (
@@ -277,12 +277,12 @@ class Elastic:
 
     def stable_step(self, problem: Problem) -> float | None:
         """Of elements and contacts [s]; None where the mesher cannot predict it."""
-        cost = _elastic_cost(problem)
+        cost = elastic_cost(problem)
         return None if cost is None or cost.stable_step_s == 0.0 else cost.stable_step_s
 
     def decide(self, problem: Problem, parts: Decisions) -> None:
         """What of the bodies is not left out: all of them."""
-        cost = _elastic_cost(problem)
+        cost = elastic_cost(problem)
         size = "" if cost is None else f": {words(cost)}"
         parts.keep(
             "elastic rings and balls", f"bodies.kind is elastic: finite elements of rings and balls, every node{size}"
@@ -313,7 +313,7 @@ class Elastic:
 
     def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
         """Meshing, factors and solves; contact resultants are calibrated as the bearing's own condensed rings."""
-        cost = _elastic_cost(problem)
+        cost = elastic_cost(problem)
         if cost is None:
             return Cost(START_S, scales=False, at_least=True)
         seconds = START_S + cost.equilibrium_s

@@ -48,13 +48,13 @@ def transient(registry: Registry) -> list[str]:
     return [entry.name for entry in transient_integrators(registry)]
 
 
-def _laws_with(registry: Registry, *discretisations: str) -> list[str]:
+def laws_with(registry: Registry, *discretisations: str) -> list[str]:
     """Names of the laws of ball contacts that know these discretisations."""
     laws = [entry for entry in registry.of_kind("contact_law") if not line_contact(entry.plugin)]
     return [law.name for law in laws if set(discretisations) <= set(law.plugin.discretisations)]
 
 
-def _with_law(name: str, registry: Registry) -> Tables:
+def law_changes(name: str, registry: Registry) -> Tables:
     """The changes that give a scene a law: a law that needs options has those of its first example."""
     plugin = registry.find("contact_law", name).plugin
     try:
@@ -93,12 +93,12 @@ def catalogue(registry: Registry, tables: ReadTables | None = None) -> tuple[Cas
 
 def _any_scene(base: Tables, registry: Registry, own: bool) -> Iterator[Case]:
     """Steps around the limit, orbits, undamped steps, penalties; ``own``: of a user's scene, whose orbit is its own."""
-    laws = _laws_with(registry, "resultant")
+    laws = laws_with(registry, "resultant")
     for name in transient(registry):
         by_name: Tables = {"tables": base, "integrator": name}
         yield Case("steps around the limit, linear", "motions:linear", {"integrator": name}, by_name)
         for law in laws:
-            setting, changes = {"integrator": name, "law": law}, _with_law(law, registry)
+            setting, changes = {"integrator": name, "law": law}, law_changes(law, registry)
             arguments = {**by_name, "changes": changes}
             for tilt in ("locked", "free"):
                 tilted = {**arguments, "changes": {**changes, "supports.tilt": tilt}}
@@ -125,8 +125,8 @@ def _any_scene(base: Tables, registry: Registry, own: bool) -> Iterator[Case]:
 def _contacts(base: Tables, registry: Registry) -> Iterator[Case]:
     """Impacts, deep penetrations, equilibria from afar, chatter."""
     names = transient(registry)
-    for law in _laws_with(registry, "resultant"):
-        arguments: Tables = {"tables": base, "changes": _with_law(law, registry)}
+    for law in laws_with(registry, "resultant"):
+        arguments: Tables = {"tables": base, "changes": law_changes(law, registry)}
         for name in names:
             moved, setting = {**arguments, "integrator": name}, {"integrator": name, "law": law}
             for speed in (0.01, 1.0, 10.0):
@@ -145,8 +145,8 @@ def _scenes(base: Tables, registry: Registry) -> Iterator[Case]:
     for name, changes, closed, judge in SCENES:
         if closed:
             yield Case(f"Hertz' contacts: {name}", "scenes:hertz_factor", {}, {"tables": base, "changes": changes})
-        for law in _laws_with(registry, "resultant"):
-            lawful = {**changes, **_with_law(law, registry)}
+        for law in laws_with(registry, "resultant"):
+            lawful = {**changes, **law_changes(law, registry)}
             arguments: Tables = {"tables": base, "judge": judge, "changes": lawful}
             yield Case(name, "scenes:extreme", {"law": law}, {**arguments, "closed_form": closed}, name in _DATA["quick"])
             if name in _DATA["condensed"]:
@@ -157,7 +157,7 @@ def _scenes(base: Tables, registry: Registry) -> Iterator[Case]:
 def _points(base: Tables, registry: Registry) -> Iterator[Case]:
     """Condensed bodies with every law that surface points can have."""
     turn: Tables = {"integrator.turns": 1, "integrator.steps_per_turn": 40}
-    for law in _laws_with(registry, "nodal"):
+    for law in laws_with(registry, "nodal"):
 
         def case(name: str, measure: str, changes: Tables, shown: Tables | None = None, law: str = law, **more: str) -> Case:
             setting = {"law": law, "bodies": "condensed, points", **(shown or {})}
@@ -188,7 +188,7 @@ def _elastic(base: Tables, registry: Registry) -> Iterator[Case]:
         changes = {**changes, "contact.kind": law} if law else changes
         return Case(f"elastic bodies: {name}", measure, setting, {"tables": tables, "changes": changes, **more}, False)
 
-    for law in _laws_with(registry, "nodal", "resultant"):
+    for law in laws_with(registry, "nodal", "resultant"):
         for name, changes in _DATA["resultants"] if law == "hertz" else _DATA["resultants"][:1]:
             yield case(name, "scenes:calibrated_at_rest", {**changes, "excitation": None}, "resultants", base, law)
         for name, changes in _DATA["elastic_points"] if law == "hertz" else _DATA["elastic_points"][:1]:

@@ -141,7 +141,7 @@ def _force_at(model: Model, pair: int, params: np.ndarray | None, approach: floa
     return _force_and_slope(model, pair, approach, params)[0]
 
 
-def _axial_displacement(model: Model) -> float:
+def displacement_under_axial_load(model: Model) -> float:
     """Displacement [m] under the axial load alone, the balls weightless.
 
     All balls carry the same load Q at both races, so that groove centres are s = s0 + delta_i(Q) + delta_o(Q) apart; their
@@ -196,7 +196,7 @@ def _stiffer_than_hertz(model: Model, ball_load: float) -> bool:
     return False
 
 
-def _axial_force(model: Model, equilibrium: Equilibrium) -> float:
+def energy_slope(model: Model, equilibrium: Equilibrium) -> float:
     """Slope [N] of the stored energy along the ring's axial displacement, in equilibrium; for conservative forces.
 
     Balls are in equilibrium themselves, so that what follows of them does not count.  Unlike a sum over the balls' loads it
@@ -256,11 +256,11 @@ def _at_rest(rows: Rows, bench: Bench, closed_form: bool) -> None:
         except RacewayError:
             ratio = 1.0  # the row itself tells that there is no equilibrium
         words = "axial slope of the stored energy [N]"
-        rows.check(words, lambda: _axial_force(*settled()), _SLOPE_WHY, Limit.equal(load, _SLOPE * ratio))
+        rows.check(words, lambda: energy_slope(*settled()), _SLOPE_WHY, Limit.equal(load, _SLOPE * ratio))
     if closed_form:
         model = bench.changed({"kinematics.ball_inertia": False, "load.radial": [0.0, 0.0]}).model()
         why = "the law's own force, inverted for one ball by bisection; both are solved to 1e-9 and better"
-        near, words = _axial_displacement(model), "axial displacement [m]"
+        near, words = displacement_under_axial_load(model), "axial displacement [m]"
         rows.check(words, lambda: float(solve_equilibrium(model).displacement[0]), why, Limit.equal(near, 1e-6))
 
 

@@ -321,10 +321,10 @@ def measured(
 
 
 def _answer(case: Case, registry: Registry) -> Tables:
-    return {"rows": [attrs.asdict(row) for row in _rows_of(case, registry)]}
+    return {"rows": [attrs.asdict(row) for row in case_rows(case, registry)]}
 
 
-def _rows_of(case: Case, registry: Registry) -> list[_Row]:
+def case_rows(case: Case, registry: Registry) -> list[_Row]:
     """The rows of a case; whatever its code raises becomes a failed row."""
     rows, (module, _, function) = Rows(case.name, case.setting), case.measure.partition(":")
     arguments, bench = dict(case.arguments), None

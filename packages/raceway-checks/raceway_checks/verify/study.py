@@ -171,7 +171,7 @@ class _Impact:
         return _CONTACT_TIME * self.largest_approach / self.speed
 
 
-def _impact_of(inputs: Tables) -> _Impact:
+def impact_of(inputs: Tables) -> _Impact:
     """The impact that a case describes; its ``type`` says what the sphere meets."""
     radius, speed = inputs["R_m"], inputs["v_each_m_s"]
     mass = inputs["rho_kg_m3"] * 4.0 / 3.0 * pi * radius**3
@@ -185,7 +185,7 @@ def _impact_of(inputs: Tables) -> _Impact:
 
 def _impact_of_spheres(case: Case, registry: Registry) -> Rows:
     """Closed formulas with the factor of ``raceway.core.contact.hertz``, then each integrator."""
-    impact, out = _impact_of(case.inputs), case.outputs
+    impact, out = impact_of(case.inputs), case.outputs
     yield case.row("peak force, closed form [N]", out["Fmax_N"], impact.largest_force, case.rel_tol)
     yield case.row("largest approach, closed form [m]", out["dmax_m"], impact.largest_approach, case.rel_tol)
     yield case.row("contact time, closed form [s]", out["tc_s"], impact.contact_time, case.rel_tol)
@@ -193,7 +193,7 @@ def _impact_of_spheres(case: Case, registry: Registry) -> Rows:
         note, force, time = "", None, None
         try:
             # What lies farthest off, over touches at several instants within a step.
-            touches = [_measure(entry.plugin(), impact, _STEPS_PER_CONTACT, phase) for phase in _PHASES]
+            touches = [peak_and_duration(entry.plugin(), impact, _STEPS_PER_CONTACT, phase) for phase in _PHASES]
             force = max((touch[0] for touch in touches), key=lambda f: abs(f - impact.largest_force))
             time = max((touch[1] for touch in touches), key=lambda t: abs(t - impact.contact_time))
         except Exception as why:  # a third party's own code: it is reported by name
@@ -202,7 +202,7 @@ def _impact_of_spheres(case: Case, registry: Registry) -> Rows:
         yield case.row(f"contact time, {entry.name} [s]", out["tc_s"], time, _TRANSIENT_TOLERANCE, note)
 
 
-def _measure(method: Integrator, impact: _Impact, steps: int, phase: float) -> tuple[float, float]:
+def peak_and_duration(method: Integrator, impact: _Impact, steps: int, phase: float) -> tuple[float, float]:
     """Peak force [N] and contact time [s] of one impact at ``steps`` steps a contact.
 
     phase : where within a step the first touch falls, in [0, 1)
@@ -292,7 +292,7 @@ _IN_FULL = ("seed-static-pressures",)
 
 
 @attrs.frozen(eq=False, repr=False, slots=False)
-class _Verification(Answer):
+class Verification(Answer):
     """The rows of all cases that were computed; ``every``: whether a screen shows all of them."""
 
     stem: ClassVar[str] = "verify"
@@ -350,7 +350,7 @@ def verify(
     *,
     registry: Registry | None = None,
     progress: OnProgress | None = None,
-) -> _Verification:
+) -> Verification:
     """Compute the reference cases; exit code 1 when a number misses its tolerance.
 
     Published numbers, closed forms and internal comparisons are counted separately.
@@ -373,7 +373,7 @@ def verify(
         report(case.id, count, len(cases))
         rows += compute(case, registry)
     report("", len(cases), len(cases))
-    return _Verification(tuple(rows), every)
+    return Verification(tuple(rows), every)
 
 
 def _cases(only: str | Iterable[str]) -> list[Case]:

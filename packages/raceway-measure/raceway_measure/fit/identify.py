@@ -379,18 +379,18 @@ def identify(
     return answer
 
 
-def _coefficients(state: State) -> np.ndarray:
+def coefficients_of_state(state: State) -> np.ndarray:
     """K [N/m] and C [N s/m] with the rig's tilt, then with the tilt locked (4,)."""
     return np.array([state.stiffness, state.damping, *state.locked])
 
 
-def _standard_errors(shaft: Rotor, state: State, error: float) -> np.ndarray:
-    """Standard errors of ``_coefficients`` (4,) for one of the deflection at the sensor [m], real and imaginary part together.
+def standard_errors(shaft: Rotor, state: State, error: float) -> np.ndarray:
+    """Standard errors of ``coefficients_of_state`` (4,) for one of the deflection at the sensor [m], real and imaginary part together.
 
     Z is analytic in the deflection while moment over tilt stays; half of its variance lies along each direction.
     """
     step = 1e-4 * abs(state.sensor)
-    more, less = (_coefficients(with_tilt_of(shaft, state, state.sensor + sign * step)) for sign in (1.0, -1.0))
+    more, less = (coefficients_of_state(with_tilt_of(shaft, state, state.sensor + sign * step)) for sign in (1.0, -1.0))
     change = (more - less) / (2.0 * step)
     slopes = np.hypot(change[::2], state.speed * change[1::2])
     stiffness = slopes * error / np.sqrt(2.0)
@@ -398,8 +398,8 @@ def _standard_errors(shaft: Rotor, state: State, error: float) -> np.ndarray:
 
 
 def _largest_change(state: State, changed: Iterable[State]) -> np.ndarray:
-    """Largest change of ``_coefficients`` (4,) among changed states."""
-    return np.max([np.abs(_coefficients(near) - _coefficients(state)) for near in changed], axis=0)
+    """Largest change of ``coefficients_of_state`` (4,) among changed states."""
+    return np.max([np.abs(coefficients_of_state(near) - coefficients_of_state(state)) for near in changed], axis=0)
 
 
 def identify_recording(
@@ -438,8 +438,8 @@ def identify_recording(
     stiffer = 1.0 + _TILT * abs(scene_stiffness / state.stiffness - 1.0)
     turned = (-component.angle_error, component.angle_error)
     parts = {
-        "spread": COVERAGE * _standard_errors(shaft, state, component.error),
-        "slow roll": COVERAGE * _standard_errors(shaft, state, response.run_out.error),
+        "spread": COVERAGE * standard_errors(shaft, state, component.error),
+        "slow roll": COVERAGE * standard_errors(shaft, state, response.run_out.error),
         "marks": _largest_change(
             state, [with_tilt_of(shaft, state, state.sensor + with_run_out * (exp(1j * turn) - 1.0)) for turn in turned]
         ),

@@ -43,12 +43,12 @@ _BLOCKS, _UNLIKELY = 16, 1e-3
 _TOP, _LOUDER = 0.1, 4.0
 
 
-def _spectrum(signal: np.ndarray) -> np.ndarray:
+def spectrum_of(signal: np.ndarray) -> np.ndarray:
     """Discrete Fourier transform of real signals (N, ...) less their means, over N."""
     return np.asarray(np.fft.rfft(signal - signal.mean(axis=0), axis=0) / len(signal))
 
 
-def _tone(residuals: np.ndarray, variance: np.ndarray, omega: np.ndarray) -> float | None:
+def largest_tone(residuals: np.ndarray, variance: np.ndarray, omega: np.ndarray) -> float | None:
     """Frequency [rad/s] of the largest tone in complex residuals (n, d) at even frequencies (n,); None without one."""
     power = np.abs(residuals) ** 2 / variance
     peak, axis = np.unravel_index(int(np.argmax(power)), power.shape)
@@ -63,7 +63,7 @@ def _tone(residuals: np.ndarray, variance: np.ndarray, omega: np.ndarray) -> flo
     return float(omega[0] + (omega[1] - omega[0]) * np.clip(index, peak - 1, peak + 1))
 
 
-def _uneven(power: np.ndarray) -> tuple[int, float] | None:
+def uneven_block(power: np.ndarray) -> tuple[int, float] | None:
     """Index amid the block of power (n, d) over variance that is farthest from the mean, and its factor; None for white residuals."""
     from scipy.stats import chi2
 
@@ -76,7 +76,7 @@ def _uneven(power: np.ndarray) -> tuple[int, float] | None:
     return sum(len(block) for block in blocks[:worst]) + len(blocks[worst]) // 2, float(factors[worst])
 
 
-def _aliased(signal: np.ndarray, noise: np.ndarray) -> tuple[np.ndarray, float]:
+def aliasing_error(signal: np.ndarray, noise: np.ndarray) -> tuple[np.ndarray, float]:
     """Standard error (N / 2 + 1, d), with its phase, of a force (N, d) by its spectrum beyond half the sampling rate.
 
     noise : (d,) variance at a frequency, at most
@@ -85,12 +85,12 @@ def _aliased(signal: np.ndarray, noise: np.ndarray) -> tuple[np.ndarray, float]:
     count = len(signal)
     quiet = signal - np.median(signal, axis=0)
     # A window removes what beginning and end of a record add everywhere, and leaves 3 / 8 of the noise; pulses are rare, noise is not.
-    windowed = np.abs(_spectrum(np.hanning(count)[:, None] * quiet)) ** 2
+    windowed = np.abs(spectrum_of(np.hanning(count)[:, None] * quiet)) ** 2
     noise = np.minimum(noise, (1.4826 * np.median(np.abs(quiet), axis=0)) ** 2 / count)
     level = windowed[-int(_TOP * len(windowed)) :].mean(axis=0)
     visible = level > _LOUDER * 0.375 * noise
     share = np.linspace(0.0, 1.0, count // 2 + 1)[:, None]  # frequency over half the rate
-    folded = _spectrum((-1.0) ** np.arange(count)[:, None] * quiet) * ((1.0 - share) / (2.0 - share)) ** 2
+    folded = spectrum_of((-1.0) ** np.arange(count)[:, None] * quiet) * ((1.0 - share) / (2.0 - share)) ** 2
     part = float(np.sqrt(np.where(visible, level / windowed.max(axis=0), 0.0).max()))
     return np.where(visible, folded, 0.0) / np.sqrt(2.0), part
 
@@ -135,7 +135,7 @@ class _Spectra:
     order: int = 0
 
 
-def _spectra_of(signals: Signals) -> _Spectra:
+def spectra_of(signals: Signals) -> _Spectra:
     """Spectra in the excited band; force and displacement along one axis, even intervals and a force that changes are needed."""
     columns, source = signals.columns, signals.source
     present = [pair for pair in _ONE if columns.keys() >= {*pair}]
@@ -159,7 +159,7 @@ def _spectra_of(signals: Signals) -> _Spectra:
     displacement, force = (np.column_stack([columns[name] for name in names]) for names in zip(*pairs, strict=True))
     count, interval = len(force), float(steps.mean())
     omega = 2.0 * np.pi * np.fft.rfftfreq(count, interval)
-    of_force, of_displacement = _spectrum(force), _spectrum(displacement)
+    of_force, of_displacement = spectrum_of(force), spectrum_of(displacement)
     power = np.cumsum((np.abs(of_force) ** 2).sum(axis=1))
     low, high = (omega[int(np.searchsorted(power, part * power[-1]))] for part in (_OUTSIDE, 1.0 - _OUTSIDE))
     band = (omega > 0.0) & (omega >= (1.0 - _WIDER) * low) & (omega <= (1.0 + _WIDER) * high) & (omega < omega[-1])
@@ -169,7 +169,7 @@ def _spectra_of(signals: Signals) -> _Spectra:
     return _Spectra(omega[band], of_force[band], moved, axes, np.flatnonzero(band), time, force, order)
 
 
-def _free_parts(names: Sequence[str], spectra: _Spectra, mass: float | None) -> list[Free]:
+def free_parts(names: Sequence[str], spectra: _Spectra, mass: float | None) -> list[Free]:
     """Free numbers of the linear model, by words K, C and mass; in two directions K stands for its four parts, or they by name.
 
     A mass that is None is free, too.
@@ -203,7 +203,7 @@ def _word(part: str) -> str:
 
 
 @attrs.define(eq=False)
-class _Linear:
+class LinearResiduals:
     """Weighted residuals of the spectra, ``raceway_measure.fit.estimate.Residuals``: free numbers, then the parts of T.
 
     mass : where it is not free [kg];  noise : variances (2, k, d) of displacement and force at the lowest frequency, by power of 1 / w
@@ -229,7 +229,7 @@ class _Linear:
         x, turns = 1j * omega / omega[-1], np.outer(time, self.tones)
         grown = (time / time[-1:])[:, None]
         waves = [wave * size for wave in (np.cos(turns), np.sin(turns)) for size in (1.0, grown)] if len(time) else []
-        hum = [_spectrum(wave)[self.spectra.indices] for wave in waves]
+        hum = [spectrum_of(wave)[self.spectra.indices] for wave in waves]
         powers_of_x = x[:, None] ** np.arange(-self.spectra.order, _LEAKAGE if len(time) else 0)
         self._parts = np.hstack([powers_of_x / np.abs(powers_of_x[:1]).clip(1.0), *hum])
         powers = {"K": np.ones_like(omega) + 0j, "C": 1j * omega, "mass": -(omega**2) + 0j}
@@ -297,11 +297,11 @@ def _real_and_imaginary(columns: np.ndarray) -> np.ndarray:
     return np.concatenate([columns.real, columns.imag]).reshape(-1, columns.shape[2])
 
 
-def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, _Linear, np.ndarray]:
+def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, LinearResiduals, np.ndarray]:
     """Free numbers with their intervals, the model with its noise, and its residuals e (n, d) [N]."""
     without_tones = answer, problem = _iterated(spectra, free, mass, ())
     while len(spectra.time) and (
-        hum := _tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega)
+        hum := largest_tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega)
     ):
         tones = (*problem.tones, hum)
         near = (np.abs(spectra.omega[:, None] - np.array(tones)) < 1.5 * (spectra.omega[1] - spectra.omega[0])).any(axis=1)
@@ -316,10 +316,12 @@ def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[
     return attrs.evolve(_without_nuisance(answer, len(free), problem), free=tuple(free)), problem, residuals
 
 
-def _iterated(spectra: _Spectra, free: Sequence[Free], mass: float, tones: tuple[float, ...]) -> tuple[Estimate, _Linear]:
+def _iterated(
+    spectra: _Spectra, free: Sequence[Free], mass: float, tones: tuple[float, ...]
+) -> tuple[Estimate, LinearResiduals]:
     """Estimate and variances by turns, beside tones of known frequencies [rad/s]."""
     d = len(spectra.axes)
-    problem = _Linear(spectra, free, mass, np.stack([np.zeros((_COLOURS, d)), np.ones((_COLOURS, d))]), tones)
+    problem = LinearResiduals(spectra, free, mass, np.stack([np.zeros((_COLOURS, d)), np.ones((_COLOURS, d))]), tones)
     numbers = [*free, *problem.nuisance]
     for iteration in range(_ITERATIONS):  # linear at first, the force's noise alone: the end does not depend on the start
         answer = estimate(problem, numbers, stated=False)
@@ -330,7 +332,7 @@ def _iterated(spectra: _Spectra, free: Sequence[Free], mass: float, tones: tuple
     return estimate(problem, numbers, stated=False), problem
 
 
-def _variances(problem: _Linear, at: np.ndarray) -> np.ndarray:
+def _variances(problem: LinearResiduals, at: np.ndarray) -> np.ndarray:
     """Variances (2, k, d) of displacement and force by which |e|^2 (n, d) is likeliest: exponential with the mean s^2."""
     z2, e2 = np.abs(problem.stiffness(at)) ** 2, np.abs(problem.unweighted(at)) ** 2
     n, d = e2.shape
@@ -350,7 +352,7 @@ def _variances(problem: _Linear, at: np.ndarray) -> np.ndarray:
     return np.asarray(variances.reshape(2, _COLOURS, d))
 
 
-def _without_nuisance(answer: Estimate, count: int, problem: _Linear) -> Estimate:
+def _without_nuisance(answer: Estimate, count: int, problem: LinearResiduals) -> Estimate:
     """The free numbers alone, the parts of T taken out of the derivatives, where they are fitted whatever the numbers are.
 
     Residuals that are not white and a force that is folded back widen the intervals.
@@ -366,13 +368,13 @@ def _without_nuisance(answer: Estimate, count: int, problem: _Linear) -> Estimat
     if (growth := float(np.sqrt((variance / white)[: max(len(hz) // 16, 1)].mean()))) > _COLOURED:
         text = f"noise grows toward low frequencies (1/f): at {hz[0]:.4g} Hz {growth:.2g} times its white part"
         problem.remarks.append(f"{text}; weights follow it")
-    if largest := _uneven((answer.residuals.reshape(2, -1, d) ** 2).sum(axis=0)):
+    if largest := uneven_block((answer.residuals.reshape(2, -1, d) ** 2).sum(axis=0)):
         lever = 1.0 - (np.linalg.qr(answer.jacobian)[0] ** 2).sum(axis=1)
         scores = (slopes * (answer.residuals / np.maximum(lever, _LEVER))[:, None]).reshape(2, -1, count).sum(axis=0)
         text = f"residuals are not white: their power near {hz[largest[0]]:.4g} Hz is {largest[1]:.2g} times the mean"
         problem.remarks.append(f"{text}; intervals follow from each line's own")
     alone = judged(answer.free[:count], answer.values[:count], answer.residuals, slopes, False, answer.evaluations, scores)
-    force, share = _aliased(spectra.signal, variance.min(axis=0)) if len(spectra.signal) else (spectra.signal, 0.0)
+    force, share = aliasing_error(spectra.signal, variance.min(axis=0)) if len(spectra.signal) else (spectra.signal, 0.0)
     if not share:
         return alone
     problem.remarks.append(
@@ -394,11 +396,11 @@ def fit_record(record: Signals | FrequencyResponse, names: list[str], mass: floa
     if mass is not None and mass < 0.0:
         raise SceneError.at("mass", mass, "must be at least 0 kg")
     if isinstance(record, Signals):
-        spectra = _spectra_of(record)
+        spectra = spectra_of(record)
     else:
         omega, receptance, empty = 2.0 * np.pi * record.hz, record.receptance[:, None], np.empty(0)
         spectra = _Spectra(omega, np.ones_like(receptance), receptance, ("y",), np.arange(len(omega)), empty, empty)
-    free = _free_parts(names, spectra, mass)
+    free = free_parts(names, spectra, mass)
     refuse_few(2 * spectra.force.size, len(free) + len(spectra.axes), record.source)
     answer, model, residuals = _fit_spectra(spectra, free, mass or 0.0)
     words, notes = {_word(number.name) for number in free}, [*getattr(record, "notes", ())]
@@ -423,7 +425,7 @@ def fit_record(record: Signals | FrequencyResponse, names: list[str], mass: floa
     return Fitted(title, record.source, "record", False, answer, series, (), tuple(notes), response)
 
 
-def _series(model: _Linear, answer: Estimate, residuals: np.ndarray) -> tuple[Series, ...]:
+def _series(model: LinearResiduals, answer: Estimate, residuals: np.ndarray) -> tuple[Series, ...]:
     """Real and imaginary part of F / x over frequency beside the model's, per axis, where there is force.
 
     Of two axes the force that moves the other one is taken off, and so is what beginning and end of the record add.

@@ -91,7 +91,7 @@ def rotation_of(recording: Recording) -> Rotation:
 
 
 def _by_pulses(recording: Recording, key: np.ndarray) -> Rotation:
-    pulses = _pulses_of(recording.time, key)
+    pulses = pulses_of(recording.time, key)
     times, turns = pulses.times, len(pulses.times) - 1
     if turns < 2:
         raise RacewayError(f"{max(turns, 0)} whole turns between the pulses of `key`; at least two are needed")
@@ -185,7 +185,7 @@ class _Pulses:
     middle_error: float
 
 
-def _pulses_of(time: np.ndarray, key: np.ndarray) -> _Pulses:
+def pulses_of(time: np.ndarray, key: np.ndarray) -> _Pulses:
     """Pulses of a voltage.
 
     time : (n,) [s];  key : (n,) voltage, any unit

@@ -201,7 +201,7 @@ def stated_run_out(
         return slow_roll(recording_of(signals))
 
 
-def _without_response(slow: Synchronous, bearing: Bearing, shaft: Rotor, unbalance_angle: float) -> RunOut:
+def slow_roll_run_out(slow: Synchronous, bearing: Bearing, shaft: Rotor, unbalance_angle: float) -> RunOut:
     """The run-out in a slow roll: its 1x component less the response to the unbalance at that speed.
 
     shaft : the rotor at the slow roll's speed;  unbalance_angle : of the unbalance from the mark [rad]
@@ -250,7 +250,7 @@ def response_of(
         )
     angle = radians(rig.unbalance_angle_deg)
     if isinstance(run_out, Synchronous):
-        run_out = _without_response(run_out, bearing, rotor(rig, run_out.speed), angle)
+        run_out = slow_roll_run_out(run_out, bearing, rotor(rig, run_out.speed), angle)
     run_out = run_out or RunOut()
     if component.marked:
         forward, fourier = ((value - run_out.vector) * exp(-1j * angle) for value in (component.forward, component.fourier))

@@ -188,7 +188,7 @@ def _refuse_contradictions(measured: _Measurements) -> None:
 
 
 @attrs.define(eq=False)
-class _TableResiduals:
+class TableResiduals:
     """Weighted residuals of a table of measurements: ``raceway_measure.fit.estimate.Residuals``.
 
     All rows, and all steps of the differences that make their derivatives, are columns of one call.
@@ -294,7 +294,7 @@ def fit_table(measured: _Measurements, scene: Scene, names: list[str]) -> Fitted
     moving = [name for name in measured.values if name in _MOTION]
     if moving and scene.excitation is None:
         raise SceneError.at("excitation", None, f"is missing: {', '.join(moving)} are those of a motion under an excitation")
-    problem = _TableResiduals(measured, free, scene)
+    problem = TableResiduals(measured, free, scene)
     answer = estimate(problem, free, measured.stated)
     fitted = problem.answers(answer.values)
     causes, left_out = problem.uncertain()

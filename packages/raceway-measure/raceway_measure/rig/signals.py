@@ -194,14 +194,14 @@ class Cause:
     error: float
 
 
-def _silent(signals: Signals) -> Signals:
+def quiet_signals(signals: Signals) -> Signals:
     """The same sampling, nothing that disturbs."""
     return attrs.evolve(signals, noise_db=_SILENT_DB, mark_noise=0.0, drift=0.0, run_out=0.0, speed_drift=0.0)
 
 
 def split(rig: Rig, tested: Bearing, state: State) -> list[Cause]:
     """Every cause by itself, for a bearing in a known state."""
-    signals, quiet, free = rig.signals, _silent(rig.signals), rotor(rig, state.speed)
+    signals, quiet, free = rig.signals, quiet_signals(rig.signals), rotor(rig, state.speed)
     clean = record(rig, response(rig, tested, state, quiet), quiet, signals.seed)
     component = amplitude(rotation_of(clean)) * exp(-1j * radians(rig.unbalance_angle_deg))
     causes: list[tuple[str, str, State | Reading]] = [

@@ -5,9 +5,9 @@ from __future__ import annotations
 import attrs
 import numpy as np
 import pytest
-from raceway_measure.fit.identify import _coefficients, _standard_errors
+from raceway_measure.fit.identify import coefficients_of_state, standard_errors
 from raceway_measure.fit.rig import invert, with_moment, with_tilt_of
-from raceway_rotor.shaft import _whirling_load, bearing, find_root, rotor, shaft
+from raceway_rotor.shaft import bearing, find_root, rotor, shaft, whirling_load
 
 from checks.validation.command_line import EXAMPLES
 from checks.validation.records import SPEED
@@ -39,7 +39,7 @@ def test_no_root_ends_with_a_message():
 
 
 def test_force_and_moment_of_a_shaft_turn():
-    load = _whirling_load(600.0 * np.pi / 30.0, 3.0 + 4.0j, 0.2 - 0.1j)
+    load = whirling_load(600.0 * np.pi / 30.0, 3.0 + 4.0j, 0.2 - 0.1j)
     kernel, out = load.kernel(), np.empty(5)
     for t in (0.0, 0.013):
         kernel(t, load.parameters(), out)
@@ -101,8 +101,8 @@ def test_scatter_is_that_of_many_noisy_lines(rig, state):
     noise = error / np.sqrt(2.0) * (random.standard_normal(400) + 1j * random.standard_normal(400))
     found = [with_tilt_of(line, state, state.sensor + one) for one in noise]
     # 400 samples know a standard deviation to 1 / sqrt(800) = 3.5 %; three times that.
-    assert np.std([_coefficients(one) for one in found], axis=0) == pytest.approx(
-        _standard_errors(line, state, error), rel=0.11
+    assert np.std([coefficients_of_state(one) for one in found], axis=0) == pytest.approx(
+        standard_errors(line, state, error), rel=0.11
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from raceway_measure.rig.signals import critical_speed, readings
 from raceway_rotor.rig_table import Rig
-from raceway_rotor.shaft import _beam, shaft
+from raceway_rotor.shaft import make_beam, shaft
 
 from checks.validation.records import SPEED
 
@@ -18,7 +18,7 @@ HELD = 1e16  # N/m: 1e-8 of a shaft's own compliance
 
 
 def supported(span, elements=8, density=RHO, shear=False):
-    line = _beam(np.linspace(0.0, span, elements + 1), D, E, NU, density, shear)
+    line = make_beam(np.linspace(0.0, span, elements + 1), D, E, NU, density, shear)
     return line.with_spring(0.0, HELD).with_spring(span, HELD)
 
 
@@ -66,13 +66,13 @@ def test_natural_frequencies_of_a_slender_beam_converge_with_the_fourth_power():
 
 def test_gyroscopic_moments_of_an_overhung_disc():
     length, mass, transverse, polar = 0.1, 3.0, 0.01, 0.005
-    line = _beam(np.array([0.0, length]), D, E, NU, 1e-6, False).with_spring(0.0, HELD, HELD)
+    line = make_beam(np.array([0.0, length]), D, E, NU, 1e-6, False).with_spring(0.0, HELD, HELD)
     line = line.with_disc(length, mass, transverse, polar)
     k = E * SECOND_MOMENT / length**3 * np.array([[12.0, -6.0 * length], [-6.0 * length, 4.0 * length**2]])
     exact = np.linalg.eigvals(np.linalg.solve(np.diag([mass, transverse - polar]), k)).real
     assert line.critical_speeds()[:2] == pytest.approx(np.sqrt(np.sort(exact)), rel=1e-6)
     # A disc that is flat (I_p > I_t) has one critical speed of forward whirl only.
-    flat = _beam(np.array([0.0, length]), D, E, NU, 1e-9, False).with_spring(0.0, HELD, HELD)
+    flat = make_beam(np.array([0.0, length]), D, E, NU, 1e-9, False).with_spring(0.0, HELD, HELD)
     flat = flat.with_disc(length, mass, transverse, 2.0 * transverse)
     assert np.sum(flat.critical_speeds() < 1e6) == 1
 
@@ -80,7 +80,7 @@ def test_gyroscopic_moments_of_an_overhung_disc():
 def test_rotary_and_polar_inertia_of_a_shaft_are_those_of_its_sections():
     """A rigid tilt turns all sections alike: rho I L about a diameter, twice that about the axis."""
     length = 0.4
-    line = _beam(np.linspace(0.0, length, 5), D, E, NU, RHO, True)
+    line = make_beam(np.linspace(0.0, length, 5), D, E, NU, RHO, True)
     tilt = np.empty(10)
     tilt[::2], tilt[1::2] = line.nodes, 1.0
     assert tilt @ line.rotary @ tilt == pytest.approx(RHO * SECOND_MOMENT * length, rel=1e-12)
@@ -93,7 +93,7 @@ def test_a_stiff_hub_bends_less():
     span, hub = 0.175, 0.02
     places = np.array([0.0, 0.5 * (span - hub), 0.5 * span, 0.5 * (span + hub), span])
     stiff = np.array([D, 100.0 * D, 100.0 * D, D])
-    line = _beam(places, D, E, NU, RHO, False, stiff).with_spring(0.0, HELD).with_spring(span, HELD)
+    line = make_beam(places, D, E, NU, RHO, False, stiff).with_spring(0.0, HELD).with_spring(span, HELD)
     # Castigliano: the square of the bending moment over the part that bends, P^2 x^2 / 4 up to the hub on both sides.
     exact = (0.5 * (span - hub)) ** 3 / (6.0 * E * SECOND_MOMENT)
     assert static(line, 0.5 * span)[4] == pytest.approx(exact, rel=1e-6)

@@ -8,8 +8,8 @@ from math import pi
 import attrs
 import numpy as np
 import pytest
-from raceway_measure.fit.shaft_angle import _pulses_of, rotation_of
-from raceway_measure.fit.synchronous import Synchronous, _without_response, synchronous
+from raceway_measure.fit.shaft_angle import pulses_of, rotation_of
+from raceway_measure.fit.synchronous import Synchronous, slow_roll_run_out, synchronous
 from raceway_rotor.shaft import rotor
 
 from checks.validation.records import HZ, LINE, made
@@ -86,7 +86,7 @@ def test_noise_on_the_probe_moves_no_mark_on_the_whole(rate, part):
     true = (np.arange(1, 19) - 1.0 / (2.0 * np.pi)) / HZ  # the angle begins at 1 rad
     off = []
     for seed in range(20):
-        marks = _pulses_of(record.time, noisy(record, part, seed).key).times
+        marks = pulses_of(record.time, noisy(record, part, seed).key).times
         assert len(marks) == len(true)
         off.append((marks - true).mean())
     # 20 means: their own mean is known to 1 / sqrt(20) of their scatter; 3.5 of that, and what 55 samples per turn leave of a flank.
@@ -155,5 +155,5 @@ def test_the_response_is_taken_out(rig, held, rpm, true):
     force, moment = np.linalg.solve(system, load)[2:]
     response = line.at_sensor(force, moment) * exp(1j * ANGLE)
     assert abs(response) > 1e-9  # there is something to take out
-    found = _without_response(rolled(true + response, line.speed), held, line, ANGLE)
+    found = slow_roll_run_out(rolled(true + response, line.speed), held, line, ANGLE)
     assert found.vector == pytest.approx(true, abs=1e-6 * abs(response))

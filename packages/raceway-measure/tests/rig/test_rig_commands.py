@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from raceway_measure.fit.identify import identify_recording
 from raceway_measure.fit.signals import recording_of, signals_of, write_recording
-from raceway_measure.rig.signals import _silent, record, response
+from raceway_measure.rig.signals import quiet_signals, record, response
 from raceway_rotor.rig_table import Signals
 from raceway_rotor.shaft import balance, bearing, rotor
 
@@ -81,7 +81,7 @@ def test_damping_is_identified(rig, scene):
     state = balance(rotor(rig, SPEED), held)
     # The dashpot acts on the deflection; the shaft's slope is not in phase with it, and brings a part of its own.
     assert state.locked[1] == pytest.approx(3000.0, rel=5e-3)  # the coupling is that at rest
-    quiet = attrs.evolve(_silent(Signals()), duration=0.5)
+    quiet = attrs.evolve(quiet_signals(Signals()), duration=0.5)
     found = identify_recording(record(rig, response(rig, held, state, quiet), quiet, 1), rig, held)
     # Marks between samples turn all phases by a little: that is what its own uncertainty says.
     assert abs(found.state.damping - state.damping) < found.uncertainty[1]
@@ -90,7 +90,7 @@ def test_damping_is_identified(rig, scene):
 
 
 def test_uneven_samples_and_a_speed_that_drifts(rig, held, state):
-    drifting = attrs.evolve(_silent(Signals()), speed_drift=0.01, duration=0.5, sampling_hz=8e4)
+    drifting = attrs.evolve(quiet_signals(Signals()), speed_drift=0.01, duration=0.5, sampling_hz=8e4)
     whole = record(rig, response(rig, held, state, drifting), drifting, 1)
     groups = len(whole.time) // 8
     kept = 8 * np.arange(groups) + np.random.default_rng(2).integers(0, 8, groups)
@@ -99,7 +99,7 @@ def test_uneven_samples_and_a_speed_that_drifts(rig, held, state):
 
 
 def test_a_speed_alone_gives_k_without_c(rig, held, state):
-    quiet = attrs.evolve(_silent(Signals()), duration=0.25)
+    quiet = attrs.evolve(quiet_signals(Signals()), duration=0.25)
     found = identify_recording(attrs.evolve(record(rig, response(rig, held, state, quiet), quiet, 1), key=None), rig, held)
     content = found.content()
     assert content["identification"]["equivalent_damping"] is None
@@ -110,7 +110,7 @@ def test_a_speed_alone_gives_k_without_c(rig, held, state):
 def test_a_bearing_unlike_the_scene_s_is_identified_with_the_scene_s_tilt(rig, scene, held):
     other = attrs.evolve(scene, bearing=attrs.evolve(scene.bearing, contact_angle_deg=19.0))
     true = balance(rotor(rig, SPEED), bearing(other, 2000.0, default_registry()))
-    quiet = attrs.evolve(_silent(Signals()), duration=0.25)
+    quiet = attrs.evolve(quiet_signals(Signals()), duration=0.25)
     found = identify_recording(record(rig, response(rig, held, true, quiet), quiet, 1), rig, held)
     own = balance(rotor(rig, SPEED), held)
     assert abs(true.stiffness / own.stiffness - 1.0) > 0.05
@@ -218,7 +218,7 @@ def test_options_that_contradict_each_other_or_make_no_sense(tmp_path):
 
 
 def test_signals_that_no_such_bearing_gives(tmp_path, rig, held, state):
-    quiet = attrs.evolve(_silent(Signals()), duration=0.1)
+    quiet = attrs.evolve(quiet_signals(Signals()), duration=0.1)
     own = record(rig, response(rig, held, state, quiet), quiet, 1)
     path = write_recording(attrs.evolve(own, y=3000.0 * own.y, z=3000.0 * own.z), tmp_path / "far.csv")
     found = invoke("identify", path, "--scene", SCENE, "--set", "load.axial=2000", "--out", tmp_path)
@@ -268,7 +268,7 @@ def test_finished_points_are_kept_and_give_the_same_numbers_without_a_run(tmp_pa
 
 
 def test_marks_that_disagree_with_the_speed_and_columns_that_turn_the_wrong_way(rig, held, state):
-    quiet = attrs.evolve(_silent(Signals()), duration=0.1)
+    quiet = attrs.evolve(quiet_signals(Signals()), duration=0.1)
     own = record(rig, response(rig, held, state, quiet), quiet, 1)
     with pytest.raises(RacewayError, match="Sample faster, or omit one of the columns"):
         identify_recording(attrs.evolve(own, speed=0.5 * own.speed), rig, held)

@@ -142,7 +142,7 @@ def _spread_copies(first, last, nodes, numbers, turns, force, out):  # type: ign
                 )
 
 
-class _CopiedStiffness:
+class CopiedStiffness:
     """K u of all copies of a mesh.
 
     copies : Copies;  operator : HexOperator, whose material and formulation it has
@@ -237,12 +237,12 @@ _EACH = 8000
 _NODES = 8192
 
 
-def _fitting_threads(elements: int) -> int:
+def threads_for(elements: int) -> int:
     """Threads for so many elements: all cores that this process may use, fewer for small bodies."""
     return max(1, min(usable_cores(), elements // _EACH))
 
 
-class _BodyForces:
+class BodyForces:
     """Forces K u of bodies whose nodes follow one another.
 
     operators : of the bodies;  starts : (bodies + 1,) first node of each
@@ -260,7 +260,7 @@ class _BodyForces:
             if len(group.copies.turns) > 1 or operators[group.members[0]].formulation != "one_point"
         ]
         #: By the first body of a group.
-        self._copied = {group.members[0]: _CopiedStiffness(group.copies, operators[group.members[0]]) for group in worth}
+        self._copied = {group.members[0]: CopiedStiffness(group.copies, operators[group.members[0]]) for group in worth}
         alone = set(range(len(operators))) - {body for group in worth for body in group.members}
         ranges = [(int(n), body, r) for body in sorted(alone) for r, n in enumerate(operators[body].range_sizes)]
         #: Body and range, the largest first: what comes last shall not keep one thread busy alone.
@@ -398,7 +398,7 @@ class Assembly:
         self._seats = [self._seat(*bed) for bed in self.foundations]
         self._stiffness: csr_matrix = None
         #: Threads that share the work while they are open.
-        self.threads = ThreadPool(_fitting_threads(sum(len(body.operator.cells) for body in bodies)))
+        self.threads = ThreadPool(threads_for(sum(len(body.operator.cells) for body in bodies)))
         self._means: MeanMotions | None = None
         self._near: tuple[object, Selection] | None = None
         self._u = np.zeros(3 * self.nodes)
@@ -413,8 +413,8 @@ class Assembly:
         return [self.bodies[index] for index in first]
 
     @cached_property
-    def body_forces(self) -> _BodyForces:
-        return _BodyForces([body.operator for body in self.bodies], self.starts, self.groups)
+    def body_forces(self) -> BodyForces:
+        return BodyForces([body.operator for body in self.bodies], self.starts, self.groups)
 
     def part(self, index: int) -> slice:
         """Rows of a body's displacements in U."""

@@ -323,8 +323,8 @@ SHARE = 0.1
 _ROLLS, _HELD = 1e-3, 100.0
 
 
-def _cage_stiffness(normal: float, diameter: float, friction: bool) -> np.ndarray:
-    """(4,) springs [N/m, N m/rad] of a ball's cage, for the rows of ``_cage_rows``.
+def cage_stiffness(normal: float, diameter: float, friction: bool) -> np.ndarray:
+    """(4,) springs [N/m, N m/rad] of a ball's cage, for the rows of ``cage_rows``.
 
     normal : stiffness of a Hertz contact [N/m];  diameter : of the ball [m]
 
@@ -336,7 +336,7 @@ def _cage_stiffness(normal: float, diameter: float, friction: bool) -> np.ndarra
     return np.asarray(share * normal * np.array([1.0, turning, turning, turning]))
 
 
-def _cage_rows(points: np.ndarray, mass: np.ndarray, along: np.ndarray) -> np.ndarray:
+def cage_rows(points: np.ndarray, mass: np.ndarray, along: np.ndarray) -> np.ndarray:
     """(4, 3 n) of one ball: mass means of the displacement along its orbit, a unit vector, of turns about orbit, radius and axis.
 
     A rigid motion u = c + w x r about the centre of mass gives c . along and the parts of w; elastic motions that are orthogonal to
@@ -492,13 +492,13 @@ class ElasticBearing:
         g = s.geometry
         inner = g.ellipses(s.modulus)[0]
         normal = 1.5 * s.reference_load / float(inner.approach(s.reference_load))
-        springs = _cage_stiffness(normal, g.ball_diameter, s.friction > 0.0)
+        springs = cage_stiffness(normal, g.ball_diameter, s.friction > 0.0)
         nodal = np.zeros(3 * assembly.nodes)
         for k in range(len(s.azimuth)):
             body = assembly.bodies[k + 2]
             mass = assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]]
             along = np.array([0.0, -np.sin(s.azimuth[k]), np.cos(s.azimuth[k])])
-            means = _cage_rows(body.points, mass, along)
+            means = cage_rows(body.points, mass, along)
             data.append(means.ravel())
             rows.append(np.repeat(4 * k + np.arange(4), means.shape[1]))
             columns.append(np.tile(3 * assembly.starts[k + 2] + np.arange(means.shape[1]), 4))

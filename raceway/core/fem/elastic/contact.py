@@ -52,19 +52,13 @@ class Near:
 CIRCLE = 4
 
 
-def _plane(point: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """(8,) a plane through a point [m]; the normal points away from the body."""
-    n = np.asarray(normal, dtype=float)
-    return np.concatenate([[0.0], point, n / np.linalg.norm(n), [0.0]])
-
-
 def groove(centre: np.ndarray, circle: float, radius: float) -> np.ndarray:
     """(8,) the inside of a torus about an axis along x: middle [m], radius of its centre circle and of its tube [m]."""
     return np.array([1.0, *centre, circle, radius, 0.0, 0.0])
 
 
 @jit(void(MATRIX, int64[::1], MATRIX, VECTOR, MATRIX, CUBE), releases=True)
-def _gaps(where, pair, surfaces, gap, normal, bend):  # type: ignore[no-untyped-def]
+def surface_gaps(where, pair, surfaces, gap, normal, bend):  # type: ignore[no-untyped-def]
     """Signed distance from a surface, its gradient and its second derivative.
 
     where : (n, 3) float [m];  pair : (n,) int, row of ``surfaces`` (m, 8)
@@ -102,7 +96,7 @@ def _gaps(where, pair, surfaces, gap, normal, bend):  # type: ignore[no-untyped-
 
 
 @jit(void(VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, CUBE, MATRIX, CUBE, CUBE), releases=True)
-def _forces_and_tangents(area, pressure, d_gap, d_rate, normal, bend, force, stiffness, damping):  # type: ignore[no-untyped-def]
+def forces_and_tangents(area, pressure, d_gap, d_rate, normal, bend, force, stiffness, damping):  # type: ignore[no-untyped-def]
     """Forces (n, 3) [N] on the points and minus their derivatives by place and velocity (n, 3, 3) [N/m, N s/m].
 
     F = A p n, so -dF/dy = -A (dp/dg n n^T + p d2g/dy2): symmetric.
@@ -281,7 +275,7 @@ class Contact(ABC):
         """Forces and tangents of the places, from their displacements and velocities (3 n,) against the second bodies."""
         moved = u.reshape(-1, 3)
         where = self.where = self.place + moved
-        _gaps(where, self.pair, self.surfaces, self.gap, self.normal, self.bend)
+        surface_gaps(where, self.pair, self.surfaces, self.gap, self.normal, self.bend)
         gap = self.gap
         if share > 0.0:
             deepest = np.minimum.reduceat(gap, self.starts)
@@ -292,7 +286,7 @@ class Contact(ABC):
         gap = self.press(gap, rate, dt)
         if dt > 0.0:
             add_damping(self.damping, gap, rate, self.pressure, self.d_gap, self.d_rate)
-        _forces_and_tangents(
+        forces_and_tangents(
             self.area, self.pressure, self.d_gap, self.d_rate, self.normal, self.bend,
             self.force, self.stiffness, self.rate_stiffness,
         )  # fmt: skip

@@ -50,7 +50,7 @@ class _Factorised:
         return np.asarray(self._factors.solve(residual))
 
 
-class _LowRankContacts:
+class LowRankContacts:
     """Low-rank change of an inverse by a few contact resultants and a cage.
 
     contact : Contact;  cage : Cage | None
@@ -131,7 +131,7 @@ def nodal_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assembly)
     if s.contact_damping > 0.0:
         a, b = g.ellipses(s.modulus)[0].semi_axes(s.reference_load)
         damping = s.contact_damping / (np.pi * float(a) * float(b))
-    friction = CoulombFriction(s.friction, _sticking(s, area)) if s.friction > 0.0 else None
+    friction = CoulombFriction(s.friction, sticking_stiffness(s, area)) if s.friction > 0.0 else None
     law = PlaceLaw(s.law, s.params(pair, area), s.state_size, damping)
     return NodalContact(pairs, assembly.nodes, law, friction)
 
@@ -221,7 +221,7 @@ def _groove(setup: BearingData, race: int) -> np.ndarray:
     return groove(np.array([centre[0], 0.0, 0.0]), centre[1] + (0.0 if race else setup.growth), radius)
 
 
-def _sticking(setup: BearingData, area: np.ndarray) -> np.ndarray:
+def sticking_stiffness(setup: BearingData, area: np.ndarray) -> np.ndarray:
     """(n,) stiffness of sticking points [N/m3]; by default 2 (1 - nu) / (2 - nu) of a penalty's (Mindlin 1949)."""
     if setup.stick is not None:
         return np.full(len(area), setup.stick)
@@ -257,7 +257,7 @@ class LinearSolver:
     def __init__(self, assembly: Assembly, contact: Contact | None, modulus: float) -> None:
         self.assembly, self.contact, self.modulus = assembly, contact, modulus
         self._multigrid: Preconditioner | _Factorised | None = None
-        self._whole: _LowRankContacts | None = None
+        self._whole: LowRankContacts | None = None
         self._built = 0.0
         self._fresh = False
         self._extra = 0
@@ -315,9 +315,7 @@ class LinearSolver:
         held[a.free] = False
         sprung = (matrix + diags_array(extra)).tocsr()
         self._multigrid = _Factorised(sprung, held) if small else Preconditioner(sprung, a.points, held, _FEWEST_NODES)
-        self._whole = (
-            _LowRankContacts(contact, cage, self._multigrid, a.free) if contact is not None and resultants else None
-        )
+        self._whole = LowRankContacts(contact, cage, self._multigrid, a.free) if contact is not None and resultants else None
         self._built, self._fresh, self._extra = c_m / c_k, True, 0
         self.setups += 1
         self._extend(c_k, c_m)

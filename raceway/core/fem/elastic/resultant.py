@@ -38,7 +38,7 @@ class Footprint:
     share: np.ndarray
 
 
-def _ellipse(semi_axes: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
+def hertz_weights(semi_axes: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
     """Points (n, 2) [m] of an ellipse and weights (n,) of a unit force, its pressure falling as 1 - (x / a)^2 - (y / b)^2."""
     x, w = np.polynomial.legendre.leggauss(_RINGS)
     r = 0.5 * (x + 1.0)
@@ -71,7 +71,7 @@ def footprint(
     arc, leave the line between the two centres where it is.
     """
     axes = np.stack([along, np.cross(normal, along)])
-    places, force = _ellipse(semi_axes)
+    places, force = hertz_weights(semi_axes)
     facet, weights, _ = facets.locate(pole + places @ axes)
     angle = 2.0 * np.pi * np.arange(_AROUND) / _AROUND
     circle = max(semi_axes) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -267,7 +267,7 @@ _TRIED, _INTERIOR_STEPS = 12, 15
 _FAR = 5.0
 
 
-def _locate(points: np.ndarray, cells: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def interpolation_at(points: np.ndarray, cells: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Nodes (n, 8) and weights (n, 8) that interpolate at ``where`` (n, 3) [m].
 
     points : (m, 3) nodes [m];  cells : (k, 8) trilinear hexahedra
@@ -353,8 +353,8 @@ class LoadedBody:
         """
         along = self.along(contact, normal)
         depth = reach * np.linspace(*DEPTHS, COUNT)
-        nodes, weights = _locate(self._points, self._cells, pole + depth[:, None] * normal)
-        places, force = _ellipse(semi_axes)
+        nodes, weights = interpolation_at(self._points, self._cells, pole + depth[:, None] * normal)
+        places, force = hertz_weights(semi_axes)
         half = normal_displacement(depth, np.linalg.norm(places, axis=1), *self._material[:2]) @ force
         difference = np.einsum("nk,nk->n", weights, along[nodes]) - half
         structural = float(difference.mean())

@@ -105,7 +105,7 @@ def _add_points(places, weights, blocks, matrix):  # type: ignore[no-untyped-def
 
 
 @attrs.frozen(eq=False)
-class _BallTangent:
+class BallTangent:
     """Tangent of the contacts of one ball with both rings.
 
     ball, rings : (a,), (b,) numbers of the nodes that points in contact lie on
@@ -117,7 +117,7 @@ class _BallTangent:
     matrix: np.ndarray
 
     @classmethod
-    def of(cls, nodes: np.ndarray, weights: np.ndarray, blocks: np.ndarray) -> _BallTangent:
+    def of(cls, nodes: np.ndarray, weights: np.ndarray, blocks: np.ndarray) -> BallTangent:
         """From points: ``nodes`` (n, 8), four of the ball, then four of a ring, ``weights`` (n, 8), ``blocks`` (n, 3, 3)."""
         ball, rings = np.unique(nodes[:, :4]), np.unique(nodes[:, 4:])
         places = [np.searchsorted(ball, nodes[:, :4]), len(ball) + np.searchsorted(rings, nodes[:, 4:])]
@@ -134,7 +134,7 @@ _VECTORS = 120
 TIGHT = 1e-12
 
 
-class _Linearised:
+class LinearisedContacts:
     """x = driver - flexibility (T x) + carried q, with the tangents T of the contacts.
 
     face : Interface
@@ -145,7 +145,7 @@ class _Linearised:
     what couples them, the rings' stiffness from ball to ball and the frame, is smooth and has few modes.
     """
 
-    def __init__(self, face: Interface, tangents: dict[int, _BallTangent], frame: np.ndarray, unknown: np.ndarray) -> None:
+    def __init__(self, face: Interface, tangents: dict[int, BallTangent], frame: np.ndarray, unknown: np.ndarray) -> None:
         self._face, self._tangents, self._frame, self._unknown = face, tangents, frame, unknown
         used = [tangent.rings for tangent in tangents.values()]
         nodes = np.unique(np.concatenate(used)) if used else np.zeros(0, dtype=np.int64)
@@ -256,7 +256,7 @@ class _Ball:
     stiffness : of the rings' nodes through the ball;  across : force on them of the ball's nodes
     """
 
-    def __init__(self, face: Interface, ball: int, tangent: _BallTangent) -> None:
+    def __init__(self, face: Interface, ball: int, tangent: BallTangent) -> None:
         from scipy.linalg import lu_factor, lu_solve
         from scipy.sparse import csr_array
 
@@ -318,7 +318,7 @@ class CondensedSolver:
         self._wanted = touchable(contact, assembly.nodes)
         self._interface: tuple[float, Interface] | None = None
         #: The last linearised bearing: of which superelements, tangents and frame.
-        self.last: tuple[Interface, tuple[np.ndarray, ...], _Linearised] | None = None
+        self.last: tuple[Interface, tuple[np.ndarray, ...], LinearisedContacts] | None = None
 
     def interface(self, mass: float) -> Interface:
         """Superelements of K + mass * M, made at the first call; those of another mass go: they are as large as the rest of a run."""
@@ -474,7 +474,7 @@ class _Step:
 
         return searched(float((way.nodes * residual).sum()), at)
 
-    def _linearised(self, close: float = _CLOSE) -> _Linearised:
+    def _linearised(self, close: float = _CLOSE) -> LinearisedContacts:
         """With the tangents of the last contact forces; the one before where the same points touch and these are as ``close``."""
         contact, face, solver = self.contact, self.face, self.solver
         blocks = contact.stiffness + self.rate * contact.rate_stiffness
@@ -490,8 +490,8 @@ class _Step:
         tangents = {}
         for k in range(face.ball_count):
             of_ball = ball == k
-            tangents[k] = _BallTangent.of(nodes[of_ball], weights[of_ball], blocks[of_ball])
-        linearised = _Linearised(face, tangents, self.frame, self.unknown)
+            tangents[k] = BallTangent.of(nodes[of_ball], weights[of_ball], blocks[of_ball])
+        linearised = LinearisedContacts(face, tangents, self.frame, self.unknown)
         solver.last = face, tuple(array.copy() for array in made_of), linearised
         return linearised
 

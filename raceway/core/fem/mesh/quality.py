@@ -37,7 +37,7 @@ class _Quality:
     skew: np.ndarray
 
 
-def _quality(mesh: HexMesh) -> _Quality:
+def cell_quality(mesh: HexMesh) -> _Quality:
     """Quality of every cell; flat cells get a scaled Jacobian of 0 and an infinite aspect."""
     count = len(mesh.cells)
     jacobian, aspect, skew = np.empty(count), np.empty(count), np.empty(count)
@@ -67,7 +67,7 @@ def refuse_bad_cells(mesh: HexMesh, body: str = "") -> _Quality:
     MeshError
         How many cells, the first of them, its centre and its nodes.
     """
-    measures = _quality(mesh)
+    measures = cell_quality(mesh)
     bad = np.flatnonzero(measures.scaled_jacobian < DEGENERATE)
     if not len(bad):
         return measures
@@ -263,7 +263,7 @@ def summary(meshes: Mapping[str, HexMesh]) -> Tables:
 
 
 def _body(mesh: HexMesh) -> Tables:
-    measures = _quality(mesh)
+    measures = cell_quality(mesh)
     least, total, largest = np.inf, 0.0, 0.0
     for first in range(0, len(mesh.cells), BLOCK):
         length = _edges(mesh, mesh.cells[first : first + BLOCK])

@@ -271,7 +271,7 @@ class _FreeBall:
 
 
 @attrs.frozen
-class _BallMesh:
+class BallElements:
     """Sizes of a ball's elements.
 
     divisions : sectors around the equator
@@ -291,10 +291,10 @@ class _BallMesh:
         return ball_profile(1.0, *(round(length / radius, _DIGITS) for length in sizes))
 
 
-def _free_ball(
+def free_ball(
     radius: float,
     poisson: float,
-    mesh: _BallMesh,
+    mesh: BallElements,
     offsets: np.ndarray,
     components: tuple[int, ...] = (0, 2),
     formulation: str = "incompatible",
@@ -319,15 +319,15 @@ def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int, shear: b
     finest = min(spacing.along, spacing.across)
 
     half_width = (spacing.columns - 0.5) * spacing.across
-    mesh = _BallMesh(spacing.ball_divisions, spacing.across, half_width, finest, solid.bulk)
-    along_normal = _free_ball(radius, solid.poisson, mesh, steps, (0, 2), solid.formulation)
+    mesh = BallElements(spacing.ball_divisions, spacing.across, half_width, finest, solid.bulk)
+    along_normal = free_ball(radius, solid.poisson, mesh, steps, (0, 2), solid.formulation)
     assert len(along_normal.latitudes) == 2 * spacing.columns + 1
     normal = np.array([np.cos(along_normal.latitudes), np.sin(along_normal.latitudes)])
     near = _projected(along_normal.compliance(radius, solid.young), normal)
     middle = len(along_normal.latitudes) // 2
     opposite, around = float(near[-1, middle, middle]), None
     if shear:
-        rolling = _free_ball(radius, solid.poisson, mesh, steps, (1,), solid.formulation)
+        rolling = free_ball(radius, solid.poisson, mesh, steps, (1,), solid.formulation)
         around = np.ascontiguousarray(rolling.compliance(radius, solid.young)[:-1])
     return _Ball(radius, along_normal.latitudes, np.ascontiguousarray(near[:-1]), opposite, around)
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _BORDER = 0.08
 
 
-class _Factor:
+class ComplianceFactor:
     """Solves C x = r over a set of points, C the compliance of ball and race together.
 
     patch : where the points are
@@ -163,7 +163,7 @@ class _LawState:
         return cho_solve(self.lower, right, check_finite=False) if len(self.nodes) else np.zeros_like(right)
 
 
-def _by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, factor: _Factor) -> _LawState:
+def _by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray, factor: ComplianceFactor) -> _LawState:
     """Pressures at gaps (rows * columns,) that change at rates of the same shape.
 
     start : (rows * columns,) penetrations w of a similar state, zeros when there is none; overwritten by those found
@@ -221,7 +221,7 @@ _WHOLE, _UNILATERAL_LIMIT = 25, 400
 _ROUNDING = 1e-10
 
 
-def _active_set(gap: np.ndarray, start: np.ndarray, factor: _Factor) -> tuple[np.ndarray, np.ndarray, int]:
+def _active_set(gap: np.ndarray, start: np.ndarray, factor: ComplianceFactor) -> tuple[np.ndarray, np.ndarray, int]:
     """Points in contact (n,), ascending, their loads (n,) [N], and the number of iterations.
 
     gap : (rows * columns,) without elastic displacement [m]
@@ -332,7 +332,7 @@ class Contact:
     def __init__(self, patch: Patch, law: PointLaw | None, friction: float = 0.0) -> None:
         self.patch, self.law = patch, law
         self.friction = Friction(patch, friction) if friction > 0.0 else None
-        self._factor = _Factor(patch)
+        self._factor = ComplianceFactor(patch)
         self._nodes = _NONE
         self._depth = np.zeros(patch.rows * patch.columns)
         self._gap = np.empty((patch.rows, patch.columns))

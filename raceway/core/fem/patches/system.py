@@ -30,7 +30,7 @@ _LOST, _VELOCITIES, _LAST, _BEFORE, _GRID, _SLIP = range(6)
 
 
 @attrs.frozen(eq=False)
-class _History:
+class SlipHistory:
     """One state's memory.
 
     lost : (2 Z,) energy that friction has taken [J]
@@ -47,7 +47,7 @@ class _History:
     slip: np.ndarray
 
     @classmethod
-    def of(cls, memory: np.ndarray, balls: int) -> _History:
+    def of(cls, memory: np.ndarray, balls: int) -> SlipHistory:
         """From the rows of a memory (2 Z, 0 or more)."""
         if memory.shape[1] < _SLIP:
             none = np.zeros((balls, 2))
@@ -317,7 +317,7 @@ class PatchSystem(SteppedRing):
     def _evaluate(
         self, q: np.ndarray, v: np.ndarray, ball: np.ndarray | None, ball_rate: np.ndarray | None, t: float, step: Increment
     ) -> Evaluation:
-        history = _History.of(self.law_state if step.memory is None else step.memory, self.ball_count)
+        history = SlipHistory.of(self.law_state if step.memory is None else step.memory, self.ball_count)
         dt, gain = step.dt, step.gain
         with_friction = self.with_friction and ball is not None  # without a history nothing sticks
         row = self.pool.row(self.table, with_friction)
@@ -400,7 +400,7 @@ class PatchSystem(SteppedRing):
     def friction_lost(self, record: Record) -> float:
         """Energy that friction has taken at the end of a record that began without history [J]."""
         memory = self.law_state if record.final.memory is None else record.final.memory
-        return float(_History.of(memory, self.ball_count).lost.sum())
+        return float(SlipHistory.of(memory, self.ball_count).lost.sum())
 
     def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""

@@ -105,7 +105,7 @@ def _frame(angle: float) -> np.ndarray:
 _SYMMETRIC: Tables = {"diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
 
 
-def _factorised(matrix: csr_matrix, ordered: bool = True) -> SuperLU:
+def symmetric_factors(matrix: csr_matrix, ordered: bool = True) -> SuperLU:
     """scipy.sparse.linalg.SuperLU of a symmetric csc_matrix; ``ordered``: its rows already stand in an order of little fill."""
     from scipy.sparse.linalg import splu
 
@@ -114,7 +114,7 @@ def _factorised(matrix: csr_matrix, ordered: bool = True) -> SuperLU:
 
 def _elimination_order(matrix: csr_matrix) -> np.ndarray:
     """(m,) Rows of a symmetric matrix in an order of little fill (minimum degree)."""
-    return np.argsort(_factorised(matrix, ordered=False).perm_c)
+    return np.argsort(symmetric_factors(matrix, ordered=False).perm_c)
 
 
 def _condensed(factor: SuperLU, retained: np.ndarray) -> np.ndarray:
@@ -303,7 +303,7 @@ class Revolution:
         if not self.seat > 0.0:
             raise MeshError(f"a seat stiffness of {self.seat:g} N/m3 holds nothing: it must be greater than 0, or 'clamped'")
         for component in range(3):
-            springs[3 * self.profile.seat + component] = self.seat * _seat_areas(self.profile, self.divisions)
+            springs[3 * self.profile.seat + component] = self.seat * seat_areas(self.profile, self.divisions)
         return springs
 
     @cached_property
@@ -424,7 +424,7 @@ class Revolution:
             rigid = len(self._rigid_motions(int(n))[0]) if self.seat == "free" else 0
             # Far below the elastic eigenvalues, far above the rounding of the largest.
             shift = 1e-9 * float(scaled.diagonal().max())
-            factor = _factorised(scaled + shift * diags_array(np.ones(len(mass)), format="csc"), ordered=False)
+            factor = symmetric_factors(scaled + shift * diags_array(np.ones(len(mass)), format="csc"), ordered=False)
             inverse = LinearOperator(scaled.shape, matvec=factor.solve, dtype=float)
             start = np.random.default_rng(0).standard_normal(len(mass))
             eigenvalues = eigsh(inverse, count + rigid + 2, which="LM", v0=start, return_eigenvectors=False)
@@ -449,9 +449,9 @@ class Revolution:
             if rigid is not None and len(rigid[0]):
                 response = self._relieved(matrix, rigid, row, row_load, row_seen)
             elif small:
-                response = _condensed(_factorised(matrix), retained)[np.ix_(at_seen, at_load)]
+                response = _condensed(symmetric_factors(matrix), retained)[np.ix_(at_seen, at_load)]
             else:
-                response = _factorised(matrix).solve(_unit(row_load, len(matrix.indptr) - 1))[row_seen]
+                response = symmetric_factors(matrix).solve(_unit(row_load, len(matrix.indptr) - 1))[row_seen]
             yield np.where(held, 0.0, response) if held.any() else response
 
     def _relieved(
@@ -476,7 +476,7 @@ class Revolution:
         inertia = np.repeat(self.sector.mass, 3)[order][:, None] * r
         springs = np.zeros(len(order))
         springs[row[pins]] = matrix.diagonal().mean()
-        factor = _factorised((matrix + diags_array(springs)).tocsc())
+        factor = symmetric_factors((matrix + diags_array(springs)).tocsc())
         small = np.linalg.inv(r.T @ inertia)
         moved = factor.solve(inertia)
         far, near = r[observed] @ small, r[load] @ small
@@ -515,7 +515,7 @@ class Revolution:
         return pencil
 
 
-def _seat_areas(profile: Profile, divisions: int) -> np.ndarray:
+def seat_areas(profile: Profile, divisions: int) -> np.ndarray:
     """(k,) Area of the exact cylinder that each seat node of one sector stands for [m2]: linear shape functions along x."""
     if len(profile.seat) < 2:
         raise MeshError("a profile without a seat has no area for an elastic bed")
