@@ -11,10 +11,9 @@ import pytest
 
 from raceway import Comparison, ConvergenceError, SceneError, compare, scene_from_dict
 from raceway.answers.answer import Interrupted
-from raceway.extend import points
+from raceway.extend import points, tables_at
 from raceway.points import compare as study
 from raceway.points.axes import MOST_POINTS, parse_axes
-from raceway.points.compare import tables_at
 from raceway.points.effects import Row, percent
 from raceway.testing import default_registry, run
 

@@ -11,7 +11,7 @@ from checks.validation.error_estimate import judge, named, right
 from checks.validation.scenes import rotating
 from checks.validation.series_errors import SERIES, series
 from raceway import run
-from raceway.answers.table import number_within
+from raceway.extend import number_within
 from raceway.pipeline import error as error_estimate
 from raceway.pipeline.error import equilibria_of_second_series
 from raceway.pipeline.simulate import model_at_speed, settles_elsewhere

@@ -8,7 +8,7 @@ from contextlib import suppress
 import pytest
 
 from checks.presets import CONFORMITY, FOLDER, _roller_texts, _rows, every, infer_printed, lines_by_size, printed_by
-from raceway.errors import SceneError
+from raceway import SceneError
 
 #: As they are written: of two digits with a power of ten, of ten digits.
 ERROR, NUMBER = re.compile(r"-?\d\.\de[+-]\d\d\b"), re.compile(r"-?\b\d+(?:\.\d+)?(?:e-\d\d)?\b")
