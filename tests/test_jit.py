@@ -214,7 +214,7 @@ def scaled(factor):
 
 def test_variants_of_a_closure_that_compile_at_once_do_not_mix(tmp_path, monkeypatch):
     """Each saw an index without the other, as two processes may."""
-    monkeypatch.setattr(raceway.core.jit, "_kernel_folder", lambda: opened(tmp_path))
+    monkeypatch.setattr(raceway.core.jit, "kernel_folder", lambda: opened(tmp_path))
     with monkeypatch.context() as both:
         both.setattr(IndexDataCacheFile, "_load_index", lambda self: {})
         assert [scaled(factor)(1.0) for factor in (2.0, 3.0)] == [2.0, 3.0]
@@ -243,7 +243,7 @@ def test_closures_over_closures_are_found_again(tmp_path, monkeypatch):
 
         return down
 
-    monkeypatch.setattr(raceway.core.jit, "_kernel_folder", lambda: opened(tmp_path))
+    monkeypatch.setattr(raceway.core.jit, "kernel_folder", lambda: opened(tmp_path))
     for again in (False, True):
         before, files = clock["loaded"], len(list(tmp_path.rglob("*.nbc")))
         made = [around(scaled(2.0), scaled(3.0)), around(scaled(3.0), around(scaled(1.0), countdown()))]
@@ -274,7 +274,7 @@ def test_a_kernel_is_called_by_its_address():
 
 def test_variants_of_a_closure_from_two_processes_are_loaded_apart(tmp_path, monkeypatch):
     """numba counts the functions of a process: the symbols of both may have one number."""
-    monkeypatch.setattr(raceway.core.jit, "_kernel_folder", lambda: opened(tmp_path))
+    monkeypatch.setattr(raceway.core.jit, "kernel_folder", lambda: opened(tmp_path))
     for factor in (2.0, 3.0):
         monkeypatch.setattr(FunctionIdentity, "_unique_ids", count(10**6))
         scaled(factor).compile()
