@@ -64,8 +64,11 @@ COMMANDS = {
     "compare": ("compare", ARTICLE, *FAST, *FIVE, "--out", "OUT"),
     "verify": ("verify", "--only", "harris-table-6.1"),
     "verify, all": ("verify", "--only", "harris-table-6.1", "--all"),
-    "precision": ("precision", MINIMAL, "--vary", "integrator.steps_per_turn=45,90", "--repeats", "1", "--out", "OUT"),
-    "stability": ("stability", "--only", "chatter", "--processes", "0", "--out", "OUT"),
+    "precision": (
+        *("precision", MINIMAL, "--vary", "integrator.steps_per_turn=45,90", "--reference", "integrator.steps_per_turn=720"),
+        *("--repeats", "1", "--out", "OUT"),
+    ),
+    "stability": ("stability", "--only", "3 balls", "--processes", "0", "--out", "OUT"),
     "sweep": ("sweep", "STATIC", *SPEEDS, "--out", "OUT"),
     "sweep, picture": ("sweep", "STORE", "--plot", "stiffness:y,y"),
     "export": ("export", "STORE", "--ross", "OUT/bearing.toml", "--at", "load.axial=1000"),

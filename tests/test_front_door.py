@@ -7,15 +7,17 @@ import doctest
 import inspect
 import json
 import re
+import runpy
 from functools import wraps
 from html.parser import HTMLParser
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
 import raceway as rw
-from checks.validation.command_line import EXAMPLES, invoke, python
+from checks.validation.command_line import EXAMPLES, invoke
 from raceway.extend import as_given
 from raceway.framework.shown import LINES, WIDTH, facts_html, facts_text
 from raceway.testing import b7206c
@@ -377,20 +379,16 @@ def test_names_are_found_lazily_and_listed():
 # --- ten lines
 
 
-def test_ten_lines_from_import_to_a_plot_of_k_over_speed(tmp_path):
+def test_ten_lines_from_import_to_a_plot_of_k_over_speed(tmp_path, monkeypatch):
     script = EXAMPLES / "k_over_speed.py"
     code = ast.parse(script.read_text(encoding="utf-8")).body
     assert len([line for line in code if not isinstance(getattr(line, "value", None), ast.Constant)]) <= 10
-    watch = (
-        "import json, runpy, matplotlib.pyplot as plt\n"
-        f"runpy.run_path({str(script)!r})\n"
-        "lines = [(line.get_xdata().tolist(), line.get_ydata().tolist()) for line in plt.gca().lines]\n"
-        "print(json.dumps([lines, plt.gca().get_xlabel(), plt.gca().get_ylabel()]))\n"
-    )
     (tmp_path / "examples").symlink_to(EXAMPLES)
-    done = python("-c", watch, cwd=tmp_path, MPLBACKEND="Agg")
-    assert done.returncode == 0, done.stderr
-    lines, x, y = json.loads(done.stdout.splitlines()[-1])
+    monkeypatch.chdir(tmp_path)
+    plt.switch_backend("Agg")
+    runpy.run_path(str(script))
+    lines, x, y = [line.get_data() for line in plt.gca().lines], plt.gca().get_xlabel(), plt.gca().get_ylabel()
+    plt.close("all")
     assert "r/min" in x and "N/µm" in y
     assert all((np.diff(speeds) > 0.0).all() for speeds, _ in lines)
     light, heavy = (np.array(values) for _, values in lines[:2])

@@ -135,7 +135,8 @@ def test_a_sweep_without_any_result_is_an_error():
 
 def test_precision_takes_keys_with_values(tmp_path):
     scene = {**SCENE, "integrator": {"kind": "newmark"}, "rotor": {"mass": 2.0}}
-    found = rw.precision(scene, {"integrator.steps_per_turn": [45, 90]}, repeats=1, out=tmp_path)
+    steps, fine = {"integrator.steps_per_turn": [45, 90]}, {"integrator.steps_per_turn": 720}
+    found = rw.precision(scene, steps, reference=fine, repeats=1, out=tmp_path)
     assert brief(found) and (tmp_path / "precision.json").is_file()
     data = found.to_xarray()
     np.testing.assert_array_equal(data.error, [row["error"] for row in found.judged])

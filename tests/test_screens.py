@@ -207,13 +207,11 @@ def test_a_line_ends_neither_in_a_number_nor_before_its_unit():
 
 
 def test_a_precision_study_says_how_well_its_reference_is_known():
-    scene = {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 1000},
-        "rotor": {"mass": 2},
-        "excitation": {"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 3.2e-4},
-    }
-    study = rw.precision(scene, {"integrator.steps_per_turn": [45]}, repeats=1)
+    study = rw.precision(
+        rw.load_scene(ARTICLE, ["integrator.kind=newmark", "integrator.turns=4"]),
+        {"integrator.steps_per_turn": [45]},
+        repeats=1,
+    )
     screen = " ".join(lines(study.screen(["precision.json"])))
     assert "bound" in study.words[0] and all(text in screen for text in (*study.words, "written: precision.json"))
 

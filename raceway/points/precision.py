@@ -78,7 +78,7 @@ class Precision(Answer):
     >>> import raceway as rw
     >>> force = {"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 3.2e-4}
     >>> scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000}, "rotor": {"mass": 2}, "excitation": force}
-    >>> found = rw.precision(scene, {"integrator.steps_per_turn": [90]}, repeats=1)
+    >>> found = rw.precision(scene, {"integrator.steps_per_turn": [90]}, reference={"integrator.steps_per_turn": 720}, repeats=1)
     >>> found.to_xarray().error.item() < 1e-4  # of Z, relative
     True
     """
@@ -517,7 +517,7 @@ def precision(
     ...     "excitation": {"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 3.2e-4},
     ...     "rotor": {"mass": 2.0},
     ... }
-    >>> found = rw.precision(scene, {"integrator.steps_per_turn": [45, 90]}, repeats=1)
+    >>> found = rw.precision(scene, {"integrator.steps_per_turn": [45, 90]}, reference={"integrator.steps_per_turn": 720}, repeats=1)
     >>> found.judged[1]["error"] < found.judged[0]["error"]
     True
     """

@@ -22,8 +22,13 @@ def browser():
 
 
 @pytest.fixture(scope="module")
-def application(tmp_path_factory):
-    with Application(tmp_path_factory.mktemp("app"), SCENE) as served:
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("app")
+
+
+@pytest.fixture(scope="module")
+def application(folder):
+    with Application(folder, SCENE) as served:
         yield served
 
 
@@ -162,23 +167,16 @@ def test_axes_of_the_curves_can_be_set(tab):
     assert tab.browser.run("return document.querySelector('.charts input[type=number]').value") == "2000"
 
 
-def test_files_are_written_into_the_folder(browser, tmp_path):
-    with Application(tmp_path / "files", SCENE) as served:
-        tab = Tab(browser, served.address)
-        for words, name in (
-            ("Save scene", ".toml"),
-            ("Curves as CSV", "curves.csv"),
-            ("PNG", ".png"),
-            ("ROSS", "bearing.toml"),
-        ):
-            tab.press(words, changes=False)
-            end = time.monotonic() + PATIENCE_S
-            while not ((note := tab.text('[data-test="note"]')).startswith("written: ") and note.endswith(name)):
-                assert time.monotonic() < end, note
-                time.sleep(0.05)
-        assert {path.suffix for path in tmp_path.rglob("*.*")} == {".toml", ".csv", ".png"}
-        rows = (tmp_path / "files" / "curves.csv").read_text().splitlines()
-        assert rows[0] == "scene,axis,x,quantity,unit,value" and len(rows) > 300
+def test_files_are_written_into_the_folder(tab, folder):
+    for words, name in (("Save scene", ".toml"), ("Curves as CSV", "curves.csv"), ("PNG", ".png"), ("ROSS", "bearing.toml")):
+        tab.press(words, changes=False)
+        end = time.monotonic() + PATIENCE_S
+        while not ((note := tab.text('[data-test="note"]')).startswith("written: ") and note.endswith(name)):
+            assert time.monotonic() < end, note
+            time.sleep(0.05)
+    assert {path.suffix for path in folder.rglob("*.*")} == {".toml", ".csv", ".png"}
+    rows = (folder / "curves.csv").read_text().splitlines()
+    assert rows[0] == "scene,axis,x,quantity,unit,value" and len(rows) > 300
 
 
 def test_long_work_is_stopped(browser, tmp_path):
