@@ -9,4 +9,9 @@ import os
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ |= {"RACEWAY_PLUGINS": "", "RACEWAY_DISABLE": ""}
 
-pytest_plugins = ["checks.validation.fixtures", "checks.validation.system_libraries", "checks.claims"]
+pytest_plugins = [
+    "checks.validation.fixtures",
+    "checks.validation.system_libraries",
+    "checks.claims",
+    "checks.processor_time",
+]

@@ -65,6 +65,8 @@ class Copy:
             "-x",
             "-p",
             "no:cacheprovider",
+            "-p",
+            "no:checks.processor_time",  # a fault may take its time
             *(["-m", QUICK] if quick else []),
             *tests,
         ]
