@@ -61,7 +61,7 @@ $(VENV)/.python:
 	touch $@
 
 $(VENV)/.base: $(VENV)/.python pyproject.toml constraints.txt
-	@echo "installing into $(VENV): half a minute or more, 0.5 GB"
+	@echo "installing into $(VENV): half a minute or more, 0.1 GB to download, 0.5 GB on disk"
 	$(INSTALL) -e .
 	touch $@
 
