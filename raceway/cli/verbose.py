@@ -52,6 +52,12 @@ class _Listener:
         cost = result.cost
         parts = [f"{word} {cost[name]:.2f} s" for word, name in _PARTS.items() if cost.get(name)]
         LOGGER.info("run finished in %.2f s: %s", cost["wall_s"], ", ".join(parts) or "nothing to build")
+        from raceway.core.jit import clock
+
+        cached = clock["loaded"] - clock["of_wheel"]
+        LOGGER.info(
+            "kernels: %d came compiled, %d from the cache, %d compiled now", clock["of_wheel"], cached, clock["compiled"]
+        )
         if result.identification is not None:
             from raceway.answers.quantities import K
 

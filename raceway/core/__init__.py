@@ -1,6 +1,6 @@
 """Numerics only: arrays in, arrays out.
 
-jit            the one decorator for compiled kernels
+jit            the one decorator for compiled kernels;  wheel_kernels: those that a wheel brings
 columns        numbers that may be columns, one of each operating point
 elementary     exponential and logarithm that loops over them are vectorised with
 signatures     types of the kernels that are passed as function pointers

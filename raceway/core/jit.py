@@ -22,7 +22,7 @@ from functools import cache, cached_property
 from importlib import import_module
 from itertools import count
 from pathlib import Path
-from types import FunctionType
+from types import CodeType, FunctionType
 from typing import Any
 
 import numba
@@ -30,7 +30,7 @@ import numpy as np
 from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import IndexDataCacheFile, NullCache
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.compiler import CompilerBase, CompileResult, DefaultPassBuilder
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
@@ -49,9 +49,10 @@ from numba.core.untyped_passes import (
     WithLifting,
 )
 
+from raceway.core import wheel_kernels
 from raceway.core.signatures import Pointer
 from raceway.errors import PluginError, RacewayError
-from raceway.storage.kernel_cache import FilesOfKernel, OpenFolder, current_folder, opened
+from raceway.storage.kernel_cache import SHARED, FilesOfKernel, OpenFolder, current_folder, opened
 
 if getattr(numba.config, "DISABLE_JIT", 0):
     raise RacewayError(
@@ -60,7 +61,7 @@ if getattr(numba.config, "DISABLE_JIT", 0):
 #: Seconds spent in compiling (until a run takes them) and in reading the cache, how many kernels of each, and how many of those
 #: compiled could not be kept.
 clock: dict[str, float] = {
-    "compile_s": 0.0, "load_s": 0.0, "compiled": 0, "loaded": 0, "unkept": 0, "compile_processor_s": 0.0
+    "compile_s": 0.0, "load_s": 0.0, "compiled": 0, "loaded": 0, "of_wheel": 0, "unkept": 0, "compile_processor_s": 0.0
 }  # fmt: skip
 
 
@@ -225,6 +226,7 @@ class _Compiler(CompilerBase):
 _Dispatcher: _Numba = CPUDispatcher
 #: Modules whose kernels need no more than ``_Compiler`` does.
 _OWN = "raceway.core.", "raceway.contact_laws.", "raceway.plugins."
+_SHARED = tuple(f"raceway.{folder.replace('/', '.')}." for folder in SHARED)
 
 
 class Kernel(_Dispatcher):
@@ -244,6 +246,7 @@ class Kernel(_Dispatcher):
             super().__init__(function, targetoptions=options)
         self.signature = signature
         self._compiler._customize_flags = self._flags
+        self._of_wheel = False
 
     @staticmethod
     def _flags(flags: _Numba) -> _Numba:
@@ -277,10 +280,15 @@ class Kernel(_Dispatcher):
 
     def get_call_template(self, args: _Numba, kws: _Numba) -> _Numba:
         """The types of a call by a kernel that is being compiled, which takes a part where this kernel is not compiled by itself."""
-        return super().get_call_template(args, kws) if self.overloads else self._part.get_call_template(args, kws)
+        return super().get_call_template(args, kws) if self._links else self._part.get_call_template(args, kws)
 
     def get_overload(self, sig: object) -> _Numba:
-        return super().get_overload(sig) if self.overloads else self._part.get_overload(sig)
+        return super().get_overload(sig) if self._links else self._part.get_overload(sig)
+
+    @property
+    def _links(self) -> bool:
+        """Whether callers link this kernel's code; that of a wheel is another processor's, in whose bits the order of first uses would show."""
+        return bool(self.overloads) and not self._of_wheel
 
     @cached_property
     def _part(self) -> _Part:
@@ -314,7 +322,8 @@ class Kernel(_Dispatcher):
         function, billed = self.py_func, clock["compile_s"] + clock["load_s"]
         start, processor, processor_billed = time.perf_counter(), time.thread_time(), clock["compile_processor_s"]
         try:
-            self._through_cache()
+            if not self._from_wheel():
+                self._through_cache()
         except (numba.core.errors.NumbaError, TypeError) as why:  # TypeError: another number of arguments
             code = function.__code__
             raise PluginError(
@@ -322,7 +331,7 @@ class Kernel(_Dispatcher):
                 f"compile for the signature {signature_words(self.signature)}: {self._reason(why)}"
             ) from why
         self.disable_compile()
-        hit = sum(self.stats.cache_hits.values()) > 0
+        hit = self._of_wheel or sum(self.stats.cache_hits.values()) > 0
         # Kernels that this one calls were compiled meanwhile, and have told their own seconds.
         clock["load_s" if hit else "compile_s"] += (
             time.perf_counter() - start - (clock["compile_s"] + clock["load_s"] - billed)
@@ -330,6 +339,26 @@ class Kernel(_Dispatcher):
         if not hit:
             clock["compile_processor_s"] = processor_billed + time.thread_time() - processor
         clock["loaded" if hit else "compiled"] += 1
+
+    def _from_wheel(self) -> bool:
+        """Take the machine code that came with the package, if it has this kernel's."""
+        name = f"{self.py_func.__module__}.{self.py_func.__qualname__}"
+        if not name.startswith(_SHARED) or (wheel_kernels.folder() is None and not wheel_kernels.writing):
+            return False
+        marks = str(self.signature), hashlib.sha256(repr(_marks(self.py_func, [])).encode()).hexdigest()
+        if wheel_kernels.writing:
+            self._through_cache()
+            wheel_kernels.write(name, marks, self.overloads[tuple(self.signature.args)]._reduce())
+            return True
+        if (payload := wheel_kernels.read(name, marks)) is None:
+            return False
+        self.targetctx.refresh()
+        code: _Numba = CompileResult._rebuild(self.targetctx, *payload)
+        self.targetctx.insert_user_function(code.entry_point, code.fndesc, [code.library])
+        self.add_overload(code)
+        self._of_wheel = True
+        clock["of_wheel"] += 1
+        return True
 
     def _through_cache(self) -> None:
         folder = kernel_folder()
@@ -407,11 +436,19 @@ def _marks(value: _Numba, above: list[_Numba]) -> Any:
         return above.index(function)
     code, cells = function.__code__, [_marks(cell.cell_contents, [*above, function]) for cell in function.__closure__ or ()]
     stamp: object = None
-    with suppress(OSError):  # a file that is changed changes globals, too
-        status = Path(code.co_filename).stat()
-        stamp = status.st_mtime_ns, status.st_size
+    if f"{function.__module__}.".startswith(_SHARED):  # whose sources name the folder, wherever they lie
+        code = _without_place(code)
+    else:
+        with suppress(OSError):  # a file that is changed changes globals, too
+            status = Path(code.co_filename).stat()
+            stamp = status.st_mtime_ns, status.st_size
     options = str(getattr(value, "signature", "")), sorted(getattr(value, "targetoptions", {}).items())
     return function.__module__, marshal.dumps(code, 2), function.__defaults__, stamp, options, cells
+
+
+def _without_place(code: CodeType) -> CodeType:
+    inner = tuple(_without_place(const) if isinstance(const, CodeType) else const for const in code.co_consts)
+    return code.replace(co_filename="", co_consts=inner)
 
 
 class _Linked(JITCodeLibrary):
@@ -451,6 +488,9 @@ class _Part(_Inlined, Kernel):
     """A kernel as a part of those that call it, without files of its own."""
 
     get_call_template, get_overload = _Dispatcher.get_call_template, _Dispatcher.get_overload
+
+    def _from_wheel(self) -> bool:
+        return False
 
     def _through_cache(self) -> None:
         folder = kernel_folder()

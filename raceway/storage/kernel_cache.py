@@ -73,18 +73,26 @@ def make(folder: Path) -> None:
             parent.mkdir(mode=0o700, exist_ok=True)
 
 
+#: Folders whose kernels the sources below name: their place and time are no part of a kernel's key.
+SHARED = ("core", "contact_laws", "plugins/excitations")
+
+
 @cache
-def source_key() -> str:
-    """Hash of the sources of the core and of laws and excitations, where all shared kernels are, and of what produces machine code."""
+def source_digest() -> str:
+    """Hash of the sources of the core and of laws and excitations, where all shared kernels are."""
     digest = hashlib.sha256()
     package = Path(__file__).resolve().parents[1]
-    shared = ("core", "contact_laws", "plugins/excitations")
-    for path in sorted(path for folder in shared for path in package.glob(f"{folder}/**/*.py")):
+    for path in sorted(path for folder in SHARED for path in package.glob(f"{folder}/**/*.py")):
         digest.update(path.relative_to(package).as_posix().encode())
         digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+@cache
+def source_key() -> str:
+    """Hash of these sources and of the versions that produce machine code."""
     versions = (sys.version, *(version(name) for name in ("numba", "llvmlite", "numpy")))
-    digest.update(repr(versions).encode())
-    return digest.hexdigest()[:16]
+    return hashlib.sha256(f"{source_digest()} {versions}".encode()).hexdigest()[:16]
 
 
 def current_folder() -> Path:
