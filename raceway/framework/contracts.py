@@ -39,7 +39,7 @@ class ContactLaw(attrs.AttrsInstance, Protocol):
     4. ``kernel()``: a function compiled with ``@jit(LAW)``: zero force for gap >= 0, never negative, monotonic in the
        approach, derivatives exact, inputs untouched, outputs overwritten whole, no allocation.
     5. A law for both discretisations distinguishes them by ``pairs.area``, which is None for resultants.
-    6. May be left out, as the rest, with the defaults of ``raceway.framework.duties``: ``constraint`` = True says that the law stands for
+    6. May be left out, as the rest, with the defaults of ``DEFAULTS``: ``constraint`` = True says that the law stands for
        no penetration at all: condensed bodies then hold the gap exactly and do not call the kernel.
     7. ``foundation`` = True says that a resultant is the integral of a pressure that follows from the overlap at each place: results
        then have the law's own peak pressure and semi-axes, sqrt(A B) / pi dQ/ddelta and the overlap ellipse's, instead of Hertz's
@@ -158,7 +158,7 @@ class Excitation(attrs.AttrsInstance, Protocol):
     2. ``sense``: +1 turns forward (from +y towards +z), -1 backward, 0 along a fixed direction.
     3. ``parameters()``: an array (k,) of float64 that the kernel gets.
     4. ``kernel()``: a function compiled with ``@jit(FORCE)`` that overwrites out (5,) = F_x, F_y, F_z, M_y, M_z.
-    5. May be left out, with the defaults of ``raceway.framework.duties``: ``speed_rpm``, the default of
+    5. May be left out, with the defaults of ``DEFAULTS``: ``speed_rpm``, the default of
        ``kinematics.spin_speed_rpm``; ``first_speed_rpm``, from which the speed changes to ``speed_rpm``; ``ramp_turns``, the time over
        which the core lets the force grow; ``duration_s``, the time that is integrated, instead of ``integrator.turns``;
        ``phase(time)``, the angle of the 1x component (n,) [rad], which identifiers of changing speeds need, and without a period the
@@ -591,6 +591,23 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "executor": ("raceway_executors", ("compute",)),
     "study": ("raceway_studies", ("help", "command")),
 }
+
+
+#: What a class may leave out -> its default; of a duty None, where its caller says what holds then.
+DEFAULTS: dict[str, Any] = {
+    **dict.fromkeys(("renewed", "line_contact", "constraint", "foundation", "elementwise", "hertzian"), False),
+    **dict.fromkeys(("swept", "of_results", "orbit", "synchronous", "columns", "rollers"), False),
+    **dict.fromkeys(("reach", "report"), None),  # of contact laws
+    **dict.fromkeys(("speed_rpm", "first_speed_rpm", "duration_s", "phase", "steady", "at_whirl"), None),  # of excitations
+    "ramp_turns": 0.0,
+    **dict.fromkeys(("unused", "same_bodies", "why_no_columns"), None),  # of bodies
+    **dict.fromkeys(("rows", "turn_samples", "table", "warnings"), None),  # of quantities
+}
+
+
+def said(plugin: object, name: str) -> Any:
+    """What a plug-in says under a name that it may leave out, or the default; that, too, where there is no plug-in."""
+    return getattr(plugin, name, DEFAULTS[name])
 
 
 def plural(kind: str) -> str:

@@ -10,7 +10,7 @@ import attrs
 
 from raceway.core.columns import at_rows, distinct, has_columns, length
 from raceway.errors import PluginError
-from raceway.framework.contracts import Cost, LawReport, Traits
+from raceway.framework.contracts import Cost, LawReport, Traits, said
 from raceway.framework.sources import blamed
 
 if TYPE_CHECKING:
@@ -66,22 +66,21 @@ class BodyKind:
         """Why these bodies are not built at many points at once, or a continuous key can be no column; empty where it is so."""
         if not gives_columns(self._plugin):
             return "bodies are in full"
-        if not hasattr(self._plugin, "why_no_columns"):
-            return ""
-        return _answer(self._name, "why_no_columns", lambda: self._plugin.why_no_columns(self._problem, key), str)
+        why = said(self._plugin, "why_no_columns")
+        return "" if why is None else _answer(self._name, "why_no_columns", lambda: why(self._problem, key), str)
 
     def same_bodies(self, changed: Problem) -> bool:
         """Whether another problem of this kind has the same meshes; where the kind does not say, unless there is a [mesh]."""
-        if not hasattr(self._plugin, "same_bodies"):
+        same = said(self._plugin, "same_bodies")
+        if same is None:
             return self._problem.mesh is None or self._problem.bearing == changed.bearing
-        return bool(_answer(self._name, "same_bodies", lambda: self._plugin.same_bodies(self._problem, changed), object))
+        return bool(_answer(self._name, "same_bodies", lambda: same(self._problem, changed), object))
 
 
 def unused_with_bodies(tables: Any) -> list[tuple[str, str]]:
     """(key, reason) for each key of a scene that changes nothing with its kind of bodies, or ``PluginError``; none unless it says so."""
-    if not hasattr(tables.bodies, "unused"):
-        return []
-    return _answer(f"bodies '{tables.bodies.name}'", "unused", lambda: tables.bodies.unused(tables), list)
+    unused = said(tables.bodies, "unused")
+    return [] if unused is None else _answer(f"bodies '{tables.bodies.name}'", "unused", lambda: unused(tables), list)
 
 
 def fitting_quantities(problem: Problem) -> list[Quantities]:
@@ -104,17 +103,17 @@ def why_no_quantities(plugin: Quantities, problem: Problem) -> str:
 
 def quantity_screen(plugin: type[Quantities], result: ReadTables) -> list[Fact]:
     """Of a result the rows of a screen: the plug-in's own, or a heading and its numbers."""
-    if hasattr(plugin, "rows"):
-        return _answer(f"quantity '{plugin.name}'", "rows", lambda: plugin.rows(result[plugin.name]), list)
+    rows = said(plugin, "rows")
+    if rows is not None:
+        return _answer(f"quantity '{plugin.name}'", "rows", lambda: rows(result[plugin.name]), list)
     heading = (plugin.__doc__ or plugin.name).partition("\n")[0].rstrip(".")
     return [(heading, "", ""), *(number.fact(result) for number in plugin.numbers if not number.dims)]
 
 
 def turn_samples(plugin: Quantities, problem: Problem) -> int:
     """Times of a turn at which a plug-in of quantities asks for contact forces, or ``PluginError``; 0 unless it says more."""
-    if not hasattr(plugin, "turn_samples"):
-        return 0
-    return _answer(f"quantity '{plugin.name}'", "turn_samples", lambda: plugin.turn_samples(problem), int)
+    samples = said(plugin, "turn_samples")
+    return 0 if samples is None else _answer(f"quantity '{plugin.name}'", "turn_samples", lambda: samples(problem), int)
 
 
 def quantities_at(plugin: Quantities, points: SolvedPoints) -> dict[str, np.ndarray]:
@@ -140,12 +139,10 @@ def quantity_report(plugin: Quantities, points: SolvedPoints, values: Mapping[st
     """Of one point what result.json has at the plug-in's name, and warnings, or ``PluginError``."""
     title, numbers = f"quantity '{plugin.name}'", {name: value[0] for name, value in values.items()}
     table: Tables = {number.path.partition(".")[2]: numbers[number.name].tolist() for number in plugin.numbers}
-    if hasattr(plugin, "table"):
-        table = _answer(title, "table", lambda: plugin.table(points, values), dict)
-    warnings = (
-        _answer(title, "warnings", lambda: plugin.warnings(points, values), list) if hasattr(plugin, "warnings") else []
-    )
-    return table, warnings
+    own, warnings = said(plugin, "table"), said(plugin, "warnings")
+    if own is not None:
+        table = _answer(title, "table", lambda: own(points, values), dict)
+    return table, [] if warnings is None else _answer(title, "warnings", lambda: warnings(points, values), list)
 
 
 def _says(trait: str, *duties: str) -> Callable[[object], bool]:
@@ -154,7 +151,7 @@ def _says(trait: str, *duties: str) -> Callable[[object], bool]:
     def says(plugin: object) -> bool:
         classes = (plugin if isinstance(plugin, type) else type(plugin)).__mro__
         at, *others = (next((k for k, c in enumerate(classes) if name in vars(c)), 0) for name in (trait, *duties))
-        return bool(getattr(plugin, trait, False)) and at <= min(others, default=at)
+        return bool(said(plugin, trait)) and at <= min(others, default=at)
 
     return says
 
@@ -189,7 +186,7 @@ def reach_of(law: ContactLaw, pairs: ContactPairs) -> np.ndarray:
     import numpy as np
 
     n = len(pairs.curvature_a)
-    if not hasattr(law, "reach"):
+    if said(law, "reach") is None:
         return np.zeros(n)
     reach = _of_contacts(law, pairs, "reach")
     if reach.shape != (n,) or not (reach >= 0.0).all() or not np.isfinite(reach).all():
@@ -219,9 +216,10 @@ def _of_contacts(law: ContactLaw, pairs: ContactPairs, duty: str) -> np.ndarray:
 
 def law_report(law: ContactLaw, pairs: ContactPairs) -> LawReport | None:
     """The report of a renewed law on its contacts; None unless it has one."""
-    if not renews(law) or not hasattr(law, "report"):
+    report = said(law, "report")
+    if not renews(law) or report is None:
         return None
-    return _answer(f"contact law '{law.name}'", "report", lambda: law.report(pairs), LawReport)
+    return _answer(f"contact law '{law.name}'", "report", lambda: report(pairs), LawReport)
 
 
 def force_params(excitation: Excitation) -> np.ndarray:
@@ -244,37 +242,38 @@ def _array(plugin: str, duty: str, call: Callable[[], object]) -> np.ndarray:
 
 def speed_rpm(excitation: Excitation | None) -> float | None:
     """The speed of an excitation [r/min], default of the spin speed; None where it has none, or there is no excitation."""
-    return getattr(excitation, "speed_rpm", None)
+    rpm: float | None = said(excitation, "speed_rpm")
+    return rpm
 
 
 def changes_speed(excitation: Excitation | None) -> bool:
     """Whether an excitation runs from one speed, ``first_speed_rpm``, to another; not unless it has that."""
-    return getattr(excitation, "first_speed_rpm", None) is not None
+    return said(excitation, "first_speed_rpm") is not None
 
 
 def ramp_turns(excitation: Excitation | None) -> float:
     """Turns over which the force grows from zero; 0 unless the excitation says more."""
-    return float(getattr(excitation, "ramp_turns", 0.0))
+    return float(said(excitation, "ramp_turns"))
 
 
 def duration_s(excitation: Excitation | None) -> float | None:
     """Time that is integrated [s]; None, for the turns of the scene, unless the excitation says more."""
-    return getattr(excitation, "duration_s", None)
+    seconds: float | None = said(excitation, "duration_s")
+    return seconds
 
 
 def has_phase(excitation: Excitation | None) -> bool:
     """Whether an excitation knows the angle of its 1x component."""
-    return hasattr(excitation, "phase")
+    return said(excitation, "phase") is not None
 
 
 def steady_form(excitation: Excitation | None) -> Excitation | None:
     """The periodic excitation on whose orbit the motion under a changing speed starts; None where there is none."""
-    steady = getattr(excitation, "steady", None)
+    steady = said(excitation, "steady")
     return None if steady is None else steady()
 
 
 def at_whirl(excitation: Excitation, whirl_rpm: float) -> Excitation:
     """The same force at another whirl speed [r/min]; with another ``speed_rpm`` unless the excitation says more."""
-    if hasattr(excitation, "at_whirl"):
-        return excitation.at_whirl(whirl_rpm)
-    return attrs.evolve(excitation, speed_rpm=whirl_rpm)  # type: ignore[misc]
+    at: Callable[[float], Excitation] | None = said(excitation, "at_whirl")
+    return attrs.evolve(excitation, speed_rpm=whirl_rpm) if at is None else at(whirl_rpm)  # type: ignore[misc]

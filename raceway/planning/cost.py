@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import attrs
 
+from raceway.framework.contracts import said
 from raceway.planning.parts import Balls, Motion
 from raceway.planning.resolve import Problem, recorded_per_turn
 
@@ -82,7 +83,7 @@ _STATIC_S, _FILM_S, _HEAT_S, _TURNING_S, _DAMPED, _FIXED = 17.0e-6, 0.11e-3, 0.2
 def column_time(plan: ScenePlan, moving: bool) -> float:
     """Processor time of a point in compiled columns on this machine [s]; ``moving``: with its steady orbit."""
     problem = plan.problem
-    seconds = _FILM_S if getattr(problem.contact.law, "elementwise", False) else _STATIC_S
+    seconds = _FILM_S if said(problem.contact.law, "elementwise") else _STATIC_S
     seconds += 0.0 if problem.scene.heat is None else _HEAT_S
     if moving:
         damped = _DAMPED if plan.keeps("contact damping") else 1.0

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.framework.contracts import ContactPairs
+from raceway.framework.contracts import ContactPairs, said
 from raceway.framework.duties import is_hertzian, law_report, reach_of
 from raceway.testing.suite import ConformityError, Suite, check_class, check_kernel, check_shape, duty, require
 
@@ -173,7 +173,7 @@ class ContactLawSuite(Suite):
     @duty("only a `renewed` law follows speed and load; its reach is 0 or more and vanishes with the entraining speed")
     def test_running(self, law: ContactLaw) -> str:
         """At standstill and as good as there a law is the same; 1e-15 of a speed leaves 1e-9 of any power above 0.6."""
-        renewed = getattr(law, "renewed", False)
+        renewed = said(law, "renewed")
         require(type(renewed) is bool, f"`renewed` = {renewed!r} must be True or False")
         for name in ("reach", "report"):
             require(renewed or not hasattr(law, name), f"{name}() is called for laws with `renewed` = True only")
