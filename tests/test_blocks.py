@@ -215,7 +215,7 @@ def test_ctrl_c_is_answered_by_the_end_of_a_block_which_takes_less_than_a_second
     each = column_time(rw.make_plan(rw.Scene.from_dict(STATIC)), moving=False) / slowness()
     assert sweep._SHARED * BLOCK[False] * each < 1.0
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it
-    design = grid(["load.axial=300:2000:1000", "kinematics.spin_speed_rpm=1000:24000:1000"])
+    design = grid(["load.axial=300:2000:400", "kinematics.spin_speed_rpm=1000:24000:400"])
     events: list[str] = []
 
     def press() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -213,12 +214,12 @@ DRAWN: dict[object, Callable[[], list[Figure]]] = {
 }  # fmt: skip
 
 
+#: Of the drawn: the article's study takes seconds, and its own tests draw it.
+MARKS = {of_stresses: [pytest.mark.needs("pyvista")], of_the_article: [pytest.mark.slow]}
+
+
 @pytest.mark.parametrize(
-    "draw",
-    [
-        pytest.param(draw, id=draw.__name__, marks=[pytest.mark.needs("pyvista")] * (draw is of_stresses))
-        for draw in DRAWN.values()
-    ],
+    "draw", [pytest.param(draw, id=draw.__name__, marks=MARKS.get(draw, ())) for draw in DRAWN.values()]
 )
 def test_every_drawn_point_lies_inside_its_axes_and_is_read_at_600_pixels(draw):
     figures = draw()
@@ -253,7 +254,9 @@ def test_no_module_makes_figures_that_are_not_looked_at_here():
     folder = Path(raceway.__file__).parent
     making = set()
     for path in [*folder.rglob("*.py"), *folder.parent.glob("packages/*/raceway_*/**/*.py")]:
-        called = [node.func for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
+        if not re.search("new_figure|Figure", text := path.read_text(encoding="utf-8")):
+            continue
+        called = [node.func for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)]
         names = {getattr(call, "id", getattr(call, "attr", None)) for call in called}
         if names & {"new_figure", "Figure"}:
             making.add(path)

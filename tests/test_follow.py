@@ -241,6 +241,7 @@ def test_balls_that_graze_their_races_do_not_lose_the_curve():
     assert len(curve.rows) > 50 and curve.end
 
 
+@pytest.mark.slow  # tests/evidence/test_orbits.py compares some points
 def test_k_and_multipliers_by_other_methods(curve):
     """The reference ring's forces in harmonic balance, and a turn of DOP853 with its variational equations."""
     fold = next(label.point for label in curve.labels if label.kind == FOLD)
