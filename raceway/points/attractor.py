@@ -104,15 +104,15 @@ def attractor_beside(point: Point, turns: int, on_progress: OnProgress | None = 
 def attractor_beside_run(result: Result, parameter: float, turns: int) -> Attractor:
     """The same of a run by ``integrator.kind`` = "periodic" whose orbit is unstable."""
     assert result.simulation is not None
-    refined, equilibrium = result.simulation.whole.solution, result.equilibrium
-    problem = refined.problem
-    guess = refined.first_guess(problem, equilibrium.displacement, equilibrium.stiffness, refined.excess.nodes)
+    solution, equilibrium = result.simulation.whole.solution, result.equilibrium
+    problem = solution.problem
+    guess = solution.first_guess(problem, equilibrium.displacement, equilibrium.stiffness, solution.excess.nodes)
     try:
-        solved = solve(problem, guess, _AGAIN)
-        over = transfer(solved, highest_order(problem, equilibrium.stiffness))
+        orbit = solve(problem, guess, _AGAIN)
+        over = transfer(orbit, highest_order(problem, equilibrium.stiffness))
     except ConvergenceError as why:
         return Attractor(parameter, FAILED, turns, why=str(why))
-    return _beside(solved, over, parameter, turns, None)
+    return _beside(orbit, over, parameter, turns, None)
 
 
 def attractor_from_rest(scene: Scene, parameter: float, turns: int) -> Attractor:
@@ -124,17 +124,17 @@ def attractor_from_rest(scene: Scene, parameter: float, turns: int) -> Attractor
     def start(system: Ring) -> Motion:
         return model.bearing.at_rest(system, equilibrium.displacement, equilibrium.ball, True)
 
-    return _integrated(model.system, start, schedule, parameter, turns, None)
+    return _end_of(model.system, start, schedule, parameter, turns, None)
 
 
-def _beside(solved: Solved, over: np.ndarray, parameter: float, turns: int, on_progress: OnProgress | None) -> Attractor:
+def _beside(orbit: Solved, over: np.ndarray, parameter: float, turns: int, on_progress: OnProgress | None) -> Attractor:
     """From beside an orbit, along the disturbance that grows most in a transfer ``over`` its span."""
-    problem, free = solved.problem, solved.problem.free
+    problem, free = orbit.problem, orbit.problem.free
     w, n = problem.speed, len(free)
     values, vectors = np.linalg.eig(over)
     way = vectors[:, np.argmax(np.abs(values))].real
-    way *= _KICK * solved.size / max(float(np.abs(way / np.tile(problem.weight[free], 2)).max()), 1e-300)
-    q, v, _, ball, _ = (part[0] for part in states(solved, np.zeros(1)))
+    way *= _KICK * orbit.size / max(float(np.abs(way / np.tile(problem.weight[free], 2)).max()), 1e-300)
+    q, v, _, ball, _ = (part[0] for part in states(orbit, np.zeros(1)))
     q, v = q.copy(), w * v
     q[free] += way[:n]
     v[free] += w * way[n:]
@@ -144,10 +144,10 @@ def _beside(solved: Solved, over: np.ndarray, parameter: float, turns: int, on_p
         return Motion(q, v, system.acceleration(q, v, system.outer_force(0.0), now), now.ball, now.ball.copy())
 
     schedule = Schedule(2.0 * np.pi / w / _STEPS, _STEPS, turns, _STEPS // _RECORDED)
-    return _integrated(problem.system, start, schedule, parameter, turns, on_progress)
+    return _end_of(problem.system, start, schedule, parameter, turns, on_progress)
 
 
-def _integrated(
+def _end_of(
     system: Ring, start: Callable[[Ring], Motion], schedule: Schedule, parameter: float, turns: int, on_progress: OnProgress | None
 ) -> Attractor:  # fmt: skip
     """The motion from a start, by its last turns."""
@@ -155,12 +155,12 @@ def _integrated(
     newmark = default_registry().find("integrator", "newmark").plugin()
     try:
         try:
-            record, undamped = integrate(newmark, system, start(system), schedule, on_steps), False
+            record, without_dashpots = integrate(newmark, system, start(system), schedule, on_steps), False
         except RacewayError:
             # The dashpots' force jumps where a contact closes, and a ball may have no equilibrium within the jump.
             if system.scalars[DAMPING] == 0.0:
                 raise
-            bare, undamped = system.without(DAMPING), True
+            bare, without_dashpots = system.without(DAMPING), True
             record = integrate(newmark, bare, start(bare), schedule, on_steps)
     except RacewayError as why:
         return Attractor(parameter, FAILED, turns, why=str(why))
@@ -169,12 +169,12 @@ def _integrated(
     motion = np.hstack([record.displacement / weight, record.velocity / w / weight])[-last * _RECORDED :]
     half_range = 0.5 * np.ptp(motion[:, 1:3].reshape(last, _RECORDED, 2), axis=1).max(axis=1)
     section = motion[_RECORDED - 1 :: _RECORDED]
-    kind, period, second = judged(section, float(np.abs(motion[:, 5:]).max()))
+    kind, period, second = kind_of_section(section, float(np.abs(motion[:, 5:]).max()))
     least, most = float(half_range.min()), float(half_range.max())
-    return Attractor(parameter, kind, turns, period, second, least, most, "", undamped, section[:, [1, 6]].copy())
+    return Attractor(parameter, kind, turns, period, second, least, most, "", without_dashpots, section[:, [1, 6]].copy())
 
 
-def judged(section: np.ndarray, size: float) -> tuple[str, int | None, float | None]:
+def kind_of_section(section: np.ndarray, size: float) -> tuple[str, int | None, float | None]:
     """Kind, period in turns and second frequency of a section (n, k) of a motion of some size."""
     for period in range(1, _PERIODS + 1):
         if np.abs(section[period:] - section[:-period]).max() <= _BACK * size:
@@ -187,7 +187,7 @@ def judged(section: np.ndarray, size: float) -> tuple[str, int | None, float | N
     power[:4] = 0.0
     # Any component may be the second frequency itself, or one of its harmonics that was folded back.
     for top in np.argsort(power)[::-1][:8]:
-        second = _refined(power, int(top)) / n
+        second = _peak_bin(power, int(top)) / n
         bins = np.abs((second * np.arange(1, _HARMONICS + 1) + 0.5) % 1.0 - 0.5) * n
         near = (np.abs(np.arange(len(power))[:, None] - bins) <= 4.5).any(axis=1)
         if near.mean() < 0.7 and power[near].sum() >= _POWER * power.sum():
@@ -199,7 +199,7 @@ def judged(section: np.ndarray, size: float) -> tuple[str, int | None, float | N
     return WANDERS, None, None
 
 
-def _refined(power: np.ndarray, top: int) -> float:
+def _peak_bin(power: np.ndarray, top: int) -> float:
     """Frequency of a component in bins, by a parabola through the logarithms about its highest bin."""
     if not 0 < top < len(power) - 1 or min(power[top - 1 : top + 2]) <= 0.0:
         return float(top)

@@ -212,19 +212,19 @@ def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: 
 
     Keys of the scene that the point takes their effect from are left out without a word.
     """
-    changed = dict(tables)
+    scene_tables = dict(tables)
     # Kinds first: what another axis sets must not be taken for an option of the old kind.
     for key, value in sorted(point.items(), key=lambda item: not item[0].endswith(".kind")):
         name, _, last = key.rpartition(".")
         if last == "kind" and name in PLUGIN_TABLES and isinstance(value, str):
-            for option in _strange_options(changed, name, value, registry):
-                value_before = changed[name][option]
-                changed[name] = {k: v for k, v in changed[name].items() if k != option}
+            for option in _strange_options(scene_tables, name, value, registry):
+                value_before = scene_tables[name][option]
+                scene_tables[name] = {k: v for k, v in scene_tables[name].items() if k != option}
                 note = f"{name}.{option} = {shown(value_before)} is omitted for kind '{value}', which lacks it"
                 if notes is not None and note not in notes:
                     notes.append(note)
-        changed = with_value(changed, key, value)
-    return without_inherited(tables, changed, point, registry)
+        scene_tables = with_value(scene_tables, key, value)
+    return without_inherited(tables, scene_tables, point, registry)
 
 
 def numbers_at(tables: ReadTables, point: ReadTables, registry: Registry) -> Tables:
@@ -232,8 +232,8 @@ def numbers_at(tables: ReadTables, point: ReadTables, registry: Registry) -> Tab
     texts = [key for key, value in point.items() if isinstance(value, str) and is_quantity(value)]
     if not texts:
         return dict(point)
-    changed = numbers_only(tables_at(tables, point, registry), registry)
-    return {**point, **{key: value_at(changed, key) for key in texts}}
+    numbers = numbers_only(tables_at(tables, point, registry), registry)
+    return {**point, **{key: value_at(numbers, key) for key in texts}}
 
 
 def axes_of(definitions: Vary, tables: ReadTables, registry: Registry) -> tuple[Axis, ...]:
@@ -413,7 +413,7 @@ def listed_points(points: Iterable[Mapping[str, object]]) -> Design:
     SceneError
         No points, or other keys in one of them.
     """
-    return _listed("points", tidy(list(points)))
+    return _point_list("points", tidy(list(points)))
 
 
 def design_file(path: Path) -> Design:
@@ -431,13 +431,13 @@ def design_file(path: Path) -> Design:
         raise SceneError.at(str(path), None, f"must end in one of {', '.join(readers)}")
     content = readers[path.suffix.lower()](path)
     if not isinstance(content, dict):
-        return _listed(path, content)
+        return _point_list(path, content)
     if len(content) != 1 or not isinstance(content.get("grid", {}), dict) or not content.keys() <= {"grid", "points"}:
         raise SceneError.at(str(path), None, _FILE_FORM)
     if "points" in content:
-        return _listed(path, content["points"])
+        return _point_list(path, content["points"])
     words = ((key, [json.dumps(v) for v in value] if isinstance(value, list) else [str(value)])
-             for key, value in _dotted(content["grid"]))  # fmt: skip
+             for key, value in _leaves(content["grid"]))  # fmt: skip
     return grid(f"{key}={','.join(values)}" for key, values in words)
 
 
@@ -446,11 +446,11 @@ def _of_points(points: Sequence[ReadTables]) -> Design:
     return Design(tuple(Axis(key, tuple(point[key] for point in points)) for key in points[0]), listed=True)
 
 
-def _dotted(table: ReadTables, before: str = "") -> Iterator[tuple[str, object]]:
+def _leaves(table: ReadTables, before: str = "") -> Iterator[tuple[str, object]]:
     """``a.b`` for [grid] "a.b" and for [grid.a] b alike."""
     for key, value in table.items():
         if isinstance(value, dict):
-            yield from _dotted(value, f"{before}{key}.")
+            yield from _leaves(value, f"{before}{key}.")
         else:
             yield f"{before}{key}", value
 
@@ -491,10 +491,10 @@ def _text(path: Path) -> str:
         raise SceneError.at(str(path), None, f"cannot be read: {why_unreadable(why)}") from None
 
 
-def _listed(path: Path | str, points: object) -> Design:
+def _point_list(path: Path | str, points: object) -> Design:
     if not isinstance(points, list) or not all(isinstance(point, dict) for point in points):
         raise SceneError.at(str(path), None, "must hold a list of points, each with keys of the scene and their values")
-    points = [dict(_dotted(point)) for point in points]
+    points = [dict(_leaves(point)) for point in points]
     if not points or not points[0]:
         raise SceneError.at(str(path), None, "has no points: nothing to sweep")
     if len(points) > _MOST_SWEEP_POINTS:

@@ -62,8 +62,8 @@ def design(count: int, dimensions: int, seed: int) -> np.ndarray:
 
     both = qmc.Sobol(2 * dimensions, seed=seed).random(count)
     a, b = both[:, :dimensions], both[:, dimensions:]
-    mixed = [np.where(np.arange(dimensions) == k, b, a) for k in range(dimensions)]
-    return np.vstack([a, b, *mixed])
+    blends = [np.where(np.arange(dimensions) == k, b, a) for k in range(dimensions)]
+    return np.vstack([a, b, *blends])
 
 
 def indices(values: np.ndarray, dimensions: int) -> _Indices:
@@ -72,8 +72,8 @@ def indices(values: np.ndarray, dimensions: int) -> _Indices:
 
     count = values.shape[1] // (dimensions + 2)
     parts = values.reshape(len(values), dimensions + 2, count)
-    centred = parts - parts[:, :2].mean(axis=(1, 2))[:, None, None]
-    func = {"f_A": centred[:, 0], "f_B": centred[:, 1], "f_AB": np.moveaxis(centred[:, 2:], 1, 0)}
+    deviations = parts - parts[:, :2].mean(axis=(1, 2))[:, None, None]
+    func = {"f_A": deviations[:, 0], "f_B": deviations[:, 1], "f_AB": np.moveaxis(deviations[:, 2:], 1, 0)}
     sobol = sobol_indices(func=func, n=count)
     shape = len(values), dimensions  # scipy leaves out axes of length 1
     return _Indices(np.reshape(sobol.first_order, shape), np.reshape(sobol.total_order, shape))
@@ -175,9 +175,9 @@ class Band(Answer):
     def remarks(self) -> list[str]:
         """Where band or indices must not be taken at their word."""
         far = [name for name, value in self.nominal.items() if not self.low[name] <= value <= self.high[name]]
-        found = []
+        sentences = []
         if far:
-            found.append(
+            sentences.append(
                 f"the nominal {', '.join(far)} lies outside the band: the answer jumps within the tolerances to another motion or contact "
                 "state; raceway follow shows where"
             )
@@ -188,8 +188,8 @@ class Band(Answer):
             for share in indices_by_name[name]
         ]
         if any(abs(share - 0.5) > 0.5 + _ROUGH for share in shares):
-            found.append(f"indices beyond 0 and 1 by more than {_ROUGH:g}: too few samples, use more --samples")
-        return found
+            sentences.append(f"indices beyond 0 and 1 by more than {_ROUGH:g}: too few samples, use more --samples")
+        return sentences
 
     def _shown(self) -> tuple[str, list[Fact]]:
         rows = [
@@ -261,7 +261,7 @@ class Band(Answer):
         }
 
 
-def _looped(scene: Scene, paths: Sequence[str], numbers: np.ndarray, nominal: Mapping[str, float]) -> list[Tables]:
+def _loop_rows(scene: Scene, paths: Sequence[str], numbers: np.ndarray, nominal: Mapping[str, float]) -> list[Tables]:
     """Answers at points (n, d) as ``sampled`` gives them, from compiled loops; empty at points that these leave."""
     names = {symbol: quantity_of(symbol).name for symbol in nominal}
     outputs = list(names.values())
@@ -304,8 +304,8 @@ def _answer(scene: Scene) -> tuple[dict[str, float], dict[str, str]]:
     numbers, words = values(model, equilibrium, Gradients(model, equilibrium).orbit), definitions(model, equilibrium)
     columns = stated_columns(scene, default_registry())
     moving = scene.excitation is not None
-    stated = run(_steady(scene)).quantities if moving else stated_quantities(model, equilibrium, None).values
-    numbers |= {name: float(stated[name]) for name in columns if name in stated and np.isfinite(stated[name])}
+    at_scene = run(_steady(scene)).quantities if moving else stated_quantities(model, equilibrium, None).values
+    numbers |= {name: float(at_scene[name]) for name in columns if name in at_scene and np.isfinite(at_scene[name])}
     return numbers, words | {name: quantity.words for name, quantity in columns.items()}
 
 
@@ -318,20 +318,20 @@ def _steady(scene: Scene) -> Scene:
 def _summary(
     title: str, tolerances: tuple[Tolerance, ...], nominal: dict[str, float], words: dict[str, str], rows: list[Tables], dimensions: int
 ) -> Band:  # fmt: skip
-    lost = [row["why"] for row in rows if "why" in row]
+    reasons = [row["why"] for row in rows if "why" in row]
     names = [name for name in nominal if all(name in row for row in rows if "why" not in row)]
-    if len(lost) == len(rows):
-        raise ConvergenceError(f"no sample has an answer: {lost[0]}")
+    if len(reasons) == len(rows):
+        raise ConvergenceError(f"no sample has an answer: {reasons[0]}")
     table = np.array([[row.get(name, np.nan) for row in rows] for name in names])
     ends = table[:, : 2 * (len(rows) // (dimensions + 2))]  # A and B: the rest repeats their numbers
     low, high = np.nanquantile(ends, _LIMITS, axis=1)
     histograms = [np.histogram(values[np.isfinite(values)], _BINS) for values in ends]
     first: dict[str, list[float]] = {}
     total: dict[str, list[float]] = {}
-    if not lost:
-        varied = [k for k in range(len(names)) if np.ptp(ends[k]) > 1e-9 * abs(nominal[names[k]])]
-        sobol = indices(table[varied], dimensions) if varied else _Indices(np.empty((0, 0)), np.empty((0, 0)))
-        for row_of, k in enumerate(varied):
+    if not reasons:
+        effective = [k for k in range(len(names)) if np.ptp(ends[k]) > 1e-9 * abs(nominal[names[k]])]
+        sobol = indices(table[effective], dimensions) if effective else _Indices(np.empty((0, 0)), np.empty((0, 0)))
+        for row_of, k in enumerate(effective):
             first[names[k]], total[names[k]] = sobol.first[row_of].tolist(), sobol.total[row_of].tolist()
     return Band(
         title,
@@ -344,8 +344,8 @@ def _summary(
         total,
         {name: (edges.tolist(), counts.tolist()) for name, (counts, edges) in zip(names, histograms, strict=True)},
         len(rows),
-        len(lost),
-        lost[0] if lost else "",
+        len(reasons),
+        reasons[0] if reasons else "",
     )
 
 
@@ -397,11 +397,11 @@ def band(
         raise SceneError.at(
             "samples", count, "must be a power of 2, at least 2: the samples of a Sobol' sequence are balanced then"
         )
-    varied, registry = tolerances_of(read, tolerances or stated_tolerances(read)), default_registry()
+    widths, registry = tolerances_of(read, tolerances or stated_tolerances(read)), default_registry()
     nominal, words = _answer(read)
-    paths, low, high = zip(*((tolerance.key.path, tolerance.low, tolerance.high) for tolerance in varied), strict=True)
-    numbers = np.array(low) + design(count, len(varied), seed) * np.subtract(high, low)
-    rows = _looped(read, paths, numbers, nominal)
+    paths, low, high = zip(*((tolerance.key.path, tolerance.low, tolerance.high) for tolerance in widths), strict=True)
+    numbers = np.array(low) + design(count, len(widths), seed) * np.subtract(high, low)
+    rows = _loop_rows(read, paths, numbers, nominal)
     left = numbers[[not row for row in rows]]
     tasks = [(read.source, paths, left[k : k + _CHUNK].tolist()) for k in range(0, len(left), _CHUNK)]
     items = [Item(row_key(read, registry, f"band {task[1:]}"), "samples", task) for task in tasks]
@@ -409,7 +409,7 @@ def band(
     with telling(progress) as report, written(kept) as store:
         chunk_rows, _ = work_through(sampled, items, store, local(registry, processes), registry, files, report)
     single = (row for chunk in chunk_rows for row in chunk["rows"])
-    return _summary(read.title, varied, nominal, words, [row or next(single) for row in rows], len(varied))
+    return _summary(read.title, widths, nominal, words, [row or next(single) for row in rows], len(widths))
 
 
 @door
@@ -455,10 +455,10 @@ def uncertainty(
             )
         if plan:
             read = as_scene(scene, plugins=plugins)
-            varied = tolerances_of(read, tolerances or stated_tolerances(read))
-            count, steady = (len(varied) + 2) * samples, read if read.excitation is None else _steady(read)
+            widths = tolerances_of(read, tolerances or stated_tolerances(read))
+            count, steady = (len(widths) + 2) * samples, read if read.excitation is None else _steady(read)
             loop = function(
-                steady, [tolerance.key.path for tolerance in varied], ["K" if steady.excitation else "kyy"], threads=1
+                steady, [tolerance.key.path for tolerance in widths], ["K" if steady.excitation else "kyy"], threads=1
             )
             if loop.why_slow:
                 seconds, _ = run_times(count, lambda _: steady.to_dict(), default_registry(), planned=1)

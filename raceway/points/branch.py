@@ -259,64 +259,64 @@ def _line(label: str, row: Orbit) -> dict[str, str]:
 
 def orbit_of(point: Point, arc: float, mass: float) -> Orbit:
     """Numbers of one point; ``mass`` m of K = Re Z + m w^2 [kg]."""
-    solved, stability = point.solved, point.floquet
-    z, amplitude = first_component(solved)
+    solution, stability = point.solved, point.floquet
+    z, amplitude = first_component(solution)
     return Orbit(
-        point.parameter, arc, solved.problem.speed, z, mass, amplitude, swing(solved), stability.largest,
-        int((np.abs(stability.multipliers) > _OUTSIDE).sum()), open_contacts(solved)[1], point.error, stability.verdict, stability.leaves_by,
+        point.parameter, arc, solution.problem.speed, z, mass, amplitude, swing(solution), stability.largest,
+        int((np.abs(stability.multipliers) > _OUTSIDE).sum()), open_contacts(solution)[1], point.error, stability.verdict, stability.leaves_by,
     )  # fmt: skip
 
 
-def first_component(solved: Solved) -> tuple[complex, float]:
+def first_component(solution: Solved) -> tuple[complex, float]:
     """Z [N/m] along the force and major semi-axis [m] of the 1x component, over all turns of the span."""
-    problem, angles = solved.problem, _angles(solved)
+    problem, angles = solution.problem, _angles(solution)
     push = np.empty((len(angles), 5))
     forces(problem.system.force, problem.system.force_params, angles / problem.clock, push)
-    turned = 2.0 / len(angles) * np.exp(-1j * angles)
-    x, force = turned @ displacements(solved, angles), turned @ push
+    kernel = 2.0 / len(angles) * np.exp(-1j * angles)
+    x, force = kernel @ displacements(solution, angles), kernel @ push
     forward, backward = 0.5 * abs(x[1] - 1j * x[2]), 0.5 * abs(x[1] + 1j * x[2])
     return complex(stiffness(force, x)), float(forward + backward)
 
 
-def swing(solved: Solved) -> float:
+def swing(solution: Solved) -> float:
     """sqrt 2 times the rms of the displacement about its mean [m], over all turns of the span."""
-    q = displacements(solved, _angles(solved))[:, :3]
+    q = displacements(solution, _angles(solution))[:, :3]
     return float(np.sqrt(2.0 * ((q - q.mean(axis=0)) ** 2).sum(axis=1).mean()))
 
 
 def growth_of_swing(branch: Branch, point: Point) -> float:
     """Derivative of the amplitude along the branch [m], by a difference quotient along its tangent."""
-    solved = point.solved
-    path, problem = solved.path, solved.problem
+    solution = point.solved
+    path, problem = solution.path, solution.problem
     change = Change(*(np.zeros_like(part) for part in (path.q, path.v, path.a)))
-    spread(problem.free, solved.eliminated, branch.displacement(point), branch.unit * point.tangent[-1], change)
-    step = _ALONG * solved.size / max(float(np.abs(change.q / problem.weight).max()), 1e-300)
+    spread(problem.free, solution.eliminated, branch.displacement(point), branch.unit * point.tangent[-1], change)
+    step = _ALONG * solution.size / max(float(np.abs(change.q / problem.weight).max()), 1e-300)
     paths = (
         attrs.evolve(path, q=path.q + h * change.q, v=path.v + h * change.v, a=path.a + h * change.a) for h in (-step, step)
     )
-    low, high = (swing(attrs.evolve(solved, path=moved)) for moved in paths)
+    low, high = (swing(attrs.evolve(solution, path=neighbour)) for neighbour in paths)
     return (high - low) / (2.0 * step)
 
 
-def resonance(solved: Solved) -> str:
+def resonance(solution: Solved) -> str:
     """What outweighs the response to the force: a harmonic of it at which the ring vibrates by itself; empty where none does."""
-    angles = _angles(solved)
-    moved = displacements(solved, angles) / solved.problem.weight
-    sizes = np.linalg.norm(np.fft.rfft(moved, axis=0)[1:], axis=1)
-    order = (1 + int(sizes.argmax())) / _turns(solved)
+    angles = _angles(solution)
+    motion = displacements(solution, angles) / solution.problem.weight
+    sizes = np.linalg.norm(np.fft.rfft(motion, axis=0)[1:], axis=1)
+    order = (1 + int(sizes.argmax())) / _turns(solution)
     if order == 1.0:
         return ""
     return (
         f"; its {order:g}x harmonic outweighs the synchronous (1x) component, an internal resonance with a vibration near "
-        f"{order * solved.problem.speed * 30.0 / np.pi:.5g} r/min"
+        f"{order * solution.problem.speed * 30.0 / np.pi:.5g} r/min"
     )
 
 
-def open_contacts(solved: Solved) -> tuple[float, int]:
+def open_contacts(solution: Solved) -> tuple[float, int]:
     """Largest gap of an inner contact [m], negative where all carry at all times, and most of them that are open at once."""
-    problem, system = solved.problem, solved.problem.system
+    problem, system = solution.problem, solution.problem.system
     angles = problem.symmetry.span * np.arange(_CONTACTS) / _CONTACTS
-    q, v, _, ball, rate = states(solved, angles)
+    q, v, _, ball, rate = states(solution, angles)
     at = States(angles / problem.speed, q, v * problem.speed, ball, rate)
     # A ball that grazes a race may have no equilibrium with a dashpot that must not pull, which hardly changes which contacts are open.
     try:
@@ -327,10 +327,10 @@ def open_contacts(solved: Solved) -> tuple[float, int]:
     return float(inner.max()), int((inner >= 0.0).sum(axis=1).max())
 
 
-def _turns(solved: Solved) -> int:
+def _turns(solution: Solved) -> int:
     """Whole turns of the force in a span that is longer than one, else 1."""
-    return max(1, round(solved.problem.symmetry.span / (2.0 * np.pi)))
+    return max(1, round(solution.problem.symmetry.span / (2.0 * np.pi)))
 
 
-def _angles(solved: Solved) -> np.ndarray:
-    return 2.0 * np.pi * np.arange(_SAMPLES * _turns(solved)) / _SAMPLES
+def _angles(solution: Solved) -> np.ndarray:
+    return 2.0 * np.pi * np.arange(_SAMPLES * _turns(solution)) / _SAMPLES

@@ -65,12 +65,12 @@ class Computed:
         states = bearing.equilibria()
         if excitations is None:
             return cls(example, bearing, states, None, np.zeros(0))
-        stated = plugin_quantities(default_registry())
-        plugins = {stated[name][0] for name in outputs if name in stated}
+        of_plugins = plugin_quantities(default_registry())
+        plugins = {of_plugins[name][0] for name in outputs if name in of_plugins}
         samples = [turn_samples(getattr(example.quantities, name), example) for name in plugins]
         times = math.lcm(*(count for count in samples if count)) if any(samples) else 0
-        disturbed = _MULTIPLIER in outputs
-        motion = bearing.orbits(states, excitations, tolerance, disturbed=disturbed, times=times)
+        with_disturbances = _MULTIPLIER in outputs
+        motion = bearing.orbits(states, excitations, tolerance, disturbed=with_disturbances, times=times)
         return cls(example, bearing, states, motion, excitations.speed)
 
     @cached_property
@@ -115,9 +115,9 @@ class Computed:
     @property
     def largest_multiplier(self) -> np.ndarray:
         """(n,) growth of the most persistent disturbance in a turn, see ``raceway.core.periodic.floquet``."""
-        over, solved = np.full(len(self.speed), np.nan), self.motion.status == 0
-        multipliers = np.abs(np.linalg.eigvals(self.motion.transfer[solved])).max(axis=1, initial=0.0)
-        over[solved] = multipliers ** (2.0 * np.pi / self.motion.span[solved])
+        over, steady = np.full(len(self.speed), np.nan), self.motion.status == 0
+        multipliers = np.abs(np.linalg.eigvals(self.motion.transfer[steady])).max(axis=1, initial=0.0)
+        over[steady] = multipliers ** (2.0 * np.pi / self.motion.span[steady])
         return over
 
     @cached_property
@@ -247,18 +247,18 @@ def stated_columns(scene: Scene, registry: Registry) -> dict[str, Quantity]:
 class SteadyLines:
     """Synchronous (1x) components of the steady orbits of one bearing under one load after another."""
 
-    _built: dict[float, ColumnBearing] = attrs.field(factory=dict, init=False)
+    _bearings: dict[float, ColumnBearing] = attrs.field(factory=dict, init=False)
 
     def line(self, scene: Scene, speed: float) -> np.ndarray | None:
         """(5,) complex line by the compiled loop, at the speed [rad/s] of the excitation; None where a run has to find it."""
         if scene.heat is not None or why_not(scene, True):
             return None
-        if speed not in self._built:
+        if speed not in self._bearings:
             columns = column_problem(scene, {"load.axial": np.array([scene.load.axial])})
-            self._built[speed] = build_columns(columns, make_plan(scene))
+            self._bearings[speed] = build_columns(columns, make_plan(scene))
         excitations = Excitations([scene.excitation], np.zeros(1, dtype=int), np.array([speed]))
-        computed = Computed.of(resolve(scene), self._built[speed], excitations, _TOLERANCE, ())
-        return computed.line[0] if computed.fine[0] else None
+        numbers = Computed.of(resolve(scene), self._bearings[speed], excitations, _TOLERANCE, ())
+        return numbers.line[0] if numbers.fine[0] else None
 
 
 def of_result(name: str, result: Result) -> np.ndarray | float | None:

@@ -143,8 +143,8 @@ class Comparison(Answer, Findings):
 
     def table(self) -> list[dict[str, str]]:
         """One row a run, as short text for a screen; why a run is unreliable is a sentence below."""
-        names, noted = _short_names(self.axes), any(row.doubt for row in self.rows)
-        return [_screen_row(row, names, noted, self.quantities) for row in self.rows]
+        names, with_notes = _short_names(self.axes), any(row.doubt for row in self.rows)
+        return [_screen_row(row, names, with_notes, self.quantities) for row in self.rows]
 
     def draw(self) -> Figure:
         """All quantities."""
@@ -183,7 +183,7 @@ def _within(row: Row, about: Quantity) -> str:
     return interval(entry).partition(":")[0] if entry else ""
 
 
-def _screen_row(row: Row, names: dict[str, str], noted: bool, quantities: dict[str, Quantity]) -> dict[str, str]:
+def _screen_row(row: Row, names: dict[str, str], with_note: bool, quantities: dict[str, Quantity]) -> dict[str, str]:
     text = {name: shown(row.point[key]) for key, name in names.items()}
     for name, about in quantities.items():
         value = row.value(name)
@@ -193,7 +193,7 @@ def _screen_row(row: Row, names: dict[str, str], noted: bool, quantities: dict[s
     if quantities is MOVING:
         text[f"{C.symbol} {C.unit}"] = row.damping_words
         text["error %"] = "" if row.value(Z.name) is None else f"{100.0 * row.error:.2g}"
-    if noted:
+    if with_note:
         text["note"] = row.result["status"] if row.failed else "unreliable" if row.doubt else ""
     return text
 

@@ -34,7 +34,7 @@ def draw(comparison: Findings) -> Figure:
         for quantity, panel in zip(quantities, panels, strict=True):
             _dots_on(panel, comparison.rows, quantity)
         _name_lines(panels[0], comparison)
-        figure.suptitle(wrapped(f"{_named(quantities)}: {comparison.title}"), fontsize=12)
+        figure.suptitle(wrapped(f"{_title(quantities)}: {comparison.title}"), fontsize=12)
         return figure
     texts = {key: [_text(value) for value in comparison.axis(key).values] for key in _by_interaction(comparison, along)}
     column = next((key for key in list(texts)[:1] if len(texts[key]) <= _MOST_COLUMNS), None)
@@ -52,7 +52,7 @@ def draw(comparison: Findings) -> Figure:
         panels[0, column_number].set_title(f"{column} = {value}" if column else "", fontsize=12)
         panels[-1, column_number].set_xlabel(along)
         panels[-1, column_number].locator_params(axis="x", nbins=5)
-    figure.suptitle(wrapped(f"{_named(quantities)} over {along}: {comparison.title}"), fontsize=12)
+    figure.suptitle(wrapped(f"{_title(quantities)} over {along}: {comparison.title}"), fontsize=12)
     if handles := _handles(styles, any(map(_in_doubt, comparison.rows))):
         figure.legend(handles=handles, loc="outside lower center", ncols=min(4, len(handles)), frameon=False, fontsize=10.5)
     return figure
@@ -82,7 +82,7 @@ def _along(comparison: Findings) -> str | None:
     return max(numeric, key=lambda axis: len(axis.values)).key if numeric else None
 
 
-def _named(quantities: Iterable[Quantity]) -> str:
+def _title(quantities: Iterable[Quantity]) -> str:
     *symbols, last = (quantity.symbol for quantity in quantities)
     return f"{', '.join(symbols)} and {last}"
 
@@ -115,8 +115,8 @@ def _curves(
         bad = [row for row in series if _in_doubt(row)]
         good = [math.nan if row.doubt or (v := _value_of(row, quantity)) is None else v for row in series]
         panel.plot([row.point[along] for row in series], good, **look)
-        clipped = [min(max(_value_of(row, quantity) or 0.0, limits[0]), limits[1]) for row in bad]
-        (cross,) = panel.plot([row.point[along] for row in bad], clipped, "x", color=look["color"], clip_on=False)
+        edge = [min(max(_value_of(row, quantity) or 0.0, limits[0]), limits[1]) for row in bad]
+        (cross,) = panel.plot([row.point[along] for row in bad], edge, "x", color=look["color"], clip_on=False)
         cross.set_in_layout(False)  # an artist that is not clipped would count for the layout, wherever it lies
     panel.set_ylim(limits)
     dress(panel)
@@ -124,8 +124,8 @@ def _curves(
 
 def _limits(rows: Sequence[Row], quantities: Collection[Quantity]) -> tuple[float, float]:
     """Range of quantities together, so that panels of a column have one scale; unreliable runs do not count."""
-    counted = [row for row in rows if not _in_doubt(row)] or rows
-    values = [v for row in counted for quantity in quantities if (v := _value_of(row, quantity)) is not None] or [0.0, 1.0]
+    sound = [row for row in rows if not _in_doubt(row)] or rows
+    values = [v for row in sound for quantity in quantities if (v := _value_of(row, quantity)) is not None] or [0.0, 1.0]
     margin = 0.06 * (max(values) - min(values)) or 0.01 * abs(max(values)) or 1.0
     return min(values) - margin, max(values) + margin
 

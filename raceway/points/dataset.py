@@ -100,11 +100,17 @@ class SweepStore(Store):
         return {name: COLUMNS[name].labels for name in _NUMBERS} | dict(self.facts["quantities"])
 
     def status(self) -> dict[str, int]:
-        """Number of points in each state, and ``total``; of those that are done, how many the compiled loop ``computed``."""
+        """Number of points in each state, and ``total``; of those that are done, how many the compiled loop ``in_loops``."""
         counts, total, blocks = self.counts(), self.design.size, self.costs(str)
-        computed, refused = (sum(cost[how.name] for cost in blocks) for how in (PointStatus.COMPUTED, PointStatus.REFUSED))
-        done, failed = counts["done"] - len(blocks) + computed, counts["failed"] + refused
-        return {"waiting": total - done - failed, "done": done, "failed": failed, "computed": computed, "total": total}
+        in_loops, refusals = (sum(cost[how.name] for cost in blocks) for how in (PointStatus.COMPUTED, PointStatus.REFUSED))
+        finished, failures = counts["done"] - len(blocks) + in_loops, counts["failed"] + refusals
+        return {
+            "waiting": total - finished - failures,
+            "done": finished,
+            "failed": failures,
+            "computed": in_loops,
+            "total": total,
+        }
 
     def rows(self) -> Iterator[Tables]:
         """``{point, status, reason, values, warnings}`` of every point, in the order of the design."""
@@ -161,11 +167,11 @@ class Points:
         """``{point, status, reason, values, warnings}`` of every point."""
         for number, status in enumerate(self.status.tolist()):
             values = {name: column[number] for name, column in self.columns.items() if status in FINISHED}
-            unlimited = ", ".join(name for name, value in values.items() if np.isposinf(value).any())
+            without_limit = ", ".join(name for name, value in values.items() if np.isposinf(value).any())
             yield {
                 "point": self.design.point(number),
                 "status": status,
-                "reason": self.reasons.get(number, f"{unlimited}: no limit" if unlimited else ""),
+                "reason": self.reasons.get(number, f"{without_limit}: no limit" if without_limit else ""),
                 "values": {name: value.tolist() for name, value in values.items() if np.isfinite(value).any()},
                 "warnings": self.warnings.get(number, []),
             }
@@ -175,7 +181,7 @@ def points_of(store: SweepStore) -> Points:
     """All points of a store."""
     size, length = store.design.size, store.facts["block"]
     points = Points(store.design, {}, np.full(size, "waiting", dtype=object), {}, {}, 0)
-    damaged, numbers = 0, list(range(size))
+    faults, numbers = 0, list(range(size))
 
     def put(name: str, where: int | slice, value: ArrayLike, shape: tuple[int, ...]) -> None:
         if name not in points.columns:
@@ -185,7 +191,7 @@ def points_of(store: SweepStore) -> Points:
     for key, (first, last) in block_edges(size, length).items():
         numbers, row = [], store.get(key)
         if row.state != "done":
-            damaged += (last - first) * (row.reason == DAMAGED)
+            faults += (last - first) * (row.reason == DAMAGED)
             continue
         points.status[first:last] = _STATUS[row.content.pop("status")]
         for number, reason in ((int(key), words) for key, words in json.loads(row.reason).items()):
@@ -198,13 +204,13 @@ def points_of(store: SweepStore) -> Points:
     for number in numbers or sorted(k for k in store.keys("done") | store.keys("failed") if isinstance(k, int)):
         row = store.get(number)
         points.status[number] = "run" if row.state == "done" else row.state
-        damaged += row.reason == DAMAGED
+        faults += row.reason == DAMAGED
         points.reasons.update({number: row.reason} if row.reason else {})
         points.warnings.update({number: row.content.get("warnings", [])} if row.state == "done" else {})
         values = dict.fromkeys(row.content.get("unlimited", []), math.inf) | row.content.get("values", {})
         for name, value in values.items():
             put(name, number, value, np.shape(value))
-    return attrs.evolve(points, damaged=damaged)
+    return attrs.evolve(points, damaged=faults)
 
 
 def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Dataset:
@@ -218,7 +224,7 @@ def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Datas
     design = store.design
     dims = ("point",) if design.listed else design.keys
     points, shape = points_of(store), design.shape
-    warnings, damaged = np.full(design.size, np.nan), points.damaged
+    warnings, faults = np.full(design.size, np.nan), points.damaged
     warnings[list(points.warnings)] = [len(texts) for texts in points.warnings.values()]
     variables: dict[str, Labelled] = {"status": (dims, points.status.reshape(shape), {"long_name": "state of the point"})}
     if points.columns:
@@ -239,11 +245,11 @@ def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Datas
         "schema": store.facts["schema"],
         "created": store.facts["created"],
         "note": "NaN: not finished, or not estimated; see status. " + NOT_CHECKED,
-        "damaged_rows": damaged,
+        "damaged_rows": faults,
     }
-    if damaged:
+    if faults:
         warn(
-            f"`{store.path}`: {damaged} of {design.size} rows are damaged, read as waiting; --resume computes them again",
+            f"`{store.path}`: {faults} of {design.size} rows are damaged, read as waiting; --resume computes them again",
             stacklevel=3,
         )
     try:

@@ -46,11 +46,11 @@ def jacobian(
         )
         stencils[key] = _FORWARD if not low else _CENTRAL if high else _BACKWARD
     # All inputs at all shifts of one key after another.
-    moves = [(moved, shift * steps[moved]) for moved, stencil in stencils.items() for shift in stencil]
-    shifted = {
-        key: np.concatenate([value + move * (moved == key) for moved, move in moves]) for key, value in inputs.items()
+    moves = [(path, shift * steps[path]) for path, stencil in stencils.items() for shift in stencil]
+    neighbours = {
+        key: np.concatenate([value + move * (path == key) for path, move in moves]) for key, value in inputs.items()
     }
-    answer, out = columns(shifted), dict[str, Columns]()
+    answer, out = columns(neighbours), dict[str, Columns]()
     for name in outputs:
         parts, first = answer[name].reshape((-1, len(size), *answer[name].shape[1:])), 0
         out[name] = {}

@@ -151,14 +151,14 @@ def complete_factorial(usable: np.ndarray) -> tuple[int | None, ...] | None:
     neighbouring corners are usable.
     """
     k = usable.ndim
-    for held in range(k):
-        for places in sorted(combinations(range(k), held), reverse=True):
-            for ends in product((0, 1), repeat=held):
-                fixed: list[int | None] = [None] * k
+    for fewest in range(k):
+        for places in sorted(combinations(range(k), fewest), reverse=True):
+            for ends in product((0, 1), repeat=fewest):
+                place_ends: list[int | None] = [None] * k
                 for axis, end in zip(places, ends, strict=True):
-                    fixed[axis] = end
-                if usable[tuple(slice(None) if end is None else end for end in fixed)].all():
-                    return tuple(fixed)
+                    place_ends[axis] = end
+                if usable[tuple(slice(None) if end is None else end for end in place_ends)].all():
+                    return tuple(place_ends)
     return None
 
 
@@ -166,9 +166,9 @@ def trend(values: Sequence[float], errors: Sequence[float]) -> str:
     """ "rises", "falls", "level" or "not monotonic" of a series; differences within both ends' relative errors do not count."""
     y, e = np.asarray(values, dtype=float), np.asarray(errors, dtype=float)
     off = np.abs(y) * e
-    change, allowed = y[None, :] - y[:, None], off[None, :] + off[:, None]
+    change, margin = y[None, :] - y[:, None], off[None, :] + off[:, None]
     later = np.triu(np.ones(change.shape, dtype=bool), 1)
-    up, down = bool((change > allowed)[later].any()), bool((change < -allowed)[later].any())
+    up, down = bool((change > margin)[later].any()), bool((change < -margin)[later].any())
     return {(False, False): "level", (True, False): "rises", (False, True): "falls", (True, True): "not monotonic"}[up, down]
 
 
@@ -283,8 +283,8 @@ class Findings:
         part = self.complete_factorial
         if part is None:
             return {}
-        held = zip(self.varied, part, strict=True)
-        return {axis.key: axis.ends[end] for axis, end in held if end is not None}
+        pairs = zip(self.varied, part, strict=True)
+        return {axis.key: axis.ends[end] for axis, end in pairs if end is not None}
 
     @cached_property
     def factorials(self) -> dict[str, Factorial]:
@@ -424,7 +424,7 @@ def _span(log_changes: Iterable[float]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _listed(parts: Sequence[str]) -> str:
+def _series(parts: Sequence[str]) -> str:
     """``a, b and c``."""
     return parts[0] if len(parts) == 1 else ", ".join(parts[:-1]) + " and " + parts[-1]
 
@@ -435,7 +435,7 @@ def _step(axis: Axis) -> str:
 
 def _settings(point: Tables) -> str:
     """``a = 1 and b = 2``."""
-    return _listed([f"{key} = {shown(value)}" for key, value in point.items()])
+    return _series([f"{key} = {shown(value)}" for key, value in point.items()])
 
 
 def _courses(comparison: Findings) -> list[str]:
@@ -461,7 +461,7 @@ def _courses(comparison: Findings) -> list[str]:
             left_out = sum(t["doubtful"] for t in here)
             note = f"; doubtful runs between the ends left out: {left_out}" if left_out else ""
             if parts:
-                words.append(f"With {partner.key} = {shown(value)}, {label} along {_step(axis)} {_listed(parts)}{note}.")
+                words.append(f"With {partner.key} = {shown(value)}, {label} along {_step(axis)} {_series(parts)}{note}.")
     return words
 
 
@@ -486,7 +486,7 @@ def _inertia(comparison: Findings) -> list[str]:
 def _what_was_run(comparison: Findings) -> str:
     few = [axis.values if len(axis.values) <= 6 else (*axis.values[:2], "...", axis.values[-1]) for axis in comparison.axes]
     axes = [f"{axis.key} ({', '.join(map(shown, values))})" for axis, values in zip(comparison.axes, few, strict=True)]
-    text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {_listed(axes)}."
+    text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {_series(axes)}."
     if not comparison.factorials:
         return text
     factorial, error = next(iter(comparison.factorials.values())), max(f.error for f in comparison.factorials.values())
@@ -504,7 +504,7 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
     values = [about.read(row.value(quantity) or 0.0) for row in comparison.rows if row.doubt is None]
     beyond = {key: span for key in factorial.keys if (span := _between(comparison, quantity, comparison.axis(key)))}
     main = [e for e in factorial.effects if len(e.term) == 1]
-    parts, hidden, weak, inert = [], [], [], []
+    parts, unclear, weak, inert = [], [], [], []
     largest = factorial.effects[0]
     for effect in sorted(main, key=lambda e: -max(map(abs, (e.log_change, *beyond.get(e.term[0], ("", []))[1])))):
         key = effect.term[0]
@@ -520,35 +520,35 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
             ends = [
                 [factorial.resolved_change(key, {other: end}) for end in (0, 1)] for other in factorial.keys if other != key
             ]
-            mixed = ", a mean of rises and falls" if any(low * high < 0.0 for low, high in ends) else ""
-            change = f"{percent(effect.log_change)} ({about.read(effect.difference or 0.0):+.2f} {unit}{share}{mixed})"
+            remark = ", a mean of rises and falls" if any(low * high < 0.0 for low, high in ends) else ""
+            change = f"{percent(effect.log_change)} ({about.read(effect.difference or 0.0):+.2f} {unit}{share}{remark})"
             parts.append(f"{_step(comparison.axis(key))} changes it by {change}")
         elif abs(effect.log_change) + factorial.error >= _HARDLY and not effect.resolved:
             # An end of another axis may resolve what its mean does not.
             other_ends = [(other, end) for other in factorial.keys if other != key for end in (0, 1)]
-            resolved = [
+            clear_ends = [
                 f"; with {other} = {shown(comparison.axis(other).ends[end])} {percent(change_there)}"
                 for other, end in other_ends
                 if (change_there := factorial.resolved_change(key, {other: end}))
             ]
-            hidden.append(f"{key} ({percent(effect.log_change)}{''.join(resolved)})")
+            unclear.append(f"{key} ({percent(effect.log_change)}{''.join(clear_ends)})")
         elif max(abs(e.log_change) for e in factorial.effects if key in e.term) + factorial.error < _HARDLY:
             inert.append(f"{key} ({percent(effect.log_change)})")
         else:
             weak.append(f"{key} ({percent(effect.log_change)})")
-    none = "no axis affects it" if hidden else "no axis moves it"
+    none = "no axis affects it" if unclear else "no axis moves it"
     order = "On average" if len(parts) < 2 else "On average, strongest first:"
     words = [f"{label} lies between {min(values):.2f} and {max(values):.2f} {unit}. {order} {'; '.join(parts) or none}."]
-    if hidden:
+    if unclear:
         words.append(
-            f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {_listed(hidden)}."
+            f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {_series(unclear)}."
         )
     if weak:
         words.append(
-            f"{label} on average hardly depends on {_listed(weak)}, but does so together with other axes (see below)."
+            f"{label} on average hardly depends on {_series(weak)}, but does so together with other axes (see below)."
         )
     if inert:
-        words.append(f"{label} hardly depends on {_listed(inert)}: no effect of it, alone or with others, reaches 0.5 %.")
+        words.append(f"{label} hardly depends on {_series(inert)}: no effect of it, alone or with others, reaches 0.5 %.")
     return words
 
 
@@ -580,11 +580,11 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
         # (the axis that is held, the axis that is moved): numbers are moved, else the weaker of the two.
         main = {e.term[0]: abs(e.log_change) for e in factorial.effects if len(e.term) == 1}
         a, b = sorted((comparison.axis(key) for key in effect.term), key=lambda axis: (axis.numeric, -main[axis.key]))
-        held, moved = a, b
-        changes = [factorial.log_change(moved.key, {held.key: end}) for end in (0, 1)]
+        partner, other = a, b
+        changes = [factorial.log_change(other.key, {partner.key: end}) for end in (0, 1)]
         words.append(
-            f"{label}, interaction of {held.key} and {moved.key}: with {held.key} = {shown(held.ends[0])}, "
-            f"{_step(moved)} changes it by {percent(changes[0])}, with {shown(held.ends[1])} by {percent(changes[1])}."
+            f"{label}, interaction of {partner.key} and {other.key}: with {partner.key} = {shown(partner.ends[0])}, "
+            f"{_step(other)} changes it by {percent(changes[0])}, with {shown(partner.ends[1])} by {percent(changes[1])}."
         )
     high = [e for e in factorial.effects if len(e.term) > 2 and abs(e.log_change) >= _HARDLY and e.resolved]
     if high:

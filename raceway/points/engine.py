@@ -112,8 +112,8 @@ class Work:
         mark = (json.dumps(self.required, sort_keys=True), *self.plugins)
         if mark not in _FAULTS:
             try:
-                used = [(kind, name) for kind, _, name in (text.partition(":") for text in self.required["plugins"])]
-                present = identity(registry_of(self.plugins), used)
+                plugins = [(kind, name) for kind, _, name in (text.partition(":") for text in self.required["plugins"])]
+                present = identity(registry_of(self.plugins), plugins)
                 _FAULTS[mark] = "; ".join(differences(self.required, present)) or None
             except PluginError as why:
                 _FAULTS[mark] = str(why)
@@ -184,16 +184,16 @@ def work_through(
     RacewayError
         An item took its process down, and no row was made of that.  Whatever is raised, Ctrl-C too: finished points are stored.
     """
-    stored = [store.get(item.key) for item in items]
-    rows = {index: row.content for index, row in enumerate(stored) if row.state != "waiting"}
-    reused = len(rows)
+    records = [store.get(item.key) for item in items]
+    rows = {index: row.content for index, row in enumerate(records) if row.state != "waiting"}
+    old = len(rows)
     work = Work(function, tuple(str(file.resolve()) for file in plugins), registry=registry)
     batches = ((index, [item.task]) for index, item in enumerate(items) if index not in rows)
-    with closing(answers(executor, work, batches)) as finished:
-        for index, answer in finished:
+    with closing(answers(executor, work, batches)) as results:
+        for index, answer in results:
             item = items[index]
             if isinstance(answer, Lost):
-                rows[index] = _lost(item, answer, lost)
+                rows[index] = _row_of_loss(item, answer, lost)
             else:
                 rows[index] = answer[0]
                 # Store a row; on a disk that takes no more the study goes on without, and says so at its end.
@@ -205,10 +205,10 @@ def work_through(
                         store.fault = why
             if on_progress is not None:
                 on_progress(item.name, len(rows), len(items))
-    return [rows[index] for index in range(len(items))], reused
+    return [rows[index] for index in range(len(items))], old
 
 
-def _lost(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:
+def _row_of_loss(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:
     if lost is None:
         raise RacewayError(f"{item.name}: {answer.reason}, perhaps out of memory: run the command again, with --processes 1")
     return lost(item, answer.reason)
@@ -243,8 +243,8 @@ def local(registry: Registry, processes: int, **options: object) -> Executor:
 
 def processor_time() -> float:
     """Of this process and of those that it has ended [s]."""
-    used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    return sum(usage.ru_utime + usage.ru_stime for usage in used)
+    usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    return sum(usage.ru_utime + usage.ru_stime for usage in usages)
 
 
 #: No further repeat is begun once a setting has taken this long [s].
@@ -269,11 +269,11 @@ def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry,
     In this process, with nothing beside it: times are what is asked for.
     """
     item = Item(row_key(scene, registry, extra), scene.title, (scene, repeats))
-    (row,), reused = work_through(_measured, [item], store, local(registry, 0), registry)
+    (row,), reused = work_through(_measurement, [item], store, local(registry, 0), registry)
     return row, reused == 1
 
 
-def _measured(task: tuple[Scene, int], registry: Registry) -> Tables:
+def _measurement(task: tuple[Scene, int], registry: Registry) -> Tables:
     scene, repeats = task
     return measured(scene, registry, repeats)
 
@@ -290,10 +290,10 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
     """
     from raceway.pipeline.run import run
 
-    begun, compiling = time.perf_counter(), 0.0
+    start, compiling = time.perf_counter(), 0.0
     runs: list[dict[str, float]] = []
     own_peak, cold = _reset_peak(), True
-    while len(runs) < repeats and (not runs or time.perf_counter() - begun - compiling < PATIENCE_S):
+    while len(runs) < repeats and (not runs or time.perf_counter() - start - compiling < PATIENCE_S):
         cpu = time.process_time()
         try:
             answer = run(scene, registry)

@@ -189,8 +189,8 @@ def _follow_branch(
         _Continuation(branch, curve, parameter, mass, points, on_progress).go(start)
         if doubled:
             _follow_doubled(branch, curve, parameter, mass, points, on_progress)
-        for followed in (curve, *curve.doubled) if turns else ():
-            followed.attractors += [attractor_beside(point, turns, on_progress) for point in followed.worst]
+        for each in (curve, *curve.doubled) if turns else ():
+            each.attractors += [attractor_beside(point, turns, on_progress) for point in each.worst]
     except KeyboardInterrupt as stop:
         curve.doubled = [twice for twice in curve.doubled if twice.rows]
         for part in (curve, *curve.doubled):
@@ -208,12 +208,12 @@ def _follow_doubled(
     branch: Branch, curve: Followed, parameter: Parameter, mass: float, points: int, on_progress: OnProgress | None
 ) -> None:
     """The branches of twice the period; one that ends at another period doubling is that one's, too."""
-    met: list[float] = []
+    ends: list[float] = []
     for label in curve.labels:
         point = label.point
-        if label.kind != DOUBLING or point is None or any(abs(point.parameter - p) < 1e-6 * branch.unit for p in met):
+        if label.kind != DOUBLING or point is None or any(abs(point.parameter - p) < 1e-6 * branch.unit for p in ends):
             continue
-        met.append(point.parameter)
+        ends.append(point.parameter)
         twice = Followed(curve.key, curve.first, curve.last, 2.0 * curve.span_deg, curve.title)
         curve.doubled.append(twice)
         longer, first = doubled_branch(branch, point)
@@ -226,7 +226,7 @@ def _follow_doubled(
 
         if _Continuation(longer, twice, parameter, mass, points, on_progress, together).go(first):
             doublings = [label.row.parameter for label in curve.labels if label.kind == DOUBLING]
-            met.append(min(doublings, key=lambda p: abs(p - twice.rows[-1].parameter)))
+            ends.append(min(doublings, key=lambda p: abs(p - twice.rows[-1].parameter)))
 
 
 @attrs.define(eq=False)
@@ -249,9 +249,9 @@ class _Continuation:
 
     def go(self, start: Point) -> bool:
         """Points one by one, until the range or the number of points is left or the branch ends; whether it closed."""
-        closed = self._go(start, _FIRST)
+        cycle = self._go(start, _FIRST)
         self.curve.labels.sort(key=lambda label: label.row.arc)
-        return closed
+        return cycle
 
     def _go(self, here: Point, size: float) -> bool:
         curve, least = self.curve, 1e-6 * size
@@ -289,7 +289,7 @@ class _Continuation:
                 curve.end = "" if end == self.parameter.last else f"the branch comes back to {end:.6g}"
                 return False
             size = min(size * self.branch.growth(ahead), _MOST / max(abs(ahead.tangent[-1]), 1e-300))
-            here = self._meshed(ahead)
+            here = self._on_fit_mesh(ahead)
         curve.end = f"left after {self.points} orbits at {here.parameter:.6g} (--points)"
         return False
 
@@ -311,10 +311,10 @@ class _Continuation:
     def _within(self, before: Point, ahead: Point, size: float) -> tuple[Point, float, float | None]:
         """The point ahead, or that at the end of the range before it; the step's length, and that end."""
         ends = (self.parameter.last, self.parameter.first)
-        crossed = [end for end in ends if (ahead.parameter - end) * (before.parameter - end) < 0.0]
-        if not crossed:
+        limits = [end for end in ends if (ahead.parameter - end) * (before.parameter - end) < 0.0]
+        if not limits:
             return ahead, size, None
-        end = crossed[0]
+        end = limits[0]
         return *located(self.branch, before, ahead, size, lambda point: float(point.parameter - end)), end
 
     def _record(self, point: Point, orbit: Orbit) -> None:
@@ -350,7 +350,7 @@ class _Continuation:
                 f"{span} a fold, peak or change of stability or contact is not located, use a smaller --aim ({why})"
             )
 
-    def _meshed(self, point: Point) -> Point:
+    def _on_fit_mesh(self, point: Point) -> Point:
         """The same orbit on a mesh that is fit for the fastest vibration at the present speed."""
         problem, path = point.solved.problem, point.solved.path
         nodes = mesh_of(problem, point.highest)
@@ -360,8 +360,8 @@ class _Continuation:
             *_, a, ball, rate = motion_at(problem, path, problem.angles(nodes))
             parts = (np.ascontiguousarray(part) for part in (q, v, a, ball, rate))
             try:
-                solved = solve(problem, OrbitPath(nodes, *parts), 1e-2 * ERROR)
-                again = self.branch.start(solved, point.parameter, float(np.sign(point.tangent[-1])))
+                orbit = solve(problem, OrbitPath(nodes, *parts), 1e-2 * ERROR)
+                again = self.branch.start(orbit, point.parameter, float(np.sign(point.tangent[-1])))
             except ConvergenceError:
                 return point
             if float(again.tangent @ point.tangent) > 0.9:

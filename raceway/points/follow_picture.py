@@ -26,12 +26,12 @@ _PEAKS = 6
 
 def draw(content: ReadTables) -> Figure:
     """Two panels over the key, of the tables of ``raceway follow --json``."""
-    shown = [x for attractor in (content, *content["doubled"]) for x in attractor["instead"] if x["section"]][:_SECTIONS]
-    figure = new_figure(9.6, 8.0 if not shown else 10.6)
-    places = figure.add_gridspec(3 if shown else 2, max(len(shown), 1))
+    sections = [x for attractor in (content, *content["doubled"]) for x in attractor["instead"] if x["section"]][:_SECTIONS]
+    figure = new_figure(9.6, 8.0 if not sections else 10.6)
+    places = figure.add_gridspec(3 if sections else 2, max(len(sections), 1))
     panels = [figure.add_subplot(places[0, :])]
     panels.append(figure.add_subplot(places[1, :], sharex=panels[0]))
-    for k, attractor in enumerate(shown):
+    for k, attractor in enumerate(sections):
         _section(figure.add_subplot(places[2, k]), attractor)
     for panel, (column, factor, words) in zip(panels, _PANELS, strict=True):
         for attractor in content["doubled"]:

@@ -110,8 +110,8 @@ class Function:
     @property
     def moving(self) -> bool:
         """Whether a motion has to be solved for."""
-        excited = self.scene.excitation is not None
-        return any(name in MOVING or excited and (name in EXTREMES or name in self._stated) for name in self.outputs)
+        with_force = self.scene.excitation is not None
+        return any(name in MOVING or with_force and (name in EXTREMES or name in self._of_plugins) for name in self.outputs)
 
     @property
     def contacts_alone(self) -> bool:
@@ -119,14 +119,14 @@ class Function:
         return resolve(self.scene).traits.contacts_alone
 
     @cached_property
-    def _stated(self) -> dict[str, tuple[str, Quantity]]:
+    def _of_plugins(self) -> dict[str, tuple[str, Quantity]]:
         """Quantities of plug-ins."""
         return plugin_quantities(default_registry())
 
     @property
     def why_slow(self) -> str:
         """Why every point needs a run of its own; empty where a compiled loop computes them."""
-        if is_foundation(self.scene.contact.law) and any(n.startswith("p0") or n in self._stated for n in self.outputs):
+        if is_foundation(self.scene.contact.law) and any(n.startswith("p0") or n in self._of_plugins for n in self.outputs):
             return "pressures are those of the contact law"
         whys = (why_no_column(self.scene, key) for key in self.inputs)
         return next(filter(None, whys), "") or why_not(self.scene, self.moving)
@@ -152,16 +152,16 @@ class Function:
         RacewayError
             More points than the memory holds, or that need runs of their own for longer than two minutes.
         """
-        values = self._named(columns, by_name)
+        values = self._by_key(columns, by_name)
         xarray = sys.modules.get("xarray")
         if xarray is not None and any(isinstance(value, xarray.DataArray) for value in values.values()):
-            return self._labelled(values)
+            return self._dataset(values)
         shape, flat = self._flat(values)
         return {name: column.reshape((*shape, *column.shape[1:])) for name, column in self.columns(flat).items()}
 
     def arrays(self, *columns: ArrayLike) -> np.ndarray | tuple[np.ndarray, ...]:
         """The outputs alone, a tuple of arrays, or the array of a single output: for ``scipy`` and ``xarray.apply_ufunc``."""
-        answer = self(**{key: _numbers(key, column) for key, column in self._named(columns, {}).items()})
+        answer = self(**{key: _numbers(key, column) for key, column in self._by_key(columns, {}).items()})
         values = tuple(np.asarray(answer[name]) for name in self.outputs)
         return values[0] if len(values) == 1 else values
 
@@ -174,7 +174,7 @@ class Function:
         thousandth of a number they are off by about h^4, 1e-10 of the value, and by rounding of 1e-12 / h.  Of an input that is 0
         everywhere the steps are 1e-3 of its unit, 1e-9 m of lengths.
         """
-        shape, flat = self._flat(self._named(columns, by_name))
+        shape, flat = self._flat(self._by_key(columns, by_name))
         return {
             name: {key: slope.reshape((*shape, *slope.shape[1:])) for key, slope in by_key.items()}
             for name, by_key in self.slopes(flat, self.inputs).items()
@@ -185,16 +185,16 @@ class Function:
         units, problem = {key: key_of(self.scene, key).unit for key in keys}, resolve(self.scene)
         refuse_points(problem)
         for key in units:
-            if why := other_meshes(problem, resolve(self._changed({key: 1.001 * key_of(self.scene, key).value}))):
+            if why := other_meshes(problem, resolve(self._scene_with({key: 1.001 * key_of(self.scene, key).value}))):
                 raise SceneError.at(key, None, why)
-        return jacobian(self.columns, lambda key, number: self._allowed([key], [number]), dict(flat), units, self.outputs)
+        return jacobian(self.columns, lambda key, number: self._is_allowed([key], [number]), dict(flat), units, self.outputs)
 
     def columns(self, flat: Mapping[str, np.ndarray]) -> Columns:
         """The outputs, ``status`` and ``reason`` of columns (n,) of all inputs."""
         n = len(next(iter(flat.values())))
         if self.why_slow:
             self.refuse_time(n)
-            return _joined([self._run_all(flat, np.arange(n), {})], self.outputs)
+            return _chain([self._run_all(flat, np.arange(n), {})], self.outputs)
         # Runs of what the loop has left.
         answer = self.with_reasons(flat, self.looped(flat))
         left = np.flatnonzero(answer["status"] == PointStatus.FAILED)
@@ -219,13 +219,13 @@ class Function:
 
         with ThreadPool(min(self.threads, len(blocks))) as pool:
             pool.do(len(blocks), job)
-        return _joined(answers, self.outputs)
+        return _chain(answers, self.outputs)
 
     def with_reasons(self, flat: Mapping[str, np.ndarray], answer: Columns) -> Columns:
         """What the loop computed, with the reasons of rows that are refused."""
-        refused = np.flatnonzero(answer["status"] == PointStatus.REFUSED)
-        answer["reason"][refused] = _REFUSED
-        for row in refused[:_REASONS]:
+        refusals = np.flatnonzero(answer["status"] == PointStatus.REFUSED)
+        answer["reason"][refusals] = _REFUSED
+        for row in refusals[:_REASONS]:
             answer["reason"][row] = self._reason(flat, int(row))
         return answer
 
@@ -240,13 +240,13 @@ class Function:
         """
         for key in point:
             key_of(self.scene, key)
-        return scene_from_dict(self._changed(point).to_dict(), default_registry())
+        return scene_from_dict(self._scene_with(point).to_dict(), default_registry())
 
-    def _changed(self, point: Mapping[str, float]) -> Scene:
+    def _scene_with(self, point: Mapping[str, float]) -> Scene:
         """The scene with other numbers, which no rule looks at."""
         return with_columns(self.scene, {key: float(number) for key, number in point.items()})
 
-    def _named(self, columns: Sequence[ArrayLike], by_name: Mapping[str, ArrayLike]) -> dict[str, ArrayLike]:
+    def _by_key(self, columns: Sequence[ArrayLike], by_name: Mapping[str, ArrayLike]) -> dict[str, ArrayLike]:
         """All inputs by their keys."""
         if len(columns) > len(self.inputs):
             raise SceneError.at(
@@ -280,7 +280,7 @@ class Function:
         refuse_bytes(math.prod(shape), entries, advice)
         return shape, {key: np.ascontiguousarray(np.broadcast_to(array, shape)).ravel() for key, array in arrays.items()}
 
-    def _labelled(self, values: Mapping[str, ArrayLike]) -> xarray.Dataset:
+    def _dataset(self, values: Mapping[str, ArrayLike]) -> xarray.Dataset:
         """The data set of inputs some of which are DataArrays."""
         import xarray
 
@@ -291,10 +291,10 @@ class Function:
         same = xarray.broadcast(*arrays)
         shape, flat = self._flat({key: array.values for key, array in zip(values, same, strict=True)})
         answer, dims = self.columns(flat), same[0].dims
-        known = KNOWN | {name: quantity for name, (_, quantity) in self._stated.items()}
+        quantities = KNOWN | {name: quantity for name, (_, quantity) in self._of_plugins.items()}
         variables: Tables = {}
         for name, column in answer.items():
-            further, labels = ((), {}) if name not in known else (known[name].dims, known[name].labels)
+            further, labels = ((), {}) if name not in quantities else (quantities[name].dims, quantities[name].labels)
             variables[name] = ((*dims, *further), column.reshape((*shape, *column.shape[1:])), labels)
         meanings = {
             "flag_values": [int(s) for s in PointStatus],
@@ -309,57 +309,59 @@ class Function:
     def _block(self, columns: Columns) -> Columns:
         """One block of points in the compiled loop; rows that it cannot do have the status FAILED and no values."""
         n = len(next(iter(columns.values())))
-        status, refused = np.full(n, PointStatus.FAILED), self._refused(columns)
-        fit = np.flatnonzero(~refused)
-        status[refused], reason = PointStatus.REFUSED, np.full(n, "", dtype=object)
+        status, refusals = np.full(n, PointStatus.FAILED), self._refusals(columns)
+        fit = np.flatnonzero(~refusals)
+        status[refusals], reason = PointStatus.REFUSED, np.full(n, "", dtype=object)
         values: Columns = {}
         for turning, rows in self._alike(columns, fit):
             plan = self._plan(columns, rows, turning)
             if plan is None:
                 continue
-            chosen = {key: column[rows] for key, column in columns.items()}
+            inputs = {key: column[rows] for key, column in columns.items()}
             try:
                 if self.scene.heat is not None:
                     from raceway.pipeline.warm import RUNAWAY, warm
 
-                    warmth = warm(self.scene, chosen, plan)
+                    warmth = warm(self.scene, inputs, plan)
                     reason[rows[warmth.runaway]] = RUNAWAY
-                    chosen = {**chosen, **warmth.columns}
-                bearing = build_columns(column_problem(self.scene, chosen), plan)
+                    inputs = {**inputs, **warmth.columns}
+                bearing = build_columns(column_problem(self.scene, inputs), plan)
             except RacewayError:  # of elastic bodies that no point has
                 continue
-            example = resolve(self._changed({key: column[0] for key, column in chosen.items()}))
-            excitations = Excitations.of(self.scene, chosen) if self.moving else None
-            computed = Computed.of(example, bearing, excitations, self.tolerance, self.outputs)
-            fine = ~bearing.conspicuous & computed.fine & (reason[rows] == "")
+            example = resolve(self._scene_with({key: column[0] for key, column in inputs.items()}))
+            excitations = Excitations.of(self.scene, inputs) if self.moving else None
+            numbers = Computed.of(example, bearing, excitations, self.tolerance, self.outputs)
+            fine = ~bearing.conspicuous & numbers.fine & (reason[rows] == "")
             status[rows[fine]] = PointStatus.COMPUTED
             oil = self.scene.lubricant
             if self.scene.heat is not None and oil is not None and oil.thins:
                 from raceway.plugins.quantities.heat import beyond_oil
 
-                reason[rows[fine]] = [beyond_oil(float(level)) for level in chosen["lubricant.temperature_c"][fine]]
+                reason[rows[fine]] = [beyond_oil(float(level)) for level in inputs["lubricant.temperature_c"][fine]]
             for name in self.outputs:
-                part = QUANTITIES[name](computed) if name in QUANTITIES else computed.of_plugin(self._stated[name][0], name)
+                part = (
+                    QUANTITIES[name](numbers) if name in QUANTITIES else numbers.of_plugin(self._of_plugins[name][0], name)
+                )
                 values.setdefault(name, np.full((n, *part.shape[1:]), np.nan))[rows[fine]] = part[fine]
         return {**values, "status": status, "reason": reason}
 
-    def _refused(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
+    def _refusals(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
         """(n,) whether a number is none, or a rule of its key alone refuses it."""
-        refused = ~np.all([np.isfinite(column) for column in columns.values()], axis=0)
+        refusals = ~np.all([np.isfinite(column) for column in columns.values()], axis=0)
         of_law = [key for key in columns if key in law_keys(self.scene)]
         for keys in filter(None, [of_law, *([key] for key in columns if key not in of_law)]):
             numbers = np.stack([columns[key] for key in keys], axis=1)
-            fit = numbers[~refused]
+            fit = numbers[~refusals]
             if len(fit) and not all(
-                self._allowed(keys, ends) for ends in product(*zip(fit.min(0), fit.max(0), strict=True))
+                self._is_allowed(keys, ends) for ends in product(*zip(fit.min(0), fit.max(0), strict=True))
             ):
                 # Rules are intervals, or compare two options of a law: numbers beyond them are looked at one by one.
                 several, place = np.unique(numbers, axis=0, return_inverse=True)
-                allowed = [bool(np.isfinite(row).all()) and self._allowed(keys, row) for row in several]
-                refused |= ~np.array(allowed)[place.ravel()]
-        return refused
+                fitness = [bool(np.isfinite(row).all()) and self._is_allowed(keys, row) for row in several]
+                refusals |= ~np.array(fitness)[place.ravel()]
+        return refusals
 
-    def _allowed(self, keys: Sequence[str], numbers: Sequence[float] | np.ndarray) -> bool:
+    def _is_allowed(self, keys: Sequence[str], numbers: Sequence[float] | np.ndarray) -> bool:
         try:
             with_numbers(self.scene, dict(zip(keys, map(float, numbers), strict=True)))
         except (ValueError, RacewayError):
@@ -441,9 +443,9 @@ def refuse_bytes(n: int, entries: int, advice: str) -> None:
     RacewayError
         With both numbers of bytes.
     """
-    needed, left = 8.0 * n * entries, available_bytes()
-    if needed > _MEMORY * left:
-        raise RacewayError(f"{n} points need {needed:.4g} bytes for their numbers, of {left:.4g} available: {advice}")
+    need, left = 8.0 * n * entries, available_bytes()
+    if need > _MEMORY * left:
+        raise RacewayError(f"{n} points need {need:.4g} bytes for their numbers, of {left:.4g} available: {advice}")
 
 
 def _numbers(key: str, value: ArrayLike) -> np.ndarray:
@@ -456,7 +458,7 @@ def _numbers(key: str, value: ArrayLike) -> np.ndarray:
         raise SceneError.at(key, None, "must be numbers") from None
 
 
-def _joined(answers: Sequence[Columns], outputs: Iterable[str]) -> Columns:
+def _chain(answers: Sequence[Columns], outputs: Iterable[str]) -> Columns:
     """Answers of blocks one after another; blocks without values have nan."""
     out = {}
     for name in outputs:
@@ -518,15 +520,15 @@ def function(
     keys, names = tuple(inputs), tuple(_name(output) for output in outputs)
     if not keys:
         raise SceneError.at("inputs", None, "are empty: a function has at least one, such as 'load.axial'")
-    if doubled := [key for key in keys if keys.count(key) > 1]:
-        raise SceneError.at(doubled[0], None, "is an input twice")
+    if repeats := [key for key in keys if keys.count(key) > 1]:
+        raise SceneError.at(repeats[0], None, "is an input twice")
     for key in keys:
         key_of(read, key)
         if read.heat is not None and key.endswith(("_temperature", ".temperature_c")):
             raise SceneError.at(key, None, "is computed by [heat] and cannot be an input")
-    stated, problem = plugin_quantities(default_registry()), resolve(read)
-    for name in (name for name in names if name in stated):
-        if why := why_no_quantities(getattr(read.quantities, stated[name][0]), problem):
+    of_plugins, problem = plugin_quantities(default_registry()), resolve(read)
+    for name in (name for name in names if name in of_plugins):
+        if why := why_no_quantities(getattr(read.quantities, of_plugins[name][0]), problem):
             raise SceneError.at("outputs", name, f"is not a number of this scene: {why}")
     result = Function(read, keys, names, tolerance, force, threads or usable_cores())
     if result.moving and read.excitation is None:

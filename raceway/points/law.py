@@ -108,13 +108,13 @@ class Contact:
         approach = elastic - self.reach
         force, stiffness, damping, _ = self.at(approach)
         ((hertz_force,), (hertz_stiffness,)) = self.hertz(np.array([approach]))
-        closed = approach > 0.0
+        contact = approach > 0.0
         return {
             "approach": approach,
             "force": force,
-            "force_ratio": force / float(hertz_force) if closed else None,
+            "force_ratio": force / float(hertz_force) if contact else None,
             "stiffness": stiffness,
-            "stiffness_ratio": stiffness / float(hertz_stiffness) if closed else None,
+            "stiffness_ratio": stiffness / float(hertz_stiffness) if contact else None,
             "damping": damping,
         }
 
@@ -363,9 +363,9 @@ def _draw(curves: LawCurves) -> Figure:
     """Force and stiffness over the approach; of a law that loses energy the loop of the cycle and the damping, too."""
     from raceway.answers.picture import new_figure, wrapped
 
-    damped = curves.cycle.energy != 0.0 or bool(curves.damping.any())
-    figure = new_figure(9.6, 7.2 if damped else 3.9)
-    panels = figure.subplots(2 if damped else 1, 2, squeeze=False)
+    with_damping = curves.cycle.energy != 0.0 or bool(curves.damping.any())
+    figure = new_figure(9.6, 7.2 if with_damping else 3.9)
+    panels = figure.subplots(2 if with_damping else 1, 2, squeeze=False)
     micro, contact, motion = 1e6 * curves.approach, curves.contact, curves.cycle
     (force, stiffness), further = panels[0], panels[1:]
     for panel, still, hertz, unit in (
@@ -374,7 +374,7 @@ def _draw(curves: LawCurves) -> Figure:
     ):
         panel.plot(micro, unit * still[0], color=_LAW, label=f"{curves.law} at rest")
         panel.plot(micro, unit * hertz, color=_HERTZ, linestyle="--", label="Hertz")
-    force.set(ylabel="force [N]", title="Force" if damped else f"Force; {curves.damping_origin}")
+    force.set(ylabel="force [N]", title="Force" if with_damping else f"Force; {curves.damping_origin}")
     stiffness.set(ylabel="stiffness [N/µm]", title="Stiffness at rest")
     for loop, damping in further:
         damping.plot(micro, curves.damping[0], color=_LAW, label="at rest")

@@ -83,11 +83,11 @@ class Parameter:
     last: float
     linear: tuple[str, ...] | None = attrs.field(default=None, init=False)
     _ends: tuple[System, System] = attrs.field(init=False)
-    _cached: dict[float, Problem] = attrs.field(factory=dict, init=False)
+    _problems: dict[float, Problem] = attrs.field(factory=dict, init=False)
 
     def __attrs_post_init__(self) -> None:
         self._check()
-        first, between, last = (self._built(p) for p in (self.first, self.value(_BETWEEN), self.last))
+        first, between, last = (self._ring_at(p) for p in (self.first, self.value(_BETWEEN), self.last))
         parts = {
             field.name: tuple(getattr(system, field.name) for system in (first, between, last))
             for field in attrs.fields(System)
@@ -137,27 +137,27 @@ class Parameter:
     def system(self, p: float, excitation: Excitation | None = None) -> System:
         """The compiled ring at a value of the key, whose excitation may be at hand."""
         if self.linear is None:
-            return self._built(p)
+            return self._ring_at(p)
         part = (p - self.first) / (self.last - self.first)
         first, last = self._ends
-        changed = {name: (1.0 - part) * getattr(first, name) + part * getattr(last, name) for name in self.linear}
-        return attrs.evolve(first, force_params=(excitation or self.excitation(p)).parameters(), **changed)
+        parts = {name: (1.0 - part) * getattr(first, name) + part * getattr(last, name) for name in self.linear}
+        return attrs.evolve(first, force_params=(excitation or self.excitation(p)).parameters(), **parts)
 
     def problem_at(self, p: float, symmetry: Symmetry) -> Problem:
         """The boundary-value problem at a value of the key; the last ones are cached."""
-        problem = self._cached.get(p)
+        problem = self._problems.get(p)
         if problem is None or problem.symmetry is not symmetry:
             try:
                 excitation = self.excitation(p)
                 problem = Problem(self.system(p, excitation), 2.0 * np.pi / excitation.period_s, symmetry)
             except (SceneError, ValueError) as why:
                 raise ConvergenceError(f"no valid scene beyond it ({why})") from why
-            if len(self._cached) >= _CACHED:
-                self._cached.clear()
-            self._cached[p] = problem
+            if len(self._problems) >= _CACHED:
+                self._problems.clear()
+            self._problems[p] = problem
         return problem
 
-    def _built(self, p: float) -> System:
+    def _ring_at(self, p: float) -> System:
         ring = compiled(self.model(p).system)
         assert ring is not None, "refused before"
         return ring

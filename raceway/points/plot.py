@@ -139,39 +139,39 @@ def select(dataset: Dataset, at: ReadTables) -> Selection:
     """
     keys = swept_keys(dataset)
     mistakes, fixed_values = [], Tables()
-    for key, requested in at.items():
+    for key, wanted_value in at.items():
         if key not in keys:
             message = f"is not an axis of this sweep{nearest(key, keys)}; axes: {', '.join(keys)}"
-            mistakes.append(Mistake(f"--at {key}", requested, message))
+            mistakes.append(Mistake(f"--at {key}", wanted_value, message))
             continue
         values = _values(dataset[key].values)
-        matches = [value for value in values if same(value, requested)]
+        matches = [value for value in values if same(value, wanted_value)]
         if matches:
             fixed_values[key] = matches[0]
         else:
-            mistakes.append(Mistake(f"--at {key}", requested, f"is not in the sweep, which has {listed(values)}"))
+            mistakes.append(Mistake(f"--at {key}", wanted_value, f"is not in the sweep, which has {listed(values)}"))
     if mistakes:
         raise SceneError(mistakes)
     if LIST in dataset.dims:
-        kept = np.ones(dataset.sizes[LIST], dtype=bool)
+        choice = np.ones(dataset.sizes[LIST], dtype=bool)
         for key, value in fixed_values.items():
-            kept &= np.array([same(coordinate, value) for coordinate in dataset[key].values.tolist()])
-        if not kept.any():
+            choice &= np.array([same(coordinate, value) for coordinate in dataset[key].values.tolist()])
+        if not choice.any():
             words = ", ".join(f"{key} = {shown(value)}" for key, value in fixed_values.items())
             raise RacewayError(f"no point of the sweep has {words} together")
-        part = dataset.isel({LIST: np.flatnonzero(kept)})
+        part = dataset.isel({LIST: np.flatnonzero(choice)})
     else:
         part = dataset.sel(fixed_values)
-    axes, fixed = Tables(), Tables()
+    axes, constants = Tables(), Tables()
     for key in keys:
         values = _values(part[key].values)
         if key in fixed_values or len(values) == 1:
-            fixed[key] = values[0] if values else fixed_values[key]
+            constants[key] = values[0] if values else fixed_values[key]
         else:
             axes[key] = values
     states = Counter(part["status"].values.astype(str).ravel().tolist() if "status" in part else ())
-    unfinished = {state: count for state, count in sorted(states.items()) if state not in FINISHED}
-    return Selection(_as_grid(part, axes, fixed), axes, fixed, unfinished)
+    gaps = {state: count for state, count in sorted(states.items()) if state not in FINISHED}
+    return Selection(_as_grid(part, axes, constants), axes, constants, gaps)
 
 
 def same(a: Any, b: Any) -> bool:
@@ -221,13 +221,13 @@ def _values(array: np.ndarray) -> list[Any]:
     return sorted(different) if _numeric(different) else different
 
 
-def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:
+def _as_grid(part: Dataset, axes: ReadTables, constants: ReadTables) -> Dataset:
     """Axes that do not vary dropped, the others sorted; a list becomes a grid where it fills one."""
     keys = list(axes)
     if LIST not in part.dims:
-        part = part.isel({key: 0 for key in fixed if key in part.dims})
-        return _ordered(part, axes)
-    part = part.drop_vars([key for key in fixed if key in part.coords])
+        part = part.isel({key: 0 for key in constants if key in part.dims})
+        return _in_order(part, axes)
+    part = part.drop_vars([key for key in constants if key in part.coords])
     if not keys:
         return part.isel({LIST: 0})
     points = list(zip(*(part[key].values.tolist() for key in keys), strict=True))
@@ -239,13 +239,13 @@ def _as_grid(part: Dataset, axes: ReadTables, fixed: ReadTables) -> Dataset:
         part = part.swap_dims({LIST: keys[0]})
     else:
         part = part.set_index(point=keys).unstack(LIST)
-    part = _ordered(part, axes)
+    part = _in_order(part, axes)
     for key, attributes in attributes_of.items():
         part[key].attrs.update(attributes)
     return part
 
 
-def _ordered(part: Dataset, axes: ReadTables) -> Dataset:
+def _in_order(part: Dataset, axes: ReadTables) -> Dataset:
     """Values of the axes in their order, by place: a list of booleans would be a mask."""
     places = {key: [part[key].values.tolist().index(value) for value in values] for key, values in axes.items()}
     return part.isel(places).transpose(*axes, ...)
@@ -334,23 +334,23 @@ def write(figure: Figure, path: Path) -> Path:
 
 def _curves(axes: Axes, data: DataArray, x: str, y: str | None, label: str) -> None:
     """A curve for each value of y; the points of a list without lines, since they may have no order."""
-    scattered = LIST in data.dims
+    as_list = LIST in data.dims
     values: list[Any] = [None] if y is None else list(dict.fromkeys(np.atleast_1d(data[y].values).tolist()))
     values = sorted(values) if y is not None and _numeric(values) else values
     places, names = _places(data[x].values)
     for k, value in enumerate(values):
         if y is None:
             series, at = data, places
-        elif scattered:
+        elif as_list:
             keep = np.array([coordinate == value for coordinate in data[y].values.tolist()])
             series, at = data.isel({LIST: np.flatnonzero(keep)}), places[keep]
         else:
             series, at = data.sel({y: value}), places
         axes.plot(
             at, series.values, label=shown(value), color=_colour(k, values), marker=MARKERS[k % len(MARKERS)],
-            markersize=4.5 if len(at) <= 40 else 0.0, linewidth=0.0 if scattered or names else 1.6,
+            markersize=4.5 if len(at) <= 40 else 0.0, linewidth=0.0 if as_list or names else 1.6,
         )  # fmt: skip
-        if scattered and len(at) > 40:
+        if as_list and len(at) > 40:
             axes.lines[-1].set_markersize(3.0)
     if names:
         axes.set_xticks(range(len(names)), names)
@@ -486,8 +486,8 @@ def selection_of(store: Path, at: Iterable[str]) -> Selection:
 def head(selection: Selection) -> tuple[str, ...]:
     """Where the numbers come from, for the first lines of a file."""
     bearing = selection.value("bearing.preset", "")
-    fixed = ", ".join(f"{key} = {shown(value)}" for key, value in selection.fixed.items())
-    words = (f"Raceway {__version__}: {selection.title}", f"bearing {bearing}" if bearing else "", fixed)
+    constants = ", ".join(f"{key} = {shown(value)}" for key, value in selection.fixed.items())
+    words = (f"Raceway {__version__}: {selection.title}", f"bearing {bearing}" if bearing else "", constants)
     return tuple(word.replace("\n", "; ") for word in words if word)
 
 
@@ -554,8 +554,8 @@ def layout(
         )
     if kind == "surface" and LIST in data.dims:
         raise RacewayError("the points of this sweep fill no grid, which a surface needs: choose --kind map or curves")
-    fixed = ", ".join(f"{key} = {shown(v)}" for key, v in selection.fixed.items())
-    remark = "; ".join(part for part in (fixed, f"without result: {selection.gaps}" if selection.gaps else "") if part)
+    constants = ", ".join(f"{key} = {shown(v)}" for key, v in selection.fixed.items())
+    remark = "; ".join(part for part in (constants, f"without result: {selection.gaps}" if selection.gaps else "") if part)
     return _Layout(data, name, kind, x, y, panels, selection.title, remark)
 
 

@@ -97,18 +97,18 @@ class Precision(Answer):
     @cached_property
     def judged(self) -> list[Row]:
         """Rows with value, error, errors of all quantities, whether the reference limits them, and the observed order."""
-        found = [{**row, **self._errors(row)} for row in self.rows]
+        rows = [{**row, **self._errors(row)} for row in self.rows]
         # The order between each row and the next coarser one of its ladder.
         for key, inverse in _LADDERS.items():
-            for places in _ladders(found, key):
-                places.sort(key=lambda k: found[k]["setting"][key], reverse=not inverse)
+            for places in _ladders(rows, key):
+                places.sort(key=lambda k: rows[k]["setting"][key], reverse=not inverse)
                 for coarse, fine in zip(places, places[1:], strict=False):
-                    bound = _ORDER_MARGIN * self.references[found[fine]["physics"]].bound
-                    errors = [found[k]["error"] for k in (coarse, fine)]
+                    bound = _ORDER_MARGIN * self.references[rows[fine]["physics"]].bound
+                    errors = [rows[k]["error"] for k in (coarse, fine)]
                     if min(errors) > bound:
-                        ratio = found[fine]["setting"][key] / found[coarse]["setting"][key]
-                        found[fine]["order"] = math.log(errors[0] / errors[1]) / math.log(ratio if inverse else 1.0 / ratio)
-        return found
+                        ratio = rows[fine]["setting"][key] / rows[coarse]["setting"][key]
+                        rows[fine]["order"] = math.log(errors[0] / errors[1]) / math.log(ratio if inverse else 1.0 / ratio)
+        return rows
 
     def _errors(self, row: Row) -> Row:
         out: Row = {"value": None, "error": None, "errors": {}, "at_bound": False, "order": None}
@@ -125,7 +125,7 @@ class Precision(Answer):
         out["at_bound"] = not out["error"] > EXACT * reference.bound
         return out
 
-    def _bounded(self, row: Row) -> float:
+    def _largest_error(self, row: Row) -> float:
         """The largest error that the row can have."""
         return float(row["error"]) + self.references[row["physics"]].bound
 
@@ -149,29 +149,29 @@ class Precision(Answer):
         rows = [(r["cost"]["time_s"], k) for k, r in enumerate(self.judged) if _counts(r, physics)]
         fastest: dict[str, int | None] = {}
         for threshold in THRESHOLDS:
-            good = [(time, k) for time, k in rows if self._bounded(self.judged[k]) <= threshold]
+            good = [(time, k) for time, k in rows if self._largest_error(self.judged[k]) <= threshold]
             fastest[_text(threshold)] = min(good)[1] if good else None
         return fastest
 
     @property
     def converged(self) -> bool:
         """Whether any row has an error below the coarsest threshold, or at least numbers where there is no reference."""
-        completed = [row for row in self.judged if row["status"] == "completed"]
-        with_error = [row for row in completed if row["error"] is not None]
-        return any(self._bounded(row) <= THRESHOLDS[0] for row in with_error) if with_error else bool(completed)
+        runs = [row for row in self.judged if row["status"] == "completed"]
+        with_error = [row for row in runs if row["error"] is not None]
+        return any(self._largest_error(row) <= THRESHOLDS[0] for row in with_error) if with_error else bool(runs)
 
     @property
     def models(self) -> list[Tables]:
         """Each model: what sets it apart, its reference, its difference from the base, its own front."""
         base = self.references[self.base]
-        found = []
+        entries = []
         for physics, reference in self.references.items():
             rows = [row for row in self.rows if row["physics"] == physics]
             if not rows:
                 continue
             apart = minus(reference.values, base.values)
             comparable = Z_REAL.name in apart or (AXIAL_DISPLACEMENT.name in apart and Z_REAL.name not in base.values)
-            found.append(
+            entries.append(
                 {
                     "model": rows[0]["model"],
                     "base": physics == self.base,
@@ -182,17 +182,17 @@ class Precision(Answer):
                     "cheapest": self.cheapest(physics),
                 }
             )
-        return found
+        return entries
 
     @cached_property
     def words(self) -> list[str]:
         """The reference, the cheapest settings and the models' differences, a sentence each."""
         reference = self.references[self.base]
         lines = [f"reference: {reference.how}; relative bound {reference.bound:.1g}"]
-        limited = [row for row in self.judged if row["at_bound"] and row["physics"] == self.base]
-        if limited:
+        at_bound = [row for row in self.judged if row["at_bound"] and row["physics"] == self.base]
+        if at_bound:
             lines.append(
-                f"the reference is not {EXACT:g} times more accurate than {len(limited)} of the rows (marked ~): their errors "
+                f"the reference is not {EXACT:g} times more accurate than {len(at_bound)} of the rows (marked ~): their errors "
                 "are known to its bound only, and so is the front there"
             )
         for threshold, index in self.cheapest(self.base).items():
@@ -226,7 +226,7 @@ class Precision(Answer):
         rows = []
         for row in self.judged:
             cost = row["cost"] or {}
-            named = {name: cost.get(name) for name in ("time_s", "wall_s", "cpu_s", "compile_s", "steps")}
+            costs = {name: cost.get(name) for name in ("time_s", "wall_s", "cpu_s", "compile_s", "steps")}
             state = {
                 "status": row["status"],
                 "reason": row["reason"],
@@ -234,7 +234,7 @@ class Precision(Answer):
                 "reused": row["reused"],
             }
             base = row["physics"] == self.base
-            rows.append({**{name: row[name] for name in keep}, **named, **state, "base": base, "cost": row["cost"]})
+            rows.append({**{name: row[name] for name in keep}, **costs, **state, "base": base, "cost": row["cost"]})
         return {
             "title": self.title,
             "reference": _reference_table(self.references[self.base]),
@@ -423,7 +423,7 @@ REPEATS = 3
 _LIMIT_S = 30.0
 
 
-def _measured(
+def _study(
     design: Design, reference: Tables, repeats: int, limit_s: float, store: Store, registry: Registry, report: OnProgress
 ) -> Precision:
     """Every setting run, then the reference of each physics."""
@@ -432,20 +432,20 @@ def _measured(
         if setting.scene is not None:
             groups.setdefault(setting.physics, []).append(setting)
     total = len(design.settings) + len(groups)
-    measured, references = list[Tables](), dict[str, Reference]()
+    results, references = list[Tables](), dict[str, Reference]()
 
     def tell(label: str) -> None:
-        report(label, len(measured) + len(references), total)
+        report(label, len(results) + len(references), total)
 
     for setting in design.settings:
         tell(_words_of(setting.values))
-        measured.append(_row(setting, repeats, registry, store))
+        results.append(_row(setting, repeats, registry, store))
     runner = Runner(registry, store, limit_s, tell)
     for physics, group in groups.items():
         references[physics] = find_reference(group, runner, reference)
     references = {design.base: Reference({}, {}, "no setting could be run")} | references
     return Precision(
-        design.title, tuple(measured), references, design.base, design.left_out, design.notes, store.fault, bool(reference)
+        design.title, tuple(results), references, design.base, design.left_out, design.notes, store.fault, bool(reference)
     )
 
 
@@ -460,13 +460,13 @@ def _row(setting: Setting, repeats: int, registry: Registry, store: Store) -> Ta
         "reused": False,
     }
     if setting.scene is None:
-        lost: Tables = {"status": "refused", "reason": setting.reason, "quantities": {}, "own_error": None, "cost": None}
-        return {**head, **lost}
+        failure: Tables = {"status": "refused", "reason": setting.reason, "quantities": {}, "own_error": None, "cost": None}
+        return {**head, **failure}
     method = resolve(setting.scene).integrator.method
     if needs_motion(setting.scene) and method.inertial:
         head["expected_order"] = method.order
-    row, reused = measured_once(setting.scene, repeats, repeats, registry, store)
-    return {**head, **row, "reused": reused}
+    row, is_old = measured_once(setting.scene, repeats, repeats, registry, store)
+    return {**head, **row, "reused": is_old}
 
 
 @door
@@ -525,14 +525,14 @@ def precision(
     folder = None if out is None else writable(Path(out))
     design = make_design(plain_tables(scene, registry=registry), vary or (), limit_s, registry)
     # What the user names is checked with the first setting that can run.
-    named = tidy(reference) if isinstance(reference, Mapping) else dict(parse_change(text) for text in reference)
+    reference_changes = tidy(reference) if isinstance(reference, Mapping) else dict(parse_change(text) for text in reference)
     first = next((setting for setting in design.settings if setting.scene is not None), None)
-    if named and first is not None:
-        trial = setting_at(first.tables, "reference", named, registry)
+    if reference_changes and first is not None:
+        trial = setting_at(first.tables, "reference", reference_changes, registry)
         if trial.scene is None:
             raise SceneError.at("reference", None, trial.reason)
     with telling(progress) as report, written(kept or folder) as store:
-        study = _measured(design, named, repeats, limit_s, store, registry, report)
+        study = _study(design, reference_changes, repeats, limit_s, store, registry, report)
     if folder is not None:
         study.save(folder)
     return study

@@ -40,15 +40,15 @@ def put_beside(axes: Axes, labels: Sequence[_Label]) -> None:
     scale = 72.0 / figure.dpi
     points = [scale * axes.transData.transform(point) for _, point, _ in labels]
     low, high = scale * axes.bbox.get_points()
-    occupied = [(point, np.full(2, _MARKER)) for point in points]
+    boxes = [(point, np.full(2, _MARKER)) for point in points]
     for (text, at, tone), point in zip(labels, points, strict=True):
         half = 0.5 * _SIZE * np.array([_WIDE * len(text), _HIGH])
         ways = ((direction, away) for away in _AWAY for direction in _DIRECTIONS)  # near ones first
         for direction, away in ways:
             middle = point + direction * half + away * direction / np.linalg.norm(direction)
             inside = (middle - half >= low).all() and (middle + half <= high).all()
-            if inside and not any((np.abs(middle - centre) < half + size).all() for centre, size in occupied):
-                occupied.append((middle, half))
+            if inside and not any((np.abs(middle - centre) < half + size).all() for centre, size in boxes):
+                boxes.append((middle, half))
                 line = {"arrowstyle": "-", "color": tone, "linewidth": 0.5, "shrinkB": 3.0} if away > _AWAY[0] else None
                 axes.annotate(
                     text, at, tuple(middle - point), textcoords="offset points", fontsize=_SIZE, color=tone, ha="center", va="center",
@@ -72,8 +72,8 @@ def page(result: Tables, picture: bool = False) -> str:
         table = [_line(("model", "difference", "of K", "of peak load", "of p0", "reference's bound")), _line(["---"] * 6)]
         for model in models:
             parts = model["differences"]
-            signed = (parts.get(name) for name in (K.name, PEAK_BALL_LOAD.name, P0.name))
-            cells = ["" if part is None else f"{100.0 * part:+.3g} %" for part in signed]
+            changes = (parts.get(name) for name in (K.name, PEAK_BALL_LOAD.name, P0.name))
+            cells = ["" if part is None else f"{100.0 * part:+.3g} %" for part in changes]
             difference = "" if model["difference"] is None else f"{100.0 * model['difference']:.3g} %"
             table.append(_line((_words(model["model"]), difference, *cells, _number(model["reference"]["error"], 2))))
         lines += ["Differences between models, each by its own reference:", "", "\n".join(table), ""]
@@ -163,8 +163,8 @@ def draw_on(panel: Axes, result: Tables) -> list[_Label]:
     bound = result["reference"]["error"]
     # What lies below the reference's bound is drawn at its lower edge: nobody knows how far below.
     least = bound / 10.0 if bound else _LEAST
-    base = [k for k, row in enumerate(result["rows"]) if _drawn(row) and row["base"]]
-    foreign = [k for k, row in enumerate(result["rows"]) if _drawn(row) and not row["base"]]
+    base = [k for k, row in enumerate(result["rows"]) if _has_place(row) and row["base"]]
+    foreign = [k for k, row in enumerate(result["rows"]) if _has_place(row) and not row["base"]]
     series: dict[str, list[int]] = {}
     labels: list[_Label] = []
     for k in base:
@@ -196,7 +196,7 @@ def draw_on(panel: Axes, result: Tables) -> list[_Label]:
     return labels
 
 
-def _drawn(row: Tables) -> bool:
+def _has_place(row: Tables) -> bool:
     return row["error"] is not None and row["time_s"] is not None
 
 

@@ -295,17 +295,17 @@ def sensitivities(
     0.54
     """
     read = as_scene(scene, plugins=plugins)
-    asked = [key_of(read, path) for path in keys]
-    chosen_keys = asked or continuous_keys(read)
+    choice = [key_of(read, path) for path in keys]
+    chosen_keys = choice or continuous_keys(read)
     with telling(progress) as report:
-        begun, model = working_processor_time(), build_model(read, steady_plan(read))
+        start, model = working_processor_time(), build_model(read, steady_plan(read))
         gradients = Gradients(model, equilibrium := solve_equilibrium(model))
         now = values(model, equilibrium, gradients.orbit)
-        run_s, begun = working_processor_time() - begun, working_processor_time()
+        run_s, start = working_processor_time() - start, working_processor_time()
         answers = list(zip(chosen_keys, gradients.by_all(chosen_keys, report), strict=True))
-    refused = tuple((key, str(answer)) for key, answer in answers if isinstance(answer, NoDerivative))
-    if asked and refused:
-        raise SceneError([Mistake(key.path, key.value, why) for key, why in refused])
+    refusals = tuple((key, str(answer)) for key, answer in answers if isinstance(answer, NoDerivative))
+    if choice and refusals:
+        raise SceneError([Mistake(key.path, key.value, why) for key, why in refusals])
     by_key = [(key, answer) for key, answer in answers if not isinstance(answer, NoDerivative)]
     rows, first = list[_Sensitivity](), next(iter(now))
     for gradient in (gradient for _, gradient in by_key if not gradient.nothing):
@@ -314,8 +314,8 @@ def sensitivities(
         shares = {name: slopes[name] * key.value / now[name] for name in now if now[name]} if key.value else {}
         rows.append(_Sensitivity(gradient, slopes, shares))
     rows.sort(key=lambda row: -abs(row.influence.get(first, 0.0)))  # the largest influence on the first number first
-    took, warning = working_processor_time() - begun, "" if gradients.orbit is None else gradients.orbit.warning
+    took, warning = working_processor_time() - start, "" if gradients.orbit is None else gradients.orbit.warning
     nothing = tuple(key for key, gradient in by_key if gradient.nothing)
     models, band = sum(gradient.statics.models for _, gradient in by_key), first_order_band(model, equilibrium, tolerances)
     words, warnings = definitions(model, equilibrium), (warning,) if warning else ()
-    return Sensitivities(read.title, now, words, tuple(rows), nothing, refused, run_s, took, models, warnings, band)
+    return Sensitivities(read.title, now, words, tuple(rows), nothing, refusals, run_s, took, models, warnings, band)

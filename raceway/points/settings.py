@@ -130,19 +130,19 @@ def setting_at(
     tables: ReadTables, family: str, values: Tables, registry: Registry, notes: list[str] | None = None
 ) -> Setting:
     """One setting, checked and planned."""
-    changed = tables_at(tables, values, registry, notes)
+    scene_tables = tables_at(tables, values, registry, notes)
     model = {key: value for key, value in values.items() if key.partition(".")[0] not in _NUMERICAL}
     try:
-        scene = scene_from_dict(changed, registry)
+        scene = scene_from_dict(scene_tables, registry)
         plan = make_plan(scene)
     except RacewayError as error:
-        return Setting(family, values, model, changed, None, reason=short(str(error)))
+        return Setting(family, values, model, scene_tables, None, reason=short(str(error)))
     if needs_motion(scene) and not scene.integrator.method.inertial:
         model["inertia"] = False
     inertial = not needs_motion(scene) or scene.integrator.method.inertial
     content = {name: part for name, part in scene.to_dict().items() if name not in (*_NUMERICAL, "title")}
     physics = json.dumps([content, inertial], sort_keys=True, default=str)
-    return Setting(family, values, model, changed, scene, physics, plan.predicted_work_s)
+    return Setting(family, values, model, scene_tables, scene, physics, plan.predicted_work_s)
 
 
 def needs_motion(scene: Scene) -> bool:
@@ -369,7 +369,7 @@ def _transients(first: Setting, finest: int, common: Tables, runner: Runner) -> 
     while not extrapolations and steps > finest:
         for name in _METHODS:
             if len(extrapolations) < 2 and name in runner.registry.names("integrator"):
-                extrapolation = _extrapolated(first, name, steps, common, runner)
+                extrapolation = _extrapolation(first, name, steps, common, runner)
                 extrapolations += [] if extrapolation is None else [extrapolation]
         steps = steps if extrapolations else steps // 2
     if not extrapolations:
@@ -390,7 +390,7 @@ def _transients(first: Setting, finest: int, common: Tables, runner: Runner) -> 
     return Reference(middle, bounds, f"{how} and by what is left of the transient")
 
 
-def _extrapolated(
+def _extrapolation(
     first: Setting, name: str, steps: int, common: Tables, runner: Runner
 ) -> tuple[str, Values, Values, float] | None:
     """Method, values at step zero, the change to them, and what is left of the transient [relative]."""

@@ -80,14 +80,14 @@ class Store:
         try:
             self.facts: Tables = {name: json.loads(text) for name, text in records.items()}
         except (ValueError, TypeError):
-            raise _damaged(path) from None
+            raise _damage(path) from None
         if self.facts.get("schema") != SCHEMA:
             raise RacewayError(
                 f"`{path}` is a store of schema {self.facts.get('schema')}, this version reads {SCHEMA}: choose another folder"
             )
         self._origin = facts_digest(records)
         if self.facts.pop("digest", None) != self._origin:
-            raise _damaged(path)
+            raise _damage(path)
 
     def __enter__(self) -> Self:
         return self
@@ -111,7 +111,7 @@ class Store:
         if record is None or not self._sound(*record):
             return Row(key, "waiting", DAMAGED, {}, {})
         _, state, reason, content, cost, _ = record
-        return Row(key, state, reason or "", _unpacked(content), json.loads(cost or "{}"))
+        return Row(key, state, reason or "", _from_blob(content), json.loads(cost or "{}"))
 
     def keys(self, state: str) -> set[Key]:
         """Keys of the rows in a state."""
@@ -134,7 +134,7 @@ class Store:
         """
         lines = list[tuple[object, ...]]()
         for key, state, reason, content, cost in rows:
-            columns = (key, state, reason, _packed(content), _text(cost))
+            columns = (key, state, reason, _to_blob(content), _text(cost))
             lines.append((*columns, self._digest(*columns)))
         self._write(f"INSERT OR REPLACE INTO points ({_COLUMNS}) VALUES (?, ?, ?, ?, ?, ?)", lines)
 
@@ -156,13 +156,13 @@ class Store:
         """
         with told(self.path):
             if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
-                raise _damaged(self.path, "its pages are inconsistent")
+                raise _damage(self.path, "its pages are inconsistent")
             sound = {
                 record[0]: self._sound(*record) for record in self._connection.execute(f"SELECT {_COLUMNS} FROM points")
             }
-        expected = set(keys or sound)
-        bad = {key for key in expected if not sound.get(key, False)}
-        strange = {key for key in set(sound) - expected if not sound[key]}  # runs of points that a block has left are not
+        known_keys = set(keys or sound)
+        bad = {key for key in known_keys if not sound.get(key, False)}
+        strange = {key for key in set(sound) - known_keys if not sound[key]}  # runs of points that a block has left are not
         if bad or strange:
             self._write("DELETE FROM points WHERE key = ?", [(key,) for key in strange])
             self.wait(bad)
@@ -251,17 +251,17 @@ def exists(folder: Path) -> bool:
     if not (folder / POINTS).is_file():
         return False
     with told(folder), closing(connected(folder)) as connection:
-        return _made(connection)
+        return _has_tables(connection)
 
 
-def _made(connection: sqlite3.Connection) -> bool:
+def _has_tables(connection: sqlite3.Connection) -> bool:
     return connection.execute("SELECT 1 FROM sqlite_master WHERE name = 'facts'").fetchone() is not None
 
 
 def _holds_rows(connection: sqlite3.Connection) -> bool:
     """Whether anything finished is stored."""
     query = "SELECT 1 FROM points WHERE state IN ('done', 'failed') LIMIT 1"
-    return _made(connection) and connection.execute(query).fetchone() is not None
+    return _has_tables(connection) and connection.execute(query).fetchone() is not None
 
 
 def _make(connection: sqlite3.Connection, facts: ReadTables, keys: Iterable[Key]) -> None:
@@ -283,11 +283,11 @@ def facts_digest(texts: Mapping[str, str]) -> str:
     return hashlib.blake2b(repr(entries).encode(), digest_size=16).hexdigest()
 
 
-def _damaged(folder: Path, how: str = "its scene and design differ from those written") -> RacewayError:
+def _damage(folder: Path, how: str = "its scene and design differ from those written") -> RacewayError:
     return RacewayError(f"`{folder / POINTS}` is damaged: {how}. Begin again in another folder with --out")
 
 
-def _packed(content: Tables) -> str | bytes:
+def _to_blob(content: Tables) -> str | bytes:
     """Plain values as text, arrays as a file of numpy's."""
     if not any(isinstance(value, np.ndarray) for value in content.values()):
         return _text(content)
@@ -296,7 +296,7 @@ def _packed(content: Tables) -> str | bytes:
     return memory.getvalue()
 
 
-def _unpacked(content: str | bytes | None) -> Tables:
+def _from_blob(content: str | bytes | None) -> Tables:
     if not isinstance(content, bytes):
         return dict(json.loads(content or "{}"))
     with np.load(io.BytesIO(content)) as arrays:
@@ -314,12 +314,12 @@ def told(folder: Path) -> Iterator[None]:
         yield
     except (sqlite3.DatabaseError, UnicodeDecodeError) as why:
         if isinstance(why, sqlite3.OperationalError):
-            stored, again = "Nothing is stored", "."
+            outcome, again = "Nothing is stored", "."
             with suppress(sqlite3.Error), closing(connected(folder, 0.0)) as connection:
                 if _holds_rows(connection):
-                    stored, again = "Finished points are stored", ", a sweep with --resume."
+                    outcome, again = "Finished points are stored", ", a sweep with --resume."
             raise RacewayError(
-                f"`{folder}` cannot be written or read: {why}. {stored}: free some space, and run the command again{again}"
+                f"`{folder}` cannot be written or read: {why}. {outcome}: free some space, and run the command again{again}"
             ) from None
         raise RacewayError(f"`{folder / POINTS}` is not a store ({why}): choose another folder.") from None
     except OSError as why:
@@ -336,8 +336,8 @@ def tables_key(
 ) -> str:
     """The same of a scene's tables, and of the files that they name."""
     digest = hashlib.sha256()
-    untitled = {name: table for name, table in tables.items() if name != "title"}
-    digest.update(json.dumps([untitled, extra], sort_keys=True, default=str).encode())
+    content = {name: table for name, table in tables.items() if name != "title"}
+    digest.update(json.dumps([content, extra], sort_keys=True, default=str).encode())
     digest.update((program or program_key(registry)).encode())
     for name in files:
         path = Path(name)

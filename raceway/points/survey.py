@@ -51,18 +51,18 @@ def survey(tables: ReadTables, design: Design, registry: Registry) -> _Survey:
     """
     notes: list[str] = []
     first = scene_from_dict(tables_at(tables, design.point(0), registry, notes), registry)
-    used, files, mistakes = set(plugins_of(first)), set(files_of(first)), []
+    plugins, files, mistakes = set(plugins_of(first)), set(files_of(first)), []
     numbers = {key.path for key in continuous_keys(first)} & {axis.key for axis in design.axes if axis.numeric}
-    for where, changed, point in _others(design, numbers):
+    for where, axis_key, point in _others(design, numbers):
         try:
             scene = scene_from_dict(tables_at(tables, point, registry, notes), registry)
         except SceneError as error:
-            blamed = error.mistakes if design.listed else _blamed(error.mistakes, point, changed)
-            mistakes += [Mistake(f"{where}{m.path}", m.value, m.message) for m in blamed]
+            own = error.mistakes if design.listed else _own_mistakes(error.mistakes, point, axis_key)
+            mistakes += [Mistake(f"{where}{m.path}", m.value, m.message) for m in own]
             if len(mistakes) >= _MOST_MISTAKES:
                 break
             continue
-        used |= set(plugins_of(scene))
+        plugins |= set(plugins_of(scene))
         files |= set(files_of(scene))
     if mistakes:
         raise SceneError(mistakes)
@@ -71,19 +71,19 @@ def survey(tables: ReadTables, design: Design, registry: Registry) -> _Survey:
         name: hashlib.sha256(path.read_bytes()).hexdigest()[:24] if path.is_file() else "missing"
         for name, path in paths.items()
     }
-    return _Survey(first, frozenset(used), digests, tuple(notes))
+    return _Survey(first, frozenset(plugins), digests, tuple(notes))
 
 
-def _blamed(mistakes: Iterable[Mistake], point: ReadTables, changed: str) -> list[Mistake]:
+def _own_mistakes(mistakes: Iterable[Mistake], point: ReadTables, axis_key: str) -> list[Mistake]:
     """Those that the changed value makes by itself: of a swept key, or of its whole table where no other axis has a part."""
-    blamed = []
+    own = []
     for mistake in mistakes:
         inside = [key for key in point if key.startswith(f"{mistake.path}.")]
         if mistake.path in point:
-            blamed.append(mistake)
-        elif inside == [changed]:
-            blamed.append(Mistake(changed, point[changed], f"{mistake.path}: {mistake.message}"))
-    return blamed
+            own.append(mistake)
+        elif inside == [axis_key]:
+            own.append(Mistake(axis_key, point[axis_key], f"{mistake.path}: {mistake.message}"))
+    return own
 
 
 def _others(design: Design, continuous: Collection[str]) -> Iterator[tuple[str, str, Tables]]:

@@ -75,10 +75,10 @@ class Point:
         state, reason, content, cost = "failed", "", Tables(), Tables()
         try:
             result = run(scene_from_dict(tables_at(self.tables, point, registry), registry), registry)
-            unlimited = [name for name, value in result.quantities.items() if np.isposinf(value).all()]
+            infinite = [name for name, value in result.quantities.items() if np.isposinf(value).all()]
             ends = {name: ENDS[name].of(result) for name in self.further}
             values = values_of(result) | {name: value for name, value in ends.items() if value is not None}
-            content = {"values": values, "unlimited": unlimited, "warnings": list(result.warnings)}
+            content = {"values": values, "unlimited": infinite, "warnings": list(result.warnings)}
             cost = {name: result.cost[name] for name in ("compile_s", "steps", "newton_iterations")}
             state = "done"
         except RacewayError as error:
@@ -125,12 +125,12 @@ def _block_row(first: int, answer: Columns, reasons: dict[int, str], times: Read
 
 def _left_over(store: Store, edges: Mapping[str, tuple[int, int]]) -> list[int]:
     """Numbers of points that the loop has left and that no run has finished."""
-    finished, numbers = store.keys("done") | store.keys("failed"), list[int]()
+    complete, numbers = store.keys("done") | store.keys("failed"), list[int]()
     for key, (first, _) in edges.items():
         row = store.get(key)
         if row.state == "done" and row.cost[PointStatus.FAILED.name]:
             numbers += (first + np.flatnonzero(row.content["status"] == PointStatus.FAILED)).tolist()
-    return [number for number in numbers if number not in finished]
+    return [number for number in numbers if number not in complete]
 
 
 def _column_function(tables: ReadTables, scene: Scene, design: Design, registry: Registry) -> Function | None:
@@ -143,13 +143,13 @@ def _column_function(tables: ReadTables, scene: Scene, design: Design, registry:
     keys = {key.path for key in continuous_keys(scene)}
     if not all(axis.numeric and axis.key in keys for axis in design.axes):
         return None
-    stated = stated_columns(scene, registry)
+    of_plugins = stated_columns(scene, registry)
     moving, tilts = scene.excitation is not None, scene.supports.tilt != "locked"
     outputs = [name for name in COLUMNS if name in QUANTITIES and (moving or name not in MOVING)]
     left_out = [] if tilts else [KYY_TILTS_FOLLOW.name]
     if any(key.startswith("bearing.") for key in design.keys):  # rings grow by their own sections, each solved for alone
         left_out.append(MODEL_BOUND.name)
-    outputs = [name for name in (*outputs, *stated) if name not in left_out]
+    outputs = [name for name in (*outputs, *of_plugins) if name not in left_out]
     function = Function(scene, design.keys, tuple(outputs), threads=usable_cores())
     # What bodies that deform are off by is known to runs alone.
     quick = not function.why_slow and function.contacts_alone
@@ -215,38 +215,40 @@ def prepare(
         member("quantities", name, ENDS)
     registry = registry_of(files)
     tables = plain_tables(scene, registry=registry)
-    listed = axes if isinstance(axes, Design) else grid(axes) if isinstance(axes, Mapping) else listed_points(axes)
-    design = design_in_units(listed, tables, registry)
+    swept = axes if isinstance(axes, Design) else grid(axes) if isinstance(axes, Mapping) else listed_points(axes)
+    design = design_in_units(swept, tables, registry)
     try:
-        surveyed = survey(tables, design, registry)
+        overview = survey(tables, design, registry)
     except SceneError as error:
         # Who asks for a motion at speed 0 is told how a stiffness from 0 r/min is had.
         more = (f". {_FROM_ZERO}" if each.path == SPEED and each.value == 0 else "" for each in error.mistakes)
-        told = [attrs.evolve(each, message=each.message + words) for each, words in zip(error.mistakes, more, strict=True)]
-        raise SceneError(told) from None
-    for note in surveyed.notes:
+        mistakes = [
+            attrs.evolve(each, message=each.message + words) for each, words in zip(error.mistakes, more, strict=True)
+        ]
+        raise SceneError(mistakes) from None
+    for note in overview.notes:
         warnings.warn(note, stacklevel=2)
     # Intervals are known to runs alone.
-    function = None if files or further else _column_function(tables, surveyed.scene, design, registry)
+    function = None if files or further else _column_function(tables, overview.scene, design, registry)
     facts = {
-        "scene": surveyed.scene.to_dict(),
+        "scene": overview.scene.to_dict(),
         "given": tables_at(tables, design.point(0), registry),
         "design": design.to_dict(),
         "block": 0 if function is None else _SHARED * BLOCK[function.moving],
         "quantities": {
             name: each.labels
-            for name, each in (*stated_columns(surveyed.scene, registry).items(), *((name, ENDS[name]) for name in further))
+            for name, each in (*stated_columns(overview.scene, registry).items(), *((name, ENDS[name]) for name in further))
         },
-        "identity": identity(registry, surveyed.used),
-        "files": surveyed.files,
+        "identity": identity(registry, overview.used),
+        "files": overview.files,
     }
     if any(key.rpartition(".")[2] == "kind" for key in design.keys):
         facts["tables"] = dict(tables)  # options of kinds that the first point does not have
     if exists(store):
-        with open_store(store) as stored:
-            _refuse_other(stored, facts, store)
+        with open_store(store) as present:
+            _refuse_other(present, facts, store)
             if not resume:
-                states = stored.status()
+                states = present.status()
                 raise RacewayError(
                     f"`{store}` holds this sweep already, {states['done']} of {states['total']} points done: go on with "
                     "--resume, or choose another folder with --out. Nothing is overwritten."
@@ -256,7 +258,7 @@ def prepare(
     return Sweep(tables, design, store, files, facts, function, further)
 
 
-def refuse_large(prepared: Sweep, executor: Executor, force: bool) -> None:
+def refuse_large(task: Sweep, executor: Executor, force: bool) -> None:
     """Refuse points whose results fill the memory, or whose runs would take longer than a day unless they are forced.
 
     Raises
@@ -264,31 +266,29 @@ def refuse_large(prepared: Sweep, executor: Executor, force: bool) -> None:
     RacewayError
         With bytes or the predicted time.
     """
-    refuse_bytes(prepared.design.size, sum(map(_numbers, COLUMNS)), "give fewer points at a time")
-    if prepared.function is None and not force:
-        work = workload(prepared, executor, planned=1)
+    refuse_bytes(task.design.size, sum(map(_numbers, COLUMNS)), "give fewer points at a time")
+    if task.function is None and not force:
+        work = workload(task, executor, planned=1)
         if work.seconds > _LIMIT_S:
             raise RacewayError(
                 f"{work.runs + work.refused} runs would take about {duration(work.seconds)}: give fewer points or more workers, or force them"
             )
 
 
-def workload(prepared: Sweep, executor: Executor, planned: int = 100) -> Workload:
+def workload(task: Sweep, executor: Executor, planned: int = 100) -> Workload:
     """What is not finished yet: its size, and its time as that of so many planned points; nothing is computed."""
-    design, function, registry, stored = prepared.design, prepared.function, registry_of(prepared.plugins), 0
-    if exists(prepared.store):
-        with open_store(prepared.store) as store:
-            stored = design.size - store.status()["waiting"]
-    title, left = str(prepared.facts["scene"]["title"]), design.size - stored
+    design, function, registry, present = task.design, task.function, registry_of(task.plugins), 0
+    if exists(task.store):
+        with open_store(task.store) as store:
+            present = design.size - store.status()["waiting"]
+    title, left = str(task.facts["scene"]["title"]), design.size - present
     if function is None:
-        seconds, refused = run_times(
-            left, lambda n: tables_at(prepared.tables, design.point(n), registry), registry, planned
-        )
+        seconds, refusals = run_times(left, lambda n: tables_at(task.tables, design.point(n), registry), registry, planned)
         return Workload(
-            title, design.size, seconds / getattr(executor, "workers", 1), runs=left - refused, refused=refused, stored=stored,
+            title, design.size, seconds / getattr(executor, "workers", 1), runs=left - refusals, refused=refusals, stored=present,
             disk_bytes=_RUN_BYTES * design.size, why_runs="an axis, the scene or a quantity that no compiled loop takes",
         )  # fmt: skip
-    return of_columns(title, function, design.size, stored, len(design.keys) + sum(map(_numbers, function.outputs)))
+    return of_columns(title, function, design.size, present, len(design.keys) + sum(map(_numbers, function.outputs)))
 
 
 def _numbers(name: str) -> int:
@@ -297,7 +297,7 @@ def _numbers(name: str) -> int:
 
 
 def fill_store(
-    prepared: Sweep, executor: Executor, retry_failed: bool = False, on_progress: OnProgress | None = None
+    task: Sweep, executor: Executor, retry_failed: bool = False, on_progress: OnProgress | None = None
 ) -> SweepStore:
     """Compute what is not finished; the store, open to be read.
 
@@ -313,61 +313,63 @@ def fill_store(
     RacewayError
         A disk that takes no more.  Whatever is raised, Ctrl-C too: finished points are stored.
     """
-    design, length = prepared.design, int(prepared.facts["block"])
+    design, length = task.design, int(task.facts["block"])
     edges = block_edges(design.size, length)
-    with written(prepared.store, prepared.facts, edges or range(design.size)) as store:
+    with written(task.store, task.facts, edges or range(design.size)) as store:
         if retry_failed:
             store.wait(store.keys("failed"))
         waiting = store.keys("waiting")
 
-        def advance(finished: int) -> int:
+        def advance(count: int) -> int:
             if on_progress is not None:
-                on_progress("points", finished, design.size)
-            return finished
+                on_progress("points", count, design.size)
+            return count
 
-        if prepared.function is not None:
-            at_first = tables_at(prepared.tables, design.point(0), registry_of(prepared.plugins))
+        if task.function is not None:
+            at_first = tables_at(task.tables, design.point(0), registry_of(task.plugins))
             blocks = [ends for key, ends in edges.items() if key in waiting]
-            finished = design.size - sum(last - first for first, last in blocks)
+            count = design.size - sum(last - first for first, last in blocks)
             batches = ((k, [(first, design.columns(first, last))]) for k, (first, last) in enumerate(blocks))
-            for k, answer in _rows(executor, prepared, _Block(at_first, prepared.function.outputs), batches):
+            for k, answer in _rows(executor, task, _Block(at_first, task.function.outputs), batches):
                 first, last = blocks[k]
-                lost = {"status": np.full(last - first, PointStatus.FAILED)}  # with its worker: to runs
-                store.put([_block_row(first, lost, {}, {}) if isinstance(answer, Lost) else answer])
-                finished = advance(finished + last - first)
+                leftover = {"status": np.full(last - first, PointStatus.FAILED)}  # with its worker: to runs
+                store.put([_block_row(first, leftover, {}, {}) if isinstance(answer, Lost) else answer])
+                count = advance(count + last - first)
             numbers = _left_over(store, edges)
         else:
             numbers = [number for number in range(design.size) if number in waiting]
-        finished = design.size - len(numbers)
+        count = design.size - len(numbers)
         batches = ((n, [(n, design.point(n))]) for n in numbers)
-        for n, answer in _rows(executor, prepared, Point(prepared.tables, prepared.further), batches):
+        for n, answer in _rows(executor, task, Point(task.tables, task.further), batches):
             store.put([Row(n, "failed", answer.reason, {}, {}) if isinstance(answer, Lost) else answer])
-            finished = advance(finished + 1)
-    return open_store(prepared.store)
+            count = advance(count + 1)
+    return open_store(task.store)
 
 
 def _rows(
-    executor: Executor, prepared: Sweep, function: Point | _Block, batches: Iterable[Batch]
+    executor: Executor, task: Sweep, function: Point | _Block, batches: Iterable[Batch]
 ) -> Iterator[tuple[int, Row | Lost]]:
     """Number and row of each batch of one task."""
-    work = Work(function, prepared.plugins, prepared.facts["identity"])
+    work = Work(function, task.plugins, task.facts["identity"])
     with closing(answers(executor, work, batches)) as results:
         for number, answer in results:
             yield number, answer if isinstance(answer, Lost) else answer[0]
 
 
-def _refuse_other(stored: SweepStore, facts: ReadTables, store: Path) -> None:
+def _refuse_other(present: SweepStore, facts: ReadTables, store: Path) -> None:
     """A store that holds something else is named and left alone."""
-    reasons = _changed(stored.scene, facts["scene"]) or _changed(stored.facts.get("tables", {}), facts.get("tables", {}))
+    reasons = _tree_changes(present.scene, facts["scene"]) or _tree_changes(
+        present.facts.get("tables", {}), facts.get("tables", {})
+    )
     difference = "another scene"
     if not reasons:
-        difference, reasons = "another sweep", _changed(stored.facts["design"], facts["design"])
+        difference, reasons = "another sweep", _tree_changes(present.facts["design"], facts["design"])
     if not reasons:
-        difference, reasons = "other quantities", sorted(stored.facts["quantities"].keys() ^ facts["quantities"].keys())
-    if not reasons and stored.facts["files"] != facts["files"]:
-        difference, reasons = ("changed files of the scene", sorted({*stored.facts["files"], *facts["files"]}))
+        difference, reasons = "other quantities", sorted(present.facts["quantities"].keys() ^ facts["quantities"].keys())
+    if not reasons and present.facts["files"] != facts["files"]:
+        difference, reasons = ("changed files of the scene", sorted({*present.facts["files"], *facts["files"]}))
     if not reasons:
-        difference, reasons = "another version", differences(stored.facts["identity"], facts["identity"])
+        difference, reasons = "another version", differences(present.facts["identity"], facts["identity"])
     if reasons:
         words = "; ".join(reasons[:5]) + ("; ..." if len(reasons) > 5 else "")
         raise RacewayError(
@@ -375,11 +377,11 @@ def _refuse_other(stored: SweepStore, facts: ReadTables, store: Path) -> None:
         )
 
 
-def _changed(old: object, new: object, path: str = "") -> list[str]:
+def _tree_changes(old: object, new: object, path: str = "") -> list[str]:
     """``key: old, now new`` for every leaf of two trees of tables that differs."""
     if isinstance(old, dict) and isinstance(new, dict):
         keys = [*old, *(key for key in new if key not in old)]
-        return [w for key in keys for w in _changed(old.get(key), new.get(key), f"{path}.{key}" if path else key)]
+        return [w for key in keys for w in _tree_changes(old.get(key), new.get(key), f"{path}.{key}" if path else key)]
     return [] if old == new else [f"{path}: {reprlib.repr(old)} there, {reprlib.repr(new)} here"]
 
 
@@ -463,12 +465,12 @@ def sweep(
             if not isinstance(axes, Mapping):
                 raise SceneError.at("axes", None, f"must be ranges, key -> (low, high), for the design {design}")
             axes = sampled(axes, design, seed)
-        prepared = prepare(scene, axes, folder, plugins, resume or retry_failed, quantities)
-        refuse_large(prepared, worker_pool, force)
-        with fill_store(prepared, worker_pool, retry_failed, report) as filled:
-            if (failed := all_failed(filled)) is not None:
-                raise failed
-            return dataset(filled, registry_with(plugins))
+        task = prepare(scene, axes, folder, plugins, resume or retry_failed, quantities)
+        refuse_large(task, worker_pool, force)
+        with fill_store(task, worker_pool, retry_failed, report) as results:
+            if (fault := all_failed(results)) is not None:
+                raise fault
+            return dataset(results, registry_with(plugins))
 
 
 def executor_of(name: str | Executor, options_given: ReadTables, registry: Registry) -> Executor:

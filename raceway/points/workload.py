@@ -97,19 +97,19 @@ def run_times(
     count: int, tables_at: Callable[[int], ReadTables], registry: Registry, planned: int = 100
 ) -> tuple[float, int]:
     """Predicted time of runs, one after another in a process [s], and how many of them rules refuse: of so many ``planned`` ones."""
-    seconds, refused, bodies = 0.0, 0, dict[str, float]()
+    seconds, refusals, bodies = 0.0, 0, dict[str, float]()
     looked_at = np.unique(np.linspace(0, count - 1, min(count, planned)).astype(int)).tolist()
     for number in looked_at:
         try:
             scene = scene_from_dict(tables_at(number), registry)
             plan = make_plan(scene)
         except RacewayError:
-            refused += 1
+            refusals += 1
             continue
         bodies[scene.bodies.name] = max(plan.predicted_once_s, bodies.get(scene.bodies.name, 0.0))
         seconds += max(plan.predicted_wall_s - plan.predicted_once_s, _RUN_S)
     share = count / max(len(looked_at), 1)
-    return seconds * share + sum(bodies.values()), round(refused * share)
+    return seconds * share + sum(bodies.values()), round(refusals * share)
 
 
 def of_columns(
