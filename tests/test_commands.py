@@ -360,7 +360,7 @@ def test_ctrl_c_ends_a_command_with_130_one_line_and_whole_files(name, seen, fol
         raise KeyboardInterrupt
 
     def told(text, **_options):
-        assert ProgressBar._shown is None, "the bar ends before anything is said"
+        assert ProgressBar._current is None, "the bar ends before anything is said"
         click.echo(text, err=True)
 
     monkeypatch.setattr(frame, "warn", told)

@@ -23,7 +23,7 @@ Part: TypeAlias = "str | list[dict[str, str]] | RenderableType"
 class Answer(Shown):
     """Facts for people, plain tables for programs, a figure.
 
-    A subclass states ``to_dict`` and ``report`` (of a terminal); where it has them, ``draw``, ``texts``, and ``_shown`` of ``repr`` and
+    A subclass states ``to_dict`` and ``report`` (of a terminal); where it has them, ``draw``, ``texts``, and ``_facts`` of ``repr`` and
     notebooks.
 
     Attributes
@@ -55,7 +55,7 @@ class Answer(Shown):
         """Everything, as plain tables for JSON."""
         raise NotImplementedError
 
-    def _shown(self) -> tuple[str, Sequence[Fact]]:
+    def _facts(self) -> tuple[str, Sequence[Fact]]:
         """Title and plain numbers of ``to_dict``; answers with more to say state it themselves."""
         content = self.to_dict()
         facts = [(name.replace("_", " "), str(value), "") for name, value in content.items() if name != "title"]
@@ -123,12 +123,12 @@ class Answer(Shown):
         from raceway.answers.table import file_lines, rows_table
         from raceway.answers.wrapping import Words
 
-        def shown(part: Part) -> RenderableType:
+        def rich_part(part: Part) -> RenderableType:
             if isinstance(part, str):
                 return Words(part)
             return rows_table(part) if isinstance(part, list) else part
 
-        return Group(*map(shown, self.report()), *file_lines(list(files)))
+        return Group(*map(rich_part, self.report()), *file_lines(list(files)))
 
 
 class Interrupted(KeyboardInterrupt):

@@ -31,8 +31,8 @@ def dry_damping_note(content: ReadTables) -> str | None:
     if content["identification"] is None:
         return None
     error, damping = C_ERROR.of(content), C.of(content)
-    resolved = error is None or abs(damping) > error
-    return dry_damping_words(damping if resolved else None, K.of(content))
+    above_error = error is None or abs(damping) > error
+    return dry_damping_words(damping if above_error else None, K.of(content))
 
 
 def dry_damping_words(damping: float | None, stiffness: float, remedy: str = _REMEDY) -> str | None:

@@ -82,7 +82,7 @@ class Page:
         ----------
         rows : cells are text, numbers (six digits are shown) or ``Cell``
         """
-        body = [[cell if isinstance(cell, Cell) else Cell(_shown(cell)) for cell in row] for row in rows]
+        body = [[cell if isinstance(cell, Cell) else Cell(_cell_text(cell)) for cell in row] for row in rows]
         columns = list(columns)
         right = [_numbers([row[k] for row in body]) for k in range(len(columns))]
         head = "".join(f'<th scope="col"{_class(number=right[k])}>{_inline(name)}</th>' for k, name in enumerate(columns))
@@ -91,7 +91,7 @@ class Page:
             cells = []
             for k, cell in enumerate(row):
                 kind = _class(number=right[k], words=len(cell.text + cell.more) > _SENTENCE)
-                cells.append(f"<td{kind}>{_toned(cell)}</td>" if k else f'<th scope="row"{kind}>{_toned(cell)}</th>')
+                cells.append(f"<td{kind}>{_in_tone(cell)}</td>" if k else f'<th scope="row"{kind}>{_in_tone(cell)}</th>')
             lines.append(f"<tr>{''.join(cells)}</tr>")
         title = f"<caption>{_inline(caption)}</caption>" if caption else ""
         label = escape(caption or columns[0], quote=True)
@@ -109,7 +109,7 @@ class Page:
         """A box about one thing: what it is, a coloured word on it, and named paragraphs."""
         lines = "".join(f"<dt>{_inline(name)}</dt><dd>{_inline(words)}</dd>" for name, words in parts)
         self._blocks.append(
-            f'<section class="card"><h3>{_inline(heading)}</h3><p class="badge">{_toned(badge)}</p><dl>{lines}</dl></section>'
+            f'<section class="card"><h3>{_inline(heading)}</h3><p class="badge">{_in_tone(badge)}</p><dl>{lines}</dl></section>'
         )
 
     def figures(self, items: Iterable[tuple[Figure | bytes, str, str]], wide: bool = False) -> None:
@@ -186,18 +186,18 @@ def _numbers(column: Sequence[Cell]) -> bool:
     return count > 0 and 2 * count >= len(column) and all(len(cell.text) <= _SENTENCE // 2 for cell in column)
 
 
-def _toned(cell: Cell) -> str:
+def _in_tone(cell: Cell) -> str:
     words = _inline(cell.text)
     words = f'<span class="tone {cell.tone}">{words}</span>' if cell.tone else words
     return f"{words} {_inline(cell.more)}" if cell.more else words
 
 
-def _shown(value: object) -> str:
+def _cell_text(value: object) -> str:
     if value is None:
         return "–"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _class(**classes: bool) -> str:
-    names = " ".join(name for name, shown in classes.items() if shown)
+    names = " ".join(name for name, present in classes.items() if present)
     return f' class="{names}"' if names else ""

@@ -45,7 +45,7 @@ class ProgressBar:
     remaining : show how many are done and the time left, too: for parts that take about the same time each
     """
 
-    _shown: ClassVar[ProgressBar | None] = None
+    _current: ClassVar[ProgressBar | None] = None
 
     def __init__(
         self, label: str, console: Console | None = None, patience: float = _PATIENCE_S, remaining: bool = False
@@ -63,7 +63,7 @@ class ProgressBar:
         self._timer.daemon = True
 
     def __enter__(self) -> Self:
-        self._around, ProgressBar._shown = ProgressBar._shown, self
+        self._around, ProgressBar._current = ProgressBar._current, self
         if self._around is not None:
             self(self._label, 0, 0)
             return self
@@ -94,7 +94,7 @@ class ProgressBar:
         return self
 
     def __exit__(self, *_: object) -> None:
-        ProgressBar._shown = self._around
+        ProgressBar._current = self._around
         if self._bar is None:
             return
         self._timer.cancel()
@@ -158,15 +158,15 @@ class RemainingTime:
         """Called by the run: ``what`` is done, ``done`` of ``total``, 0 where nobody knows how many."""
         if self._tell is None:
             return
-        planned, elapsed_s = self._seconds[self._run], time.monotonic() - self._begun
-        gone = sum(s for run, s in self._seconds.items() if run < self._run) + min(elapsed_s, planned)
+        whole_s, elapsed_s = self._seconds[self._run], time.monotonic() - self._begun
+        past_s = sum(s for run, s in self._seconds.items() if run < self._run) + min(elapsed_s, whole_s)
         total_s = sum(self._seconds.values())
-        remaining_s = total_s - gone
+        remaining_s = total_s - past_s
         words = f"{remaining_s:.0f} s left" if remaining_s < 90.0 else f"{remaining_s / 60.0:.0f} min left"
         progress = f" {done} of {total}" if total else ""
         # A terminal cuts what is longer than 76 characters: the time first, then what is done.
-        head = f"run {self._order[self._run]} of {len(self._order)}: {'end unknown' if elapsed_s > planned else words}"
-        self._tell(f"{head}, {self._name}: {label}{progress}", round(gone), round(total_s))
+        head = f"run {self._order[self._run]} of {len(self._order)}: {'end unknown' if elapsed_s > whole_s else words}"
+        self._tell(f"{head}, {self._name}: {label}{progress}", round(past_s), round(total_s))
 
 
 @contextmanager
@@ -181,4 +181,4 @@ def telling(progress: ShowProgress, remaining: bool = False) -> Iterator[Callabl
         with ProgressBar("starting", remaining=remaining) as bar:
             yield bar
     else:
-        yield progress or (lambda _what, _done, _total: None)
+        yield progress or (lambda _what, _count, _total: None)

@@ -109,8 +109,8 @@ class Quantity:
             return self.label, self.text(value), f"error not estimated; {remark}"
         if abs(value) < error:
             return self.label, "not resolved", f"below its error of {self.text(error, 2)}; {remark}"
-        shown = number_within(self.read(value), self.read(error), self.read_unit)
-        return self.label, shown, f"+- {self.text(error, 2)}; {remark}"
+        text = number_within(self.read(value), self.read(error), self.read_unit)
+        return self.label, text, f"+- {self.text(error, 2)}; {remark}"
 
 
 def named(*quantities: Quantity) -> dict[str, Quantity]:

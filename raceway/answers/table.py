@@ -139,8 +139,8 @@ class _Column:
     @property
     def least(self) -> int:
         """Signs that it needs, with its head and long texts in lines of one word each."""
-        broken = (self.head, *(() if self.whole else self.cells))
-        return max(map(len, (*_words(broken), *(self.cells if self.whole else ()))))
+        texts = (self.head, *(() if self.whole else self.cells))
+        return max(map(len, (*_words(texts), *(self.cells if self.whole else ()))))
 
 
 def _words(texts: Sequence[str]) -> list[str]:

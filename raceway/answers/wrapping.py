@@ -32,8 +32,8 @@ def lines_of(text: str, width: int) -> list[str]:
     """The text in lines of at most ``width`` signs; a single word is broken only where it is longer than a line."""
     lines: list[str] = []
     for line in text.splitlines():
-        wrapped = textwrap.wrap(fixed(line), max(width, 1), break_on_hyphens=False) or [""]
-        lines += [piece.replace(_FIXED, " ") for piece in wrapped]
+        parts = textwrap.wrap(fixed(line), max(width, 1), break_on_hyphens=False) or [""]
+        lines += [piece.replace(_FIXED, " ") for piece in parts]
     return lines
 
 

@@ -27,8 +27,8 @@ def _cache_screen(caches: ReadTables) -> RenderableType:
     rows.append(("Compliances of bodies", "", f"{total:.1f} of at most {most:.0f} MiB, in {caches['arrays_root']}"))
     arrays = sorted(caches["arrays"], key=lambda entry: -entry["used"])
     for entry in arrays[:_SHOWN]:
-        used = datetime.fromtimestamp(entry["used"]).strftime("%Y-%m-%d %H:%M")
-        remark = f"{entry['what']}; made in {entry['made_in_s']:.1f} CPU-s, used {used}"
+        last_use = datetime.fromtimestamp(entry["used"]).strftime("%Y-%m-%d %H:%M")
+        remark = f"{entry['what']}; made in {entry['made_in_s']:.1f} CPU-s, used {last_use}"
         rows.append((entry["kind"], f"{entry['bytes'] / 2**20:.2f} MiB", remark))
     if len(arrays) > _SHOWN:
         rows.append(("", "", f"the {_SHOWN} last used of {len(arrays)}; all: raceway dev cache --json; by sort:"))

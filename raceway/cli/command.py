@@ -111,10 +111,10 @@ class Command(NamedTuple):
         # Argument -> its words; several arguments of one line are parted by ``;  ``.
         lines = re.sub(r"\n\s+", " ", _sections(front)[1])
         entries = [entry for line in lines.splitlines() for entry in re.split(r";  (?=[\w, *]+ : )", line)]
-        parted = (entry.partition(" : ") for entry in entries)
+        pairs = (entry.partition(" : ") for entry in entries)
         signature, words = (
             inspect.signature(front),
-            {name.strip(): words.strip() for names, _, words in parted for name in names.split(",")},
+            {name.strip(): words.strip() for names, _, words in pairs for name in names.split(",")},
         )
         params = [
             p for p in signature.parameters.values() if p.name not in _SHARED and self.options.get(p.name, True) is not None
@@ -139,8 +139,8 @@ class Command(NamedTuple):
         for parameter in reversed(params):
             command = self._option(parameter, _kind(front, parameter), words.get(parameter.name, ""))(command)
         if "scene" in signature.parameters:
-            required = signature.parameters["scene"].default is inspect.Parameter.empty
-            scene_input = click.argument("scene", type=FILE, required=required)
+            is_required = signature.parameters["scene"].default is inspect.Parameter.empty
+            scene_input = click.argument("scene", type=FILE, required=is_required)
             if "scene" in self.options:
                 scene_input = click.option("--scene", type=FILE, metavar="SCENE", help=_option_help(words["scene"]))
             command = set_keys(scene_input(command))
@@ -169,7 +169,7 @@ class Command(NamedTuple):
                 help=text,
             )
         if "Iterable[" in kind:
-            required = parameter.default is inspect.Parameter.empty
+            is_required = parameter.default is inspect.Parameter.empty
             several = f"{text.removesuffix('.')}; repeat for more."
             of = _TYPES.get(kind.partition("Iterable[")[2].partition("]")[0], str)
             complete = scene_keys if parameter.name in OF_KEYS else None
@@ -177,7 +177,7 @@ class Command(NamedTuple):
                 *flags,
                 type=of,
                 multiple=True,
-                required=required,
+                required=is_required,
                 metavar=about.metavar,
                 help=several,
                 shell_complete=complete,
@@ -203,10 +203,10 @@ def _kind(front: Callable[..., Value], parameter: inspect.Parameter) -> str:
 
 
 def _argument(parameter: inspect.Parameter, metavar: str | None) -> Callable[[Value], Value]:
-    required = parameter.default is inspect.Parameter.empty
+    is_required = parameter.default is inspect.Parameter.empty
     kind = FILE if "Path" in str(parameter.annotation) else None
-    default: dict[str, Any] = {} if required else {"default": parameter.default}
-    return click.argument(parameter.name, type=kind, required=required, metavar=metavar, **default)
+    default: dict[str, Any] = {} if is_required else {"default": parameter.default}
+    return click.argument(parameter.name, type=kind, required=is_required, metavar=metavar, **default)
 
 
 def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:
@@ -240,9 +240,9 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     if folder is not None:
         writable(folder)
     tell_faults(registry)
-    shared = {"plugins": plugins, "kept": state_folder, "registry": registry, "pictures": folder if pictures else None}
-    arguments |= {name: value for name, value in shared.items() if name in parameters}
-    stopped = None
+    further = {"plugins": plugins, "kept": state_folder, "registry": registry, "pictures": folder if pictures else None}
+    arguments |= {name: value for name, value in further.items() if name in parameters}
+    interruption = None
     with keeping(state_folder):
         with show_progress(about.remaining) as progress:
             if "progress" in parameters:
@@ -262,13 +262,13 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
             except Interrupted as stop:
                 if stop.partial is None:
                     raise
-                answer, stopped = stop.partial, stop  # what is finished is written and shown first
+                answer, interruption = stop.partial, stop  # what is finished is written and shown first
         files: list[str] = []
-        failed = None if folder is None else attempt(lambda: answer.save(folder, pictures and stopped is None), files)
-        failed = failed or _by_flags(about, answer.failure())
-        show(answer.to_dict() if as_json else {}, as_json, failed, lambda: answer.screen(files))
-        if stopped is not None:
-            raise stopped
+        fault = None if folder is None else attempt(lambda: answer.save(folder, pictures and interruption is None), files)
+        fault = fault or _by_flags(about, answer.failure())
+        show(answer.to_dict() if as_json else {}, as_json, fault, lambda: answer.screen(files))
+        if interruption is not None:
+            raise interruption
     return 0 if answer.passed else 1
 
 

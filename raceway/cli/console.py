@@ -44,7 +44,7 @@ class Commands(click.Group):
     ) -> Any:
         words = list(sys.argv[1:] if args is None else args)
         extra["standalone_mode"] = False
-        sys.exit(_guarded(lambda: super(Commands, self).main(words, prog_name="raceway", **extra), words))
+        sys.exit(_exit_code(lambda: super(Commands, self).main(words, prog_name="raceway", **extra), words))
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         if not args and self.no_args_is_help and not ctx.resilient_parsing:
@@ -69,7 +69,7 @@ class Commands(click.Group):
         return ""
 
 
-def _guarded(command: Callable[[], object], words: list[str]) -> int:
+def _exit_code(command: Callable[[], object], words: list[str]) -> int:
     """Run a command; report what it raises; return the exit code.
 
     Parameters

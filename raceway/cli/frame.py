@@ -123,7 +123,7 @@ def tell_faults(registry: Registry) -> None:
 
 def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) -> tuple[Tables, list[Mistake]]:
     """The scene's tables with the changes, and the changes that cannot be made; files start at the scene's folder."""
-    scene_input, mistakes = _changed(scene, changes)
+    scene_input, mistakes = _with_changes(scene, changes)
     return scene_input.plain(registry), mistakes
 
 
@@ -135,17 +135,17 @@ def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
     SceneError
         With the mistakes of both.
     """
-    scene_input, mistakes = _changed(scene, changes)
+    scene_input, mistakes = _with_changes(scene, changes)
     try:
-        loaded = scene_input.scene(registry)
+        read = scene_input.scene(registry)
     except SceneError as error:
         raise SceneError([*mistakes, *error.mistakes]) from None
     if mistakes:
         raise SceneError(mistakes)
-    return loaded
+    return read
 
 
-def _changed(scene: Path, changes: tuple[str, ...]) -> tuple[Given, list[Mistake]]:
+def _with_changes(scene: Path, changes: tuple[str, ...]) -> tuple[Given, list[Mistake]]:
     from raceway.scene.inputs import as_given
 
     scene_input = as_given(scene)
@@ -165,9 +165,9 @@ def require_matplotlib(otherwise: str) -> None:
 
 def has_matplotlib(by_default: bool) -> bool:
     """Whether pictures can be drawn; says what is missing where they are no more than the default, else raises it."""
-    installed = find_spec("matplotlib") is not None
-    if not installed and not by_default:
+    present = find_spec("matplotlib") is not None
+    if not present and not by_default:
         require_matplotlib("leave out --pictures")
-    if not installed:
+    if not present:
         warn(f"no picture: it needs matplotlib, {extra('pictures')}")
-    return installed
+    return present

@@ -63,7 +63,7 @@ _IMPORTS = ("<frozen importlib._bootstrap>", "cb")
 _ENDING = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL, signal.SIGHUP: signal.SIG_DFL}
 #: The first one that arrived in this command, and whether that was said.
 _first: int | None = None
-_told = False
+_farewell_said = False
 
 
 def stopped_by() -> int | None:
@@ -73,10 +73,10 @@ def stopped_by() -> int | None:
 
 def farewell(say: Callable[[str], object]) -> int:
     """Say once what stopped the command; the exit code."""
-    global _told
+    global _farewell_said
     number = signal.SIGINT if _first is None else _first
-    if not _told:
-        _told = True
+    if not _farewell_said:
+        _farewell_said = True
         with suppress(OSError):  # a terminal that was closed
             say(f"stopped by {_words(number)}; no file is left half-written")
     return 128 + number
@@ -100,13 +100,13 @@ class Interrupts:
         self._looking = False
 
     def __enter__(self) -> Self:
-        global _first, _told
+        global _first, _farewell_said
         if threading.current_thread() is threading.main_thread():
             for number, usual in _ENDING.items():
                 if signal.getsignal(number) is usual:
                     self._before[number] = signal.signal(number, self._arrived)
             if self._before:  # not inside another one of this command
-                _first, _told = None, False
+                _first, _farewell_said = None, False
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -118,7 +118,7 @@ class Interrupts:
     def _arrived(self, number: int, frame: FrameType | None) -> None:
         global _first
         looking, self._looking = self._looking, False
-        if looking and (_told or _unwinding()):
+        if looking and (_farewell_said or _unwinding()):
             self._later(_LOOK_S, self._look, number)
             return
         if _drops_exceptions(frame):
@@ -140,7 +140,7 @@ class Interrupts:
 
     def _look(self, number: signal.Signals) -> None:
         """See in the main thread whether the interruption is still on its way."""
-        if not _told:
+        if not _farewell_said:
             self._looking = True
             _thread.interrupt_main(number)
 
@@ -159,7 +159,7 @@ def end(code: int) -> NoReturn:
     """End the process: whatever ends is in order, and a signal from here on ends it without a word of Python's own."""
 
     def leave(number: int, _frame: FrameType | None) -> None:
-        if not _told:
+        if not _farewell_said:
             with suppress(OSError):
                 os.write(2, f"stopped by {_words(number)}\n".encode())
         os._exit(128 + number)

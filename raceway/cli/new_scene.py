@@ -100,7 +100,7 @@ def _lines(table: str, keys: dict[str, tuple[Any, bool]], registry: Registry) ->
         classes.append(options_class(PLUGIN_TABLES[table][0], kind, registry))
         yield f'kind = "{kind}"  # {words}'
     fields = {field.name: field for cls in classes for field in attrs.fields(cls)}
-    for key, (value, commented) in keys.items():
+    for key, (value, as_comment) in keys.items():
         about = fields[key].metadata
         unit = f"{about['unit']}: " if about["unit"] else ""
-        yield f"{'# ' if commented else ''}{key} = {json.dumps(value)}  # {unit}{about['help']}"
+        yield f"{'# ' if as_comment else ''}{key} = {json.dumps(value)}  # {unit}{about['help']}"

@@ -48,8 +48,8 @@ class _Planned(Answer):
             *([("memory", f"{memory / 2**20:.3g} MiB", "at the peak")] if memory else []),
             ("wall time", *wall_time),
             ("time step", step, f"{plan['predicted_steps']} steps"),
-            *([_derived(plan, "steps_per_turn", "steps per turn")] if plan["time_step_s"] else []),
-            _derived(plan, "spin_speed", "spin speed", "r/min", 30.0 / pi),
+            *([_derived_row(plan, "steps_per_turn", "steps per turn")] if plan["time_step_s"] else []),
+            _derived_row(plan, "spin_speed", "spin speed", "r/min", 30.0 / pi),
         ]
         yield sections([*size, *([] if plan["mesh"] is None else _mesh_rows(plan["mesh"]))])
         yield from (_reasons("Included", plan["kept"]), _reasons("Left out", plan["left_out"]))
@@ -60,15 +60,15 @@ def plan(scene: Scene, plugins: Iterable[str | Path] = ()) -> _Planned:
 
     Computes nothing. Every mistake is listed with key, value, rule and nearest valid choice.
     """
-    checked = check(scene, plugins=plugins)
-    if checked.mistakes:
-        raise SceneError(checked.mistakes)
-    for text in checked.warnings:
+    answer = check(scene, plugins=plugins)
+    if answer.mistakes:
+        raise SceneError(answer.mistakes)
+    for text in answer.warnings:
         warnings.warn(text, stacklevel=2)
     return _Planned(scene.title, make_plan(scene))
 
 
-def _derived(plan: ReadTables, name: str, words: str, unit: str = "", units: float = 1.0) -> Row:
+def _derived_row(plan: ReadTables, name: str, words: str, unit: str = "", units: float = 1.0) -> Row:
     """A derived quantity, in so many ``units`` for one of its own, and what decides it."""
     return (words, number(units * plan["derived"][name]["value"], unit, 5), plan["derived"][name]["why"])
 

@@ -50,13 +50,13 @@ def plugins(plugins: tuple[Path, ...], as_json: bool) -> int:
         ]
         head = {word: getattr(entry, word) for word in ("kind", "name", "distribution", "version")}
         rows.append({**head, "options": options})
-    broken = faults(registry)
+    errors = faults(registry)
     if as_json:
-        print_json({"plugins": rows, "errors": [{"path": None, "value": None, "message": text} for text in broken]})
-        return 2 if broken else 0
+        print_json({"plugins": rows, "errors": [{"path": None, "value": None, "message": text} for text in errors]})
+        return 2 if errors else 0
     show(rows, False, None, lambda: _plugins_screen(rows))
-    if broken:
-        raise RacewayError("\n  ".join(broken))
+    if errors:
+        raise RacewayError("\n  ".join(errors))
     return 0
 
 

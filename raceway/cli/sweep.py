@@ -70,7 +70,7 @@ class _Swept(Answer):
                 ],
             }
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         with open_store(self.store) as store:
             return store.title, [(state, str(count), "points") for state, count in store.status().items()]
 
@@ -249,14 +249,14 @@ def sweep(
     folder = writable(RESULTS / f"{slug(str(tables['title']))}-sweep" if store is None else Path(store))
     if (resume or retry_failed) and not exists(folder):
         warnings.warn(f"`{folder}` holds no sweep to resume: a new one is started", stacklevel=2)
-    prepared = prepare(tables, points_swept, folder, plugins, resume or retry_failed or plan, quantities)
+    task = prepare(tables, points_swept, folder, plugins, resume or retry_failed or plan, quantities)
     if plan:
-        return workload(prepared, pool)
-    return _answer(prepared, pool, force, retry_failed, scheduler, csv, choice, progress)
+        return workload(task, pool)
+    return _answer(task, pool, force, retry_failed, scheduler, csv, choice, progress)
 
 
 def _answer(
-    prepared: Sweep, pool: Executor, force: bool, retry_failed: bool, scheduler: str | None, csv: bool, choice: _Choice,
+    task: Sweep, pool: Executor, force: bool, retry_failed: bool, scheduler: str | None, csv: bool, choice: _Choice,
     progress: ShowProgress,
 ) -> Answer:  # fmt: skip
     """What the store holds once the points are computed, and its files.
@@ -268,15 +268,15 @@ def _answer(
     """
     from raceway.points.sweep import fill_store, refuse_large
 
-    refuse_large(prepared, pool, force)
+    refuse_large(task, pool, force)
     if choice.value is not None:
-        choice.foresee(prepared.design, prepared.facts["scene"])
-    folder, stop = prepared.store, None
+        choice.foresee(task.design, task.facts["scene"])
+    folder, stop = task.store, None
     try:
         with telling(progress, remaining=True) as report:
             if scheduler:
                 report(f"waiting for {scheduler}", 0, 0)
-            fill_store(prepared, pool, retry_failed, report).close()
+            fill_store(task, pool, retry_failed, report).close()
     except (KeyboardInterrupt, RacewayError) as why:
         if not (folder / POINTS).is_file():
             raise

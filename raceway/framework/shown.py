@@ -24,16 +24,16 @@ class Shown:
 
     __slots__ = ()
 
-    def _shown(self) -> tuple[str, Sequence[Fact]]:
+    def _facts(self) -> tuple[str, Sequence[Fact]]:
         """Title, whose first line is bold, and facts in the order of their weight: the one duty of who shows itself."""
         raise NotImplementedError
 
     def __repr__(self) -> str:
-        title, facts = self._shown()
+        title, facts = self._facts()
         return facts_text(title, facts)
 
     def _repr_html_(self) -> str:
-        title, facts = self._shown()
+        title, facts = self._facts()
         return facts_html(title, facts)
 
 

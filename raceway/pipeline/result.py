@@ -328,7 +328,7 @@ class Result(Answer):
 
         return plot(self, what, ax)
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         return self.title, facts(self)
 
     def to_dict(self) -> Tables:

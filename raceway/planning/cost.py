@@ -69,9 +69,9 @@ def compiled_motion(problem: Problem, balls: Balls, motion: Motion, times: Times
     # A steady orbit is the answer, or a transient starts on it.
     orbit = 0.0
     if method.inertial:
-        searched = problem.tilts and problem.excitation.sense == 0
-        searched = searched and problem.excitation.amplitude_n > _SEARCH_FROM * abs(problem.load.axial)
-        orbit = _SEARCH_S if searched else _ORBIT_S
+        with_search = problem.tilts and problem.excitation.sense == 0
+        with_search = with_search and problem.excitation.amplitude_n > _SEARCH_FROM * abs(problem.load.axial)
+        orbit = _SEARCH_S if with_search else _ORBIT_S
     return times.search * orbit + samples * share * times.sample + steps * each
 
 
@@ -86,9 +86,9 @@ def column_time(plan: ScenePlan, moving: bool) -> float:
     seconds = _FILM_S if said(problem.contact.law, "elementwise") else _STATIC_S
     seconds += 0.0 if problem.scene.heat is None else _HEAT_S
     if moving:
-        damped = _DAMPED if plan.keeps("contact damping") else 1.0
-        fixed = problem.excitation is not None and problem.excitation.sense == 0
-        seconds += _TURNING_S * damped * (_FIXED if fixed else 1.0)
+        damping_factor = _DAMPED if plan.keeps("contact damping") else 1.0
+        in_one_direction = problem.excitation is not None and problem.excitation.sense == 0
+        seconds += _TURNING_S * damping_factor * (_FIXED if in_one_direction else 1.0)
     return seconds * problem.bearing.balls_in_all / 12.0 * slowness()
 
 
@@ -111,8 +111,8 @@ def timed(repeats: int = REPEATS) -> float:
 
 def _seconds() -> float:
     """Of the logistic map in floating-point numbers of Python: scalar work like that of the compiled loops."""
-    begun, x, total = time.process_time(), 0.5, 0.0
+    start, x, total = time.process_time(), 0.5, 0.0
     for _ in range(_ITERATIONS):
         x = 3.7 * x * (1.0 - x)
         total += x
-    return time.process_time() - begun
+    return time.process_time() - start

@@ -30,10 +30,10 @@ class Decisions:
         self.kept: list[Part] = []
         self.left_out: list[Part] = []
 
-    def decide(self, needed: bool, part: str, why: str, why_not: str = "") -> bool:
+    def decide(self, need: bool, part: str, why: str, why_not: str = "") -> bool:
         """Keep a part or leave it out, with ``why`` for both unless ``why_not`` differs; whether it is included."""
-        stays = needed or part in self.force
-        (self.kept if stays else self.left_out).append(Part(part, why if needed else "forced" if stays else why_not or why))
+        stays = need or part in self.force
+        (self.kept if stays else self.left_out).append(Part(part, why if need else "forced" if stays else why_not or why))
         return stays
 
     def keeps(self, name: str) -> bool:
@@ -94,10 +94,10 @@ def decide_balls(problem: Problem, parts: Decisions) -> Balls:
         part = "change of centrifugal and gyroscopic terms with the speed"
         parts.decide(problem.spin_changes, part, problem.why("spin_changes"))
     rates = problem.excitation is not None and (problem.integrator.method.inertial or not problem.recorded)
-    damped = problem.contact.dashpot > 0.0 or problem.time_constant > 0.0
-    why_not = "no motion or no rates: a series of equilibria" if damped else problem.said("contact.damping", "0")
+    with_damping = problem.contact.dashpot > 0.0 or problem.time_constant > 0.0
+    why_not = "no motion or no rates: a series of equilibria" if with_damping else problem.said("contact.damping", "0")
     why = "contact.damping is set" if problem.contact.dashpot > 0.0 else f"c = tau k, tau = {problem.time_constant:.3g} s"
-    parts.decide(damped and rates, "contact damping", why, why_not)
+    parts.decide(with_damping and rates, "contact damping", why, why_not)
     rubbing = problem.contact.friction > 0.0
     why_not = problem.said("contact.friction", "0")
     if rubbing and not problem.recorded and problem.traits.every_node:

@@ -93,7 +93,7 @@ class ScenePlan(Shown):
             "mesh": self.mesh,
         }
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         step = "static" if self.time_step_s is None else f"{self.predicted_steps} steps of {self.time_step_s:.3g} s"
         time = "time not known before the mesh is read" if self.at_least else duration(self.predicted_wall_s)
         head: list[Fact] = [
@@ -220,7 +220,7 @@ class Check(Shown):
     def __bool__(self) -> bool:
         return self.ok
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         count = len(self.mistakes)
         title = "no mistakes" if self.ok else f"{count} mistake{'' if count == 1 else 's'}"
         rows = [

@@ -98,8 +98,8 @@ class Problem(SceneTables):
 
     def why(self, quantity: str) -> str:
         """What decides a derived quantity: a key of the scene, a default, a plug-in."""
-        derived: Derived[object] = getattr(Problem, quantity)
-        return derived.reasoned(self)[1]
+        rule: Derived[object] = getattr(Problem, quantity)
+        return rule.reasoned(self)[1]
 
     def derived(self) -> Tables:
         """``value`` and ``why`` of each derived quantity."""
@@ -412,7 +412,7 @@ GROWTH: tuple[Rule[Problem], ...] = (
 )  # fmt: skip
 
 
-def _decided(problem: Problem) -> Problem:
+def _with_hypotheses(problem: Problem) -> Problem:
     """The problem with a hypothesis for each key of [kinematics] that is 'auto', and why: what can be computed acts.
 
     Notes
@@ -424,31 +424,31 @@ def _decided(problem: Problem) -> Problem:
         "gyroscopic": ("traction", "both races carry them within friction", MOMENTS, "none"),
         "ring_growth": ("with_shaft", f"ring and shaft grow together, {fit}", GROWTH, False),
     }
-    chosen, reasons = dict[str, Any](), dict[str, str]()
+    choice, reasons = dict[str, Any](), dict[str, str]()
     for key, (value, why, rules, off) in choices.items():
-        chosen[key] = now = getattr(problem.kinematics, key)
+        choice[key] = now = getattr(problem.kinematics, key)
         if now == "auto":
-            chosen[key], words = value, ""
-            tried = attrs.evolve(problem, kinematics=with_values(problem.kinematics, **chosen))
+            choice[key], words = value, ""
+            trial = attrs.evolve(problem, kinematics=with_values(problem.kinematics, **choice))
             if not some(problem.spin_speed):
                 words = "nothing turns"
             elif key == "gyroscopic" and problem.contact.friction > 0.0:
                 words = "contact.friction: contacts that stick along the grooves carry them"
             else:
-                faults = attrs.evolve(at_row(tried, 0), points=()).body_kind.faults()
-                refused = [fault.message for fault in faults if fault.path == f"kinematics.{key}"]
-                words = next(iter([*(text for _, text in speaking(rules, tried)), *refused]), "")
-            chosen[key] = off if words else value
-        shown = chosen[key] if isinstance(chosen[key], str) else str(chosen[key]).lower()
-        reasons[key] = f"kinematics.{key} is {shown}" + (f" by 'auto': {words or why}" if now == "auto" else "")
-    return attrs.evolve(problem, kinematics=with_values(problem.kinematics, **chosen), hypotheses_why=reasons)
+                faults = attrs.evolve(at_row(trial, 0), points=()).body_kind.faults()
+                messages = [fault.message for fault in faults if fault.path == f"kinematics.{key}"]
+                words = next(iter([*(text for _, text in speaking(rules, trial)), *messages]), "")
+            choice[key] = off if words else value
+        word = choice[key] if isinstance(choice[key], str) else str(choice[key]).lower()
+        reasons[key] = f"kinematics.{key} is {word}" + (f" by 'auto': {words or why}" if now == "auto" else "")
+    return attrs.evolve(problem, kinematics=with_values(problem.kinematics, **choice), hypotheses_why=reasons)
 
 
 def resolve(scene: Scene) -> Problem:
     """What a scene asks for; pure."""
     tables = {table.name: getattr(scene, table.name) for table in attrs.fields(SceneTables)}
     tables["contact"], tables["lubricant"] = lubricated(scene.contact, scene.lubricant)
-    problem = _decided(Problem(scene=scene, **tables))
+    problem = _with_hypotheses(Problem(scene=scene, **tables))
     if scene.integrator.kind != AutoIntegrator.name:
         return problem
     why = problem.unsteady or next((words for _, words in speaking(_TRANSIENT, problem)), "")
@@ -465,8 +465,8 @@ def damped_step_limit(limit: float, time_constant: float) -> float:
     ``Ring.damped_time_step`` for one mode: with w = 2 / limit and the damping ratio z = tau w / 2 = tau / limit it is
     limit (sqrt(1 + 4 z^2) - 2 z).
     """
-    doubled = 2.0 * time_constant / limit
-    return limit * (sqrt(1.0 + doubled**2) - doubled)
+    ratio = 2.0 * time_constant / limit
+    return limit * (sqrt(1.0 + ratio**2) - ratio)
 
 
 def stable_steps_per_turn(period: float, limit: float) -> int:
@@ -510,12 +510,12 @@ def fits(turns: int, steps_per_turn: int, count: int, inertial: bool = True) -> 
 
 def refuse_memory(problem: Problem, turns: int, steps_per_turn: int, count: int) -> None:
     """Records that will not fit are refused before anything is computed."""
-    needed = record_bytes(turns, steps_per_turn, count, problem.integrator.method.inertial)
-    if needed > _MEMORY_LIMIT:
+    need = record_bytes(turns, steps_per_turn, count, problem.integrator.method.inertial)
+    if need > _MEMORY_LIMIT:
         raise SceneError.at(
             "integrator.turns",
             problem.integrator.turns,
-            f"the record of {turns} turns would take {needed / 2**30:.1f} GiB, above {_MEMORY_LIMIT / 2**30:.0f} GiB: take "
+            f"the record of {turns} turns would take {need / 2**30:.1f} GiB, above {_MEMORY_LIMIT / 2**30:.0f} GiB: take "
             "fewer turns, or steps_per_turn = 360 or a multiple of it",
         )
 

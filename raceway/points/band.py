@@ -191,7 +191,7 @@ class Band(Answer):
             sentences.append(f"indices beyond 0 and 1 by more than {_ROUGH:g}: too few samples, use more --samples")
         return sentences
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         rows = [
             (
                 name,

@@ -203,7 +203,7 @@ class Followed(Answer):
 
         return draw(self.to_dict())
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         ends = (
             [
                 (word, f"{row.parameter:.6g}", f"K {1e-6 * row.stiffness:.4g} N/µm")

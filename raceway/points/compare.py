@@ -125,7 +125,7 @@ class Comparison(Answer, Findings):
         quantity = next(iter(self.quantities)) if quantity is None else member("quantity", quantity, self.quantities)
         return draw_on(self, quantity, ax)
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         names, (first, about) = _short_names(self.axes), next(iter(self.quantities.items()))
         label = about.symbol
         changes = [

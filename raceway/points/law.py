@@ -229,7 +229,7 @@ class LawCurves(Answer):
         if loop.opens:
             yield "the contact opens on the way"
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         c, loop = self.contact, self.cycle
         return (
             f"{self.law}, {c.race} contact of ball {c.ball}\n{self.title}",

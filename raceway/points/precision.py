@@ -277,7 +277,7 @@ class Precision(Answer):
         put_beside(panel, labels)
         return panel
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         reference = self.references[self.base]
         facts: list[Fact] = [("reference", f"{reference.bound:.1g}", f"relative bound; {reference.how}")]
         for threshold, index in self.cheapest(self.base).items():

@@ -104,7 +104,7 @@ class Sensitivities(Answer):
         rows = {row.key.path: row for row in self.rows}
         return rows[member("path", path, rows)]
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         first = next(iter(self.values))
         facts = [
             (row.key.path, f"{row.influence[first]:+.3g} %" if row.influence else "", f"{row.derivatives[first]:.4g}")

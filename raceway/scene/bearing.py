@@ -211,8 +211,8 @@ class Bearing:
             geometry["radial_clearance"] = None
         if not {"ball_diameter", "pitch_diameter"}.isdisjoint(geometry):
             # Dimensions of the set's bearing belong to its balls.
-            lost = ("bore", "outer_diameter", "width", "shoulder_height", "inner_profile", "outer_profile")
-            geometry = {**dict.fromkeys((*lost, *RATINGS)), **geometry}
+            without = ("bore", "outer_diameter", "width", "shoulder_height", "inner_profile", "outer_profile")
+            geometry = {**dict.fromkeys((*without, *RATINGS)), **geometry}
         if row is not None and row.preset is not None:
             geometry["preset"] = row.preset
         plain = {"arrangement": "single", "row": (), "preload": 0.0, "second_preload": None, "row_distance": None}
@@ -228,10 +228,10 @@ class Bearing:
             return
         fitting = 2.0 * distance * (1.0 - cos(radians(angle)))
         if abs(fitting - clearance) > 1e-3 * distance:
-            computed = degrees(acos(1.0 - clearance / (2.0 * distance)))
+            by_clearance = degrees(acos(1.0 - clearance / (2.0 * distance)))
             raise ValueError(
                 f"`radial_clearance` = {clearance:g} m and `contact_angle_deg` = {angle:g} contradict each other: that "
-                f"clearance gives {computed:.3f} deg, that angle {fitting:.4g} m. Give one of them"
+                f"clearance gives {by_clearance:.3f} deg, that angle {fitting:.4g} m. Give one of them"
             )
 
     @property

@@ -183,7 +183,7 @@ def _of_maker(name: str, maker: str) -> Preset:
     for other in catalogue().values():
         makers.add(other.maker)
         if entry is not None and (other.maker, other.size) == (maker, entry.size):
-            return other if designation is None or not entry.designation else _designated(name, other, designation)
+            return other if designation is None or not entry.designation else _with_designation(name, other, designation)
     rule = (
         f"must be one of {', '.join(sorted(filter(None, makers)))} with a bearing of the size of {name}. Leave it out, which states "
         "the spread between makers, or infer the bearing from what this one prints: `raceway catalogue --infer`"
@@ -193,16 +193,16 @@ def _of_maker(name: str, maker: str) -> Preset:
 
 @cache
 def _entry(name: str) -> Preset | None:
-    if (entry := _named(name)) is not None:
+    if (entry := _preset_named(name)) is not None:
         return entry
     designation = read_designation(name)
     if designation is None:
         return None
-    entry = next(filter(None, map(_named, designation.names)), None)
-    return None if entry is None else _designated(name, entry, designation)
+    entry = next(filter(None, map(_preset_named, designation.names)), None)
+    return None if entry is None else _with_designation(name, entry, designation)
 
 
-def _designated(name: str, entry: Preset, designation: Designation) -> Preset:
+def _with_designation(name: str, entry: Preset, designation: Designation) -> Preset:
     """A bearing of the catalogue with what a designation says of clearance, balls and tolerances."""
     facts, data = {fact.key: fact for fact in entry.facts}, entry.data
     if designation.clearance and "radial_clearance" in facts:
@@ -224,7 +224,7 @@ def _designated(name: str, entry: Preset, designation: Designation) -> Preset:
     )
 
 
-def _named(name: str) -> Preset | None:
+def _preset_named(name: str) -> Preset | None:
     """By its name in the catalogue; only the series that it begins with are read."""
     series = (stem for stem in _series_files() if name.startswith(stem.partition("_")[0]))
     return single_presets().get(name) or next(filter(None, (_series_presets(stem).get(name) for stem in series)), None)
@@ -253,9 +253,9 @@ def _facts(tables: ReadTables, prefix: str) -> list[Fact]:
     facts: list[Fact] = []
     for key, table in tables.items():
         if "value" in table:
-            inferred = bool(table.get("inferred", False))
-            scatter = table.get("scatter", _CONFORMITY if inferred and key.startswith("conformity") else None)
-            facts.append(Fact(prefix + key, table["value"], table["source"], inferred, scatter))
+            by_inference = bool(table.get("inferred", False))
+            scatter = table.get("scatter", _CONFORMITY if by_inference and key.startswith("conformity") else None)
+            facts.append(Fact(prefix + key, table["value"], table["source"], by_inference, scatter))
         else:
             facts += _facts(table, f"{prefix}{key}.")
     return facts
@@ -265,14 +265,14 @@ def _series(content: ReadTables) -> Iterator[Preset]:
     columns, same = content["columns"], _facts(content["constants"], "")
     for name, numbers in content["bearings"].items():
         row = dict(zip(content["order"], numbers, strict=True))
-        measured = [
+        columns_of = [
             Fact(key, row[key], column["source"], bool(column.get("inferred", False)), row.get(column.get("scatter")))
             for key, column in columns.items()
         ]
         title = f"{name}: {content['title']}, {1e3 * row['bore']:g} x {1e3 * row['outer_diameter']:g} x {1e3 * row['width']:g} mm"
         title += f", {row['contact_angle_deg']:g} deg" if row["contact_angle_deg"] else ""
-        printed = {key: row[key] for key in content["printed"]}
-        yield Preset(name, title, (*measured, *same), content["maker"], _uncertainty(content["uncertainty"]), printed)
+        ratings = {key: row[key] for key in content["printed"]}
+        yield Preset(name, title, (*columns_of, *same), content["maker"], _uncertainty(content["uncertainty"]), ratings)
 
 
 def found_by(pattern: str) -> list[Preset]:
@@ -320,17 +320,17 @@ def geometry_of(bearing: ReadTables, tables: ReadTables) -> Tables | None:
 
     Notes
     -----
-    ``preset`` and ``inferred`` are those of [bearing]; rows of other presets are in ``rows``, by their numbers from 0.  Of
+    ``preset`` and ``inferences`` are those of [bearing]; rows of other presets are in ``rows``, by their numbers from 0.  Of
     several presets the uncertainties are the largest.
     """
     rows = tables.get("row")
     rows = rows if isinstance(rows, list | tuple) else []
     of_all = {"maker": tables.get("maker")}
     presets_of = {k: row for k, row in enumerate(rows) if isinstance(row, dict) and "preset" in row}
-    inferred = {k: _inferred(row["preset"], {**of_all, **row}) for k, row in presets_of.items()}
-    by_row = {k: geometry for k, geometry in inferred.items() if geometry is not None}
+    inferences = {k: _inference(row["preset"], {**of_all, **row}) for k, row in presets_of.items()}
+    by_row = {k: geometry for k, geometry in inferences.items() if geometry is not None}
     # Where all rows bring presets, nothing of the table's own is left to speak of.
-    common = _inferred(bearing.get("preset"), tables) if not rows or len(inferred) < len(rows) else None
+    common = _inference(bearing.get("preset"), tables) if not rows or len(inferences) < len(rows) else None
     if common is None and not by_row:
         return None
     presets = [*([] if common is None else [common]), *by_row.values()]
@@ -365,7 +365,7 @@ def _words(part: ReadTables) -> str:
     return f"{part['why'].partition(':')[0]}: {both} ({part['remedy']})"
 
 
-def _inferred(name: object, tables: ReadTables) -> Tables | None:
+def _inference(name: object, tables: ReadTables) -> Tables | None:
     """preset, maker, inferred and uncertainties of one preset, less the keys that the user gives."""
     entry = preset_of(name, tables.get("maker"))
     if entry is None or not entry.data:

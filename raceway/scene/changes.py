@@ -31,9 +31,9 @@ def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]])
     Keys are sorted: changes in another order make the same scene, and folders are named by the title.
     """
     title = tables.get("title", name)
-    changed = ", ".join(f"{key} = {told(value)}" for key, value in sorted(dict(changes).items()) if key != "title")
-    if changed and isinstance(title, str) and title.strip():
-        title += (", " if "\n" in title else "\n") + changed
+    words = ", ".join(f"{key} = {told(value)}" for key, value in sorted(dict(changes).items()) if key != "title")
+    if words and isinstance(title, str) and title.strip():
+        title += (", " if "\n" in title else "\n") + words
     return {**tables, "title": title}
 
 
@@ -169,14 +169,14 @@ def with_number(scene: Scene, path: str, value: float) -> Scene:
 
 def with_numbers(scene: Scene, numbers: Mapping[str, float]) -> Scene:
     """The same with numbers at several keys."""
-    changed: Scene = _replaced(scene, [(_steps(path), value) for path, value in numbers.items()])
-    return changed
+    answer: Scene = _with_parts(scene, [(_steps(path), value) for path, value in numbers.items()])
+    return answer
 
 
 def with_columns(scene: Scene, columns: Mapping[str, Number]) -> Scene:
     """The scene with columns (n,) at continuous keys, which no rule looks at: one scene of n operating points."""
-    changed: Scene = _replaced(scene, [(_steps(path), column) for path, column in columns.items()], with_values)
-    return changed
+    answer: Scene = _with_parts(scene, [(_steps(path), column) for path, column in columns.items()], with_values)
+    return answer
 
 
 def _steps(path: str) -> list[str | int]:
@@ -217,7 +217,7 @@ def _leaves(value: object, path: str, unit: str, words: str) -> Iterator[Key]:
             yield from _leaves(element, f"{path}[{k}]", unit, words)
 
 
-def _replaced(part: Any, changes: _Changes, replace: Callable[..., object] = attrs.evolve) -> Any:
+def _with_parts(part: Any, changes: _Changes, replace: Callable[..., object] = attrs.evolve) -> Any:
     """A table, or an element of one, with values at paths into it."""
     if not all(steps for steps, _ in changes):
         return changes[0][1]
@@ -229,7 +229,7 @@ def _replaced(part: Any, changes: _Changes, replace: Callable[..., object] = att
             step, further = next(name for name, field in fields.items() if "plugin" in field.metadata), steps
         groups.setdefault(step, []).append((further, value))
     if not fields:
-        return tuple(_replaced(value, groups[k], replace) if k in groups else value for k, value in enumerate(part))
+        return tuple(_with_parts(value, groups[k], replace) if k in groups else value for k, value in enumerate(part))
     return replace(
-        part, **{str(name): _replaced(getattr(part, str(name)), group, replace) for name, group in groups.items()}
+        part, **{str(name): _with_parts(getattr(part, str(name)), group, replace) for name, group in groups.items()}
     )

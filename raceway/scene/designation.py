@@ -77,8 +77,10 @@ def read_designation(text: str) -> Designation | None:
     words = "; ".join(_words(part, group) for part, group in parts)
     words = f"{text}: {words}" if words else ""
     if not names:
-        known = "angle" in values
-        words = f"{values['angle']} deg is not in the catalogue" if known else "C is 15, AC or A5 25, A 30 deg: say which"
+        has_angle = "angle" in values
+        words = (
+            f"{values['angle']} deg is not in the catalogue" if has_angle else "C is 15, AC or A5 25, A 30 deg: say which"
+        )
     clearance, tolerance, ceramic = (str(values.get(group, "")) for group in ("clearance", "tolerance", "ceramic"))
     return Designation(names, clearance, tolerance, ceramic, words)
 
@@ -92,12 +94,12 @@ def unlisted(text: str) -> str:
 def _parts(text: str, kind: str) -> list[tuple[str, str]]:
     """(part, name of its group) in their order; what the table does not have with an empty name."""
     groups = {name: group for name, group in _groups().items() if "parts" in group and kind in group.get("kinds", [kind])}
-    known = {part: name for name, group in reversed(groups.items()) for part in group["parts"]}
+    names = {part: name for name, group in reversed(groups.items()) for part in group["parts"]}
     parts = list[tuple[str, str]]()
     for chunk in filter(None, re.split(f"[{re.escape(_SEPARATORS)}]+", text)):
         remainder, inside = chunk, list[tuple[str, str]]()
-        while part := max((part for part in known if remainder.startswith(part)), key=len, default=""):
-            inside.append((part, known[part]))
+        while part := max((part for part in names if remainder.startswith(part)), key=len, default=""):
+            inside.append((part, names[part]))
             remainder = remainder[len(part) :]
         parts += [(chunk, "")] if remainder else inside
     return parts

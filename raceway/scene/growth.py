@@ -194,9 +194,9 @@ class RunningBearing:
 
     def centre_distance(self, row: int) -> tuple[float, float]:
         """Distance of a row's groove centres at which balls touch both races, and its radial part [m]."""
-        b, grown = self.bearing.of_rows[row], self.grooves[row]
+        b, groove = self.bearing.of_rows[row], self.grooves[row]
         distance = (b.conformity_inner + b.conformity_outer - 1.0) * b.ball_diameter
-        return distance + grown.inner + grown.outer, distance * cos(b.contact_angle) + grown.radial
+        return distance + groove.inner + groove.outer, distance * cos(b.contact_angle) + groove.radial
 
     def free_angle(self, row: int) -> float:
         """Free contact angle of a row [rad]; 0 where nothing is left of its clearance."""
@@ -343,38 +343,38 @@ def _grown_rows(b: RunningBearing) -> range:
     return range(len(b.bearing.rows) if b.mounting.changes and not any(speaking(_FITS, b)) else 0)
 
 
-def _closed(b: RunningBearing) -> list[int]:
+def _closed_rows(b: RunningBearing) -> list[int]:
     """Rows that temperatures and fits close."""
     rooms = map(b.centre_distance, _grown_rows(b))
     return [row for row, (distance, radial) in enumerate(rooms) if distance <= max(radial, 0.0)]
 
 
-def _opened(b: RunningBearing) -> list[int]:
+def _open_rows(b: RunningBearing) -> list[int]:
     """Rows that they open: balls would touch beyond the grooves."""
     edges = [min(groove_edge(row), 0.5 * pi) for row in b.bearing.of_rows]
-    return [row for row in _grown_rows(b) if not _closed(b) and b.free_angle(row) >= edges[row]]
+    return [row for row in _grown_rows(b) if not _closed_rows(b) and b.free_angle(row) >= edges[row]]
 
 
 def _cause(b: RunningBearing) -> str:
     """The key that does most to the grooves' room: the temperature furthest from the others, brought to their mean, or a fit."""
-    row = (_closed(b) or _opened(b))[0]
+    row = (_closed_rows(b) or _open_rows(b))[0]
     warm = {name: value for name, value in attrs.asdict(b.mounting).items() if name.endswith("_temperature")}
     mean = sum(warm.values()) / len(warm)
     furthest = max(warm, key=lambda name: abs(warm[name] - mean))
     mean_of_others = (sum(warm.values()) - warm[furthest]) / (len(warm) - 1)
     without = {furthest: mean_of_others, "shaft_interference": 0.0, "housing_interference": 0.0}
 
-    def room(**changed: Any) -> float:
-        mounting = attrs.evolve(b.mounting, **changed)
-        grown = attrs.evolve(b, mounting=mounting).grooves[row]
-        return grown.inner + grown.outer - grown.radial
+    def room(**differences: Any) -> float:
+        mounting = attrs.evolve(b.mounting, **differences)
+        groove = attrs.evolve(b, mounting=mounting).grooves[row]
+        return groove.inner + groove.outer - groove.radial
 
     now = room()
     return "mounting." + max(without, key=lambda name: abs(room(**{name: without[name]}) - now))
 
 
 def _closed_words(b: RunningBearing) -> str:
-    distance, radial = b.centre_distance(_closed(b)[0])
+    distance, radial = b.centre_distance(_closed_rows(b)[0])
     return (
         f"temperatures and fits close the bearing: its grooves leave {1e6 * (radial - max(distance, 0.0)):.3g} µm too little room for "
         "the balls, which would be squeezed all around at a contact angle of 0. Use smaller differences of temperature, a looser "
@@ -383,7 +383,7 @@ def _closed_words(b: RunningBearing) -> str:
 
 
 def _opened_words(b: RunningBearing) -> str:
-    row = _opened(b)[0]
+    row = _open_rows(b)[0]
     angle, edge = degrees(b.free_angle(row)), degrees(groove_edge(b.bearing.of_rows[row]))
     return (
         f"temperatures and fits open the bearing: balls would touch at {min(angle, 90.0):.3g} deg, beyond the groove's edge at "
@@ -394,8 +394,8 @@ def _opened_words(b: RunningBearing) -> str:
 #: Fits, and growth that leaves no bearing.
 SIZES: tuple[Rule[RunningBearing], ...] = (
     *_FITS,
-    Rule(_cause, _closed, _closed_words),
-    Rule(_cause, _opened, _opened_words),
+    Rule(_cause, _closed_rows, _closed_words),
+    Rule(_cause, _open_rows, _opened_words),
 )
 
 
@@ -403,10 +403,10 @@ SIZES: tuple[Rule[RunningBearing], ...] = (
 _FINEST_TOLERANCE = 0.3e-6
 
 
-def _loose_words(b: RunningBearing, where: str, seat: str, grown: str) -> str:
+def _loose_words(b: RunningBearing, where: str, seat: str, growth: str) -> str:
     least, fit = b.least_interference(seat), getattr(b.mounting, f"{seat}_interference")
     return (
-        f"the {where} {seat} by {-1e6 * least:.3g} µm, on the diameter: it has grown {1e6 * (fit - least):.3g} µm {grown}, by speed "
+        f"the {where} {seat} by {-1e6 * least:.3g} µm, on the diameter: it has grown {1e6 * (fit - least):.3g} µm {growth}, by speed "
         f"({30.0 * b.spin_speed / pi:.6g} r/min) and temperature, and `mounting.{seat}_interference` is {1e6 * fit:g} µm. It is "
         "computed as a free ring that stays centred"
     )

@@ -71,9 +71,9 @@ class Given:
             else:
                 rule = 'must be text such as "load.axial=400", or a mapping such as {"load.axial": 400}'
                 raise SceneError.at("change", change, rule)
-        merged = attrs.evolve(self, changes=(*self.changes, *key_values))
-        merged.merged()
-        return merged
+        answer = attrs.evolve(self, changes=(*self.changes, *key_values))
+        answer.merged()
+        return answer
 
     def plain(self, registry: Registry) -> Tables:
         """The tables with all changes, numbers in the keys' units, the title that states it, and files that start at the folder.

@@ -208,12 +208,12 @@ class Oil:
 
         speed, load = pairs.entraining_speed, pairs.load
         assert speed is not None and load is not None, "contacts at the running speed have them"
-        computed = film(
+        height = film(
             self.dynamic_viscosity * speed, self.alpha, 2.0 * pairs.contact_modulus, pairs.radius_along, pairs.radius_across,
             load, pairs.ellipticity,
         )  # fmt: skip
         share = self.film_share(pairs)
-        return attrs.evolve(computed, central=share * computed.central, minimum=share * computed.minimum)
+        return attrs.evolve(height, central=share * height.central, minimum=share * height.minimum)
 
 
 @attrs.frozen

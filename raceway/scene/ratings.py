@@ -59,15 +59,15 @@ def load_ratings(bearing: Bearing) -> LoadRatings:
     return LoadRatings(row, modulus, dynamic, dynamic_from, static, static_from)
 
 
-def _rating(bearing: Bearing, key: str, computed: Number, formula: Callable[[BallRow], Number]) -> tuple[Number, str]:
-    """A rating [N] and where it comes from; ``computed`` from the geometry by a formula."""
+def _rating(bearing: Bearing, key: str, by_geometry: Number, formula: Callable[[BallRow], Number]) -> tuple[Number, str]:
+    """A rating [N] and where it comes from; ``by_geometry`` from the geometry by a formula."""
     value = getattr(bearing, key)
     if value is not None:
         return value, "key"
     entry = preset_of(bearing.preset, bearing.maker)
     if entry is None or key not in entry.ratings:
-        return computed, "geometry"
-    return entry.ratings[key] * (computed / formula(_catalogue_row(entry.name, bearing.maker))), "catalogue"
+        return by_geometry, "geometry"
+    return entry.ratings[key] * (by_geometry / formula(_catalogue_row(entry.name, bearing.maker))), "catalogue"
 
 
 def _row(numbers: Mapping[str, Number]) -> BallRow:

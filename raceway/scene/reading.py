@@ -43,7 +43,7 @@ def check_requirements(table: object, registry: Registry, mistakes: list[Mistake
     if not isinstance(table, Mapping):
         mistakes.append(Mistake("requires", table, 'must be a table of names and versions: [requires] and NAME = ">=1.2"'))
         return
-    installed = _installed(registry)
+    distributions = _distributions(registry)
     for name, specifier in table.items():
         path = f"requires.{name}"
         if not isinstance(specifier, str):
@@ -56,12 +56,12 @@ def check_requirements(table: object, registry: Registry, mistakes: list[Mistake
                 Mistake(path, specifier, 'is not a version specifier; write for instance ">=1.2" or ">=1.2, <2"')
             )
             continue
-        why = _unmet(name, specifier, versions, installed, registry)
+        why = _unmet(name, specifier, versions, distributions, registry)
         if why:
             mistakes.append(Mistake(path, specifier, why))
 
 
-def _installed(registry: Registry) -> dict[str, tuple[str, str]]:
+def _distributions(registry: Registry) -> dict[str, tuple[str, str]]:
     """Normalised name -> (distribution, version), for distributions, entry points and plug-ins' names."""
     from packaging.utils import canonicalize_name
 
@@ -77,7 +77,7 @@ def _installed(registry: Registry) -> dict[str, tuple[str, str]]:
 
 
 def _unmet(
-    name: str, specifier: str, versions: SpecifierSet, installed: dict[str, tuple[str, str]], registry: Registry
+    name: str, specifier: str, versions: SpecifierSet, distributions: dict[str, tuple[str, str]], registry: Registry
 ) -> str:
     """Fault of one requirement, and the way out; empty when it is met."""
     from packaging.utils import canonicalize_name
@@ -86,7 +86,7 @@ def _unmet(
     key = canonicalize_name(name)
     full = f"{name}{specifier}"
     command = f"pip install '{full}'" if specifier else f"pip install {name}"
-    if key not in installed:
+    if key not in distributions:
         for fault in registry.faults:
             if key in {canonicalize_name(word.strip("()")) for word in fault.source.split()}:
                 return f"is installed, but could not be loaded: {fault.reason}"
@@ -97,15 +97,15 @@ def _unmet(
             ):
                 return f"is not loaded: the environment variable {variable} leaves it out"
         # A hint only for what is nearly the same: many distributions begin with the same word.
-        close = difflib.get_close_matches(key, list(installed), n=1, cutoff=0.85)
+        close = difflib.get_close_matches(key, list(distributions), n=1, cutoff=0.85)
         like = f" (did you mean '{close[0]}'?)" if close else ""
         return f"is required by this scene and not installed{like}. Install it: {command}"
-    distribution, version = installed[key]
+    distribution, version = distributions[key]
     try:
-        met = not specifier or versions.contains(Version(version), prereleases=True)
+        fits = not specifier or versions.contains(Version(version), prereleases=True)
     except InvalidVersion:
         return f"'{distribution}' has no version that can be compared ('{version}')"
-    if not met:
+    if not fits:
         upgrade = f"pip install --upgrade '{distribution}{specifier}'"
         return f"this scene requires {specifier}, installed is {distribution} {version}. Install a fitting one: {upgrade}"
     return ""
@@ -122,27 +122,27 @@ def _with_preset(table: Tables, mistakes: list[Mistake]) -> Tables:
     except SceneError as error:
         mistakes += error.mistakes
         return {**_PLACEHOLDER, **table, "preset": None}
-    merged = {**values, **table}
+    whole = {**values, **table}
     if "radial_clearance" in table and "contact_angle_deg" not in table:
-        merged["contact_angle_deg"] = 0.0
+        whole["contact_angle_deg"] = 0.0
     if "contact_angle_deg" in table and "radial_clearance" not in table:
-        merged.pop("radial_clearance", None)
-    return _with_materials(merged, values, mistakes)
+        whole.pop("radial_clearance", None)
+    return _with_materials(whole, values, mistakes)
 
 
 def _with_materials(table: Tables, preset: Tables, mistakes: list[Mistake], name: str = "bearing") -> Tables:
     """The table [bearing] or [mounting] with the numbers of named materials, and those of the preset below what the user says."""
-    resolved = dict(table)
+    whole = dict(table)
     for part in ("rings", "balls", "shaft_material", "housing_material"):
         body = table.get(part)
         body = {"material": body} if isinstance(body, str) and name == "mounting" else body
         if isinstance(body, dict):
             try:
-                resolved[part] = with_material(body, f"{name}.{part}", preset.get(part, {}))
+                whole[part] = with_material(body, f"{name}.{part}", preset.get(part, {}))
             except SceneError as error:
                 mistakes += error.mistakes
-                resolved[part] = {**preset.get(part, {}), **body, "material": None}
-    return resolved
+                whole[part] = {**preset.get(part, {}), **body, "material": None}
+    return whole
 
 
 def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
@@ -150,7 +150,7 @@ def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
     rows = table.get("row")
     if not isinstance(rows, list | tuple):
         return table
-    resolved = []
+    rows_whole = []
     for k, row in enumerate(rows):
         name = row.get("preset") if isinstance(row, dict) else None
         if name is not None:
@@ -164,16 +164,16 @@ def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
                 row = {key: value for key, value in row.items() if key != "preset"}
             else:
                 row = {**{key: value for key, value in values.items() if key in GEOMETRY}, **row}
-        resolved.append(row)
+        rows_whole.append(row)
     if (
         rows
         and "preset" not in table
         and "ball_diameter" not in table
-        and isinstance(resolved[0], dict)
-        and "preset" in resolved[0]
+        and isinstance(rows_whole[0], dict)
+        and "preset" in rows_whole[0]
     ):
-        table = {**table, "preset": resolved[0]["preset"]}
-    return {**table, "row": resolved}
+        table = {**table, "preset": rows_whole[0]["preset"]}
+    return {**table, "row": rows_whole}
 
 
 #: Stands in for a preset that does not exist, so that the other keys of the table are still checked.
@@ -212,8 +212,8 @@ def scene_from_dict(
     """
     registry = registry or default_registry()
     mistakes: list[Mistake] = []
-    title, checked = _known_tables(tables, registry, mistakes)
-    plain = numbers_only(checked, registry)
+    title, content = _known_tables(tables, registry, mistakes)
+    plain = numbers_only(content, registry)
     if "bearing" in plain:
         plain["bearing"] = _with_preset(plain["bearing"], mistakes)
     if "mounting" in plain:
@@ -228,14 +228,14 @@ def scene_from_dict(
     acts = any(fits.get(key, 0.0) > 0.0 for key in ("shaft_interference", "housing_interference"))
     if entry is not None and entry.tolerance_class and isinstance(classes, dict) and acts:
         plain["tolerances"] = {"class": entry.tolerance_class, **classes}
-    started = _at_inlet(plain)
+    at_inlet = _at_inlet(plain)
     parts: Tables = {}
     for name, cls in TABLES.items():
         if name in OPTIONAL_TABLES and name not in plain:
             parts[name] = None
         elif name not in PLUGIN_TABLES and (name != "bearing" or name in plain):
-            parts[name] = structure(started.get(name, {}), cls, name, mistakes)
-    if started is not plain:
+            parts[name] = structure(at_inlet.get(name, {}), cls, name, mistakes)
+    if at_inlet is not plain:
         mistakes[:] = [_of_inlet(mistake) for mistake in mistakes]
     for name, (kind, default) in PLUGIN_TABLES.items():
         parts[name] = None
@@ -249,7 +249,7 @@ def scene_from_dict(
         mistakes += lubricant_mistakes(parts["contact"].law, parts["lubricant"])
     if mistakes:
         raise SceneError(mistakes)
-    scene = Scene(title=title, source=plain, given=Given(checked), **parts)
+    scene = Scene(title=title, source=plain, given=Given(content), **parts)
     if "tolerances" in plain:
         from raceway.scene.tolerance import check_tolerances
 

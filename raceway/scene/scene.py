@@ -148,7 +148,7 @@ class Scene(SceneTables, Shown):
 
         return as_scene(self, tables)
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         """What was said, a table a row; defaults and a preset's numbers are left out."""
         from raceway.scene.inputs import as_given, leaves
 

@@ -67,8 +67,8 @@ def _table(cls: type) -> Tables:
 
 def _plugin_table(name: str, kind: str, default: str | None, registry: Registry) -> Tables:
     """One branch for each installed plug-in, told apart by ``kind``."""
-    shadowed = registry.shadowed()
-    usable = {e.name: e.plugin for e in registry.of_kind(kind) if (e.kind, e.name) not in shadowed}
+    hidden_names = registry.shadowed()
+    usable = {e.name: e.plugin for e in registry.of_kind(kind) if (e.kind, e.name) not in hidden_names}
     if default == AutoIntegrator.name:
         usable = {default: AutoIntegrator, **usable}
     branches = []
@@ -117,13 +117,13 @@ def key_schema(field: Any) -> Tables:
     return schema
 
 
-def _forms(kind: Any, limits: dict[str, float], measured: bool) -> list[Tables]:
+def _forms(kind: Any, limits: dict[str, float], with_unit: bool) -> list[Tables]:
     """What a value may look like; one that is measured may be text with a unit, whose limits the loader alone checks."""
     if (table := table_of_list(kind)) is not None:
         return [{"type": "array", "items": _table(table)}]
     if get_origin(kind) is tuple:
         items = get_args(kind)
-        inner = _forms(items[0], {}, measured)
+        inner = _forms(items[0], {}, with_unit)
         array: Tables = {"type": "array", "items": inner[0] if len(inner) == 1 else {"anyOf": inner}}
         return [array if items[-1] is Ellipsis else {**array, "minItems": len(items), "maxItems": len(items)}]
     if attrs.has(kind):  # a material, or its name alone
@@ -131,4 +131,4 @@ def _forms(kind: Any, limits: dict[str, float], measured: bool) -> list[Tables]:
     if kind not in _TYPES:
         return [{}]
     form = {"type": _TYPES[kind], **(limits if kind in (float, int) else {})}
-    return [form, {"type": "string", "pattern": PATTERN}] if measured and kind is float else [form]
+    return [form, {"type": "string", "pattern": PATTERN}] if with_unit and kind is float else [form]

@@ -170,8 +170,8 @@ def check_set(bearing: Bearing) -> None:
     without = [k for k, row in enumerate(bearing.row) if bearing.arrangement == "single" and row.direction is None]
     if without:
         raise ValueError(f"`row[{without[0]}]` has no `direction`: give each row '+' or '-', or the set an `arrangement`")
-    placed = bool(bearing.row) and all(row.position is not None for row in bearing.row)
-    if len(bearing.signs) > 1 and not placed and bearing.row_distance is None and bearing.width is None:
+    with_positions = bool(bearing.row) and all(row.position is not None for row in bearing.row)
+    if len(bearing.signs) > 1 and not with_positions and bearing.row_distance is None and bearing.width is None:
         raise ValueError(
             f"`arrangement` = '{bearing.arrangement}' needs `row_distance`, or the bearing's `width`, or a `position` in each row"
         )

@@ -179,7 +179,7 @@ def _converter() -> cattrs.Converter:
 
     def factory(cls: type) -> Callable[[object, object], object]:
         attrs.resolve_types(cls)
-        overrides: Tables = {a.name: override(struct_hook=_checked(converter, a)) for a in attrs.fields(cls) if a.init}
+        overrides: Tables = {a.name: override(struct_hook=_with_rule(converter, a)) for a in attrs.fields(cls) if a.init}
         inner: Any = make_dict_structure_fn(
             cls, converter, _cattrs_forbid_extra_keys=True, _cattrs_detailed_validation=True, **overrides
         )
@@ -195,7 +195,7 @@ def _converter() -> cattrs.Converter:
     return converter
 
 
-def _checked(converter: cattrs.Converter, attribute: Any) -> Any:
+def _with_rule(converter: cattrs.Converter, attribute: Any) -> Any:
     """Type first, then the field's own rule, so that every field of a table is looked at."""
 
     def hook(value: object, _type: object) -> object:
@@ -231,8 +231,8 @@ def structure(table: object, cls: type[T], path: str, mistakes: list[Mistake]) -
 def _mistakes(error: BaseException, value: object, cls: object, path: str) -> list[Mistake]:
     if isinstance(error, cattrs.errors.ClassValidationError):
         mistakes: list[Mistake] = []
-        noted, plain = error.group_exceptions()
-        for inner, note in noted:
+        notes, plain = error.group_exceptions()
+        for inner, note in notes:
             here = value.get(note.name) if isinstance(value, dict) else None
             where = f"{path}.{note.name}" if path else note.name
             if isinstance(inner, KeyError):
@@ -259,8 +259,8 @@ def _mistakes(error: BaseException, value: object, cls: object, path: str) -> li
         ]
     if isinstance(error, cattrs.errors.BaseValidationError):
         return [m for inner in error.exceptions for m in _mistakes(inner, value, cls, path)]
-    shown = None if isinstance(value, dict) else value
-    return [Mistake(path, shown, str(error))]
+    plain_value = None if isinstance(value, dict) else value
+    return [Mistake(path, plain_value, str(error))]
 
 
 def _describe(cls: Any, name: str) -> str:

@@ -164,10 +164,10 @@ class Contact:
 
     def __attrs_post_init__(self) -> None:
         ways = {"damping": self.damping, "time_constant": self.time_constant, "loss_factor": self.loss_factor}
-        stated = [f"`{name}`" for name, value in ways.items() if value]
-        if len(stated) > 1:
+        names = [f"`{name}`" for name, value in ways.items() if value]
+        if len(names) > 1:
             raise ValueError(
-                f"{' and '.join(stated)} exclude each other: each is the damping of the contacts. Give one of them"
+                f"{' and '.join(names)} exclude each other: each is the damping of the contacts. Give one of them"
             )
 
     @property

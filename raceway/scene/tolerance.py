@@ -58,9 +58,9 @@ def _ranges_of(scene: Scene, key: str, name: str) -> dict[str, tuple[float, floa
         No such name; a size that the class's table does not have; a class that changes nothing, or that leaves a ring loose.
     """
     if key == "balls":
-        variation = 1e-6 * _BALLS[_known(key, name, [*_BALLS])]
+        variation = 1e-6 * _BALLS[_member(key, name, [*_BALLS])]
         return {"bearing.ball_diameter": (0.5 * variation, 0.5 * variation)}
-    column = _known(key, name, [*_BORE, *_ALSO])
+    column = _member(key, name, [*_BORE, *_ALSO])
     column, warm, ranges = _ALSO.get(column, column), scene.mounting, {}
     if warm.shaft_interference > 0.0:
         bore = _deviation(key, name, "bore", scene.bearing.bore, _EDGES, _BORE[column])
@@ -83,7 +83,7 @@ def _ranges_of(scene: Scene, key: str, name: str) -> dict[str, tuple[float, floa
     return ranges
 
 
-def _known(key: str, name: str, names: list[str]) -> str:
+def _member(key: str, name: str, names: list[str]) -> str:
     if name not in names:
         raise SceneError.at(key, name, f"must be one of {', '.join(names)}{nearest(name, names)}")
     return name
@@ -131,7 +131,7 @@ def tolerances_of(scene: Scene, texts: Iterable[str] | Mapping[str, str]) -> tup
     for path, text in pairs:
         if path in NAMES:
             ranges = _ranges_of(scene, path, str(text).strip())
-            of_text = [_checked(scene, key_of(scene, fit), str(text), *ends) for fit, ends in ranges.items()]
+            of_text = [_within_rule(scene, key_of(scene, fit), str(text), *ends) for fit, ends in ranges.items()]
         else:
             key, text = key_of(scene, path), str(text)
             if match := _SYMMETRIC.fullmatch(text):
@@ -140,7 +140,7 @@ def tolerances_of(scene: Scene, texts: Iterable[str] | Mapping[str, str]) -> tup
                 above, below = (_size(key, part, text) for part in match.groups())
             else:
                 raise SceneError.at(key.path, text, _FORM)
-            of_text = [_checked(scene, key, text, below, above)]
+            of_text = [_within_rule(scene, key, text, below, above)]
         for tolerance in of_text:
             if tolerance.key.path in tolerances:
                 raise SceneError.at(tolerance.key.path, text, "has two tolerances: give one")
@@ -169,7 +169,7 @@ def _split(text: str) -> tuple[str, str]:
     return path.strip(), width
 
 
-def _checked(scene: Scene, key: Key, text: str, below: float, above: float) -> Tolerance:
+def _within_rule(scene: Scene, key: Key, text: str, below: float, above: float) -> Tolerance:
     """From ``below`` to ``above`` the number at a key."""
     low, high = key.value - below, key.value + above
     if not low < high:

@@ -139,27 +139,25 @@ def number_in(unit: str, text: str) -> float:
         No number, an unknown unit, or one of another dimension; the sentence says what is accepted.
     """
     match = _QUANTITY.fullmatch(text)
-    expected = (
-        f"a number in {unit}, or text with its unit: {_OFFERED.get(unit, unit)}" if unit else "a number without a unit"
-    )
+    rule = f"a number in {unit}, or text with its unit: {_OFFERED.get(unit, unit)}" if unit else "a number without a unit"
     if match is None:
-        raise ValueError(f"must be a number, not a string: {expected}")
+        raise ValueError(f"must be a number, not a string: {rule}")
     number, written_unit = match.groups()
     if not written_unit:
-        raise ValueError(f"must be a number, not a string without a unit: {expected}")
+        raise ValueError(f"must be a number, not a string without a unit: {rule}")
     if written_unit == unit:
-        return _rounded(Fraction(1), number)
+        return _nearest_float(Fraction(1), number)
     try:
         source, target = unit_of(written_unit), unit_of(unit)
     except ValueError as why:
-        raise ValueError(f"{why}: must be {expected}") from None
+        raise ValueError(f"{why}: must be {rule}") from None
     if source.dimension != target.dimension:
-        raise ValueError(f"'{written_unit}' is not a unit of this key: must be {expected}")
+        raise ValueError(f"'{written_unit}' is not a unit of this key: must be {rule}")
     ratio = source.factor / target.factor
-    return _rounded(ratio, number) * math.pi ** (source.pi - target.pi)
+    return _nearest_float(ratio, number) * math.pi ** (source.pi - target.pi)
 
 
-def _rounded(ratio: Fraction, number: str) -> float:
+def _nearest_float(ratio: Fraction, number: str) -> float:
     if len(number) > _LONGEST or abs(int(number.lower().partition("e")[2] or 0)) > _LONGEST:
         raise ValueError("must be a finite number")
     try:

@@ -22,7 +22,7 @@ def unused(scene: Scene) -> tuple[str, ...]:
     return tuple(f"`{path}` has no effect: {why}" for path, why in _idle(scene))
 
 
-def without_inherited(base: ReadTables, changed: ReadTables, changed_keys: Collection[str], registry: Registry) -> Tables:
+def without_inherited(base: ReadTables, tables: ReadTables, changed_keys: Collection[str], registry: Registry) -> Tables:
     """Changed tables without the keys of the base that lose their effect by the change: nobody said those for this scene.
 
     Parameters
@@ -34,16 +34,16 @@ def without_inherited(base: ReadTables, changed: ReadTables, changed_keys: Colle
     A key that has no effect in the base either is the base's own mistake, and stays.  Tables that make no scene are left as
     they are: what reads them says what is wrong.
     """
-    result = dict(changed)
+    result = dict(tables)
     try:
-        lost = {path for path, _ in _idle(scene_from_dict(changed, registry))} - set(changed_keys)
+        idle = {path for path, _ in _idle(scene_from_dict(tables, registry))} - set(changed_keys)
     except RacewayError:
         return result
-    lost = {path for path in lost if not any(path.startswith(f"{key}.") for key in changed_keys)}
-    if lost:
+    idle = {path for path in idle if not any(path.startswith(f"{key}.") for key in changed_keys)}
+    if idle:
         with suppress(RacewayError):  # a base that is complete with the changes only has no mistakes of its own to tell of
-            lost -= {path for path, _ in _idle(scene_from_dict(base, registry))}
-    for path in lost:
+            idle -= {path for path, _ in _idle(scene_from_dict(base, registry))}
+    for path in idle:
         name, _, key = path.partition(".")
         if isinstance(result.get(name), dict):
             result[name] = {word: value for word, value in result[name].items() if word != key}
@@ -59,7 +59,7 @@ def _idle(scene: Scene) -> list[tuple[str, str]]:
         "identifier": scene.identifier.method,
         "excitation": scene.excitation,
     }
-    written = {f"{table}.{key}" for table, keys in scene.source.items() if isinstance(keys, dict) for key in keys}
+    given_keys = {f"{table}.{key}" for table, keys in scene.source.items() if isinstance(keys, dict) for key in keys}
     options = {"kind", *(field.name for field in attrs.fields(type(scene.bodies)))}
     foreign = [
         (f"bodies.{key}", f"bodies.kind is '{scene.bodies.name}'")
@@ -70,20 +70,20 @@ def _idle(scene: Scene) -> list[tuple[str, str]]:
         (f"{table}.{option}", why) for table, plugin in plugins.items() for option, why in unused_options(plugin).items()
     ]
     core = [*speaking(_RULES, scene), *unused_with_bodies(scene)]
-    return [*by_plugins, *((key, why) for key, why in core if key in written), *foreign]
+    return [*by_plugins, *((key, why) for key, why in core if key in given_keys), *foreign]
 
 
-def _recorded(s: Scene) -> bool:
+def _has_record(s: Scene) -> bool:
     return s.excitation is not None and "record" in s.identifier.method.needs
 
 
 def _steady(s: Scene) -> bool:
-    return _recorded(s) and s.integrator.method.steady
+    return _has_record(s) and s.integrator.method.steady
 
 
 def _slow(s: Scene) -> bool:
     """Whether the motion is a series of equilibria."""
-    return _recorded(s) and not s.integrator.method.inertial
+    return _has_record(s) and not s.integrator.method.inertial
 
 
 def _turns(s: Scene) -> bool:
@@ -100,7 +100,7 @@ _ROTOR = ("rotor.mass", "rotor.transverse_inertia", "rotor.polar_inertia", "roto
 _RULES: tuple[Rule[Scene], ...] = (
     Rule(_INTEGRATION, lambda s: s.excitation is None, "the scene has no [excitation]"),
     Rule(
-        _INTEGRATION, lambda s: s.excitation is not None and not _recorded(s),
+        _INTEGRATION, lambda s: s.excitation is not None and not _has_record(s),
         lambda s: f"identifier '{s.identifier.kind}' needs no recorded motion",
     ),
     Rule(

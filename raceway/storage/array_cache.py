@@ -73,13 +73,13 @@ def kept(
         _warn_refused(fault)
         return _contiguous(make())
     path = folder() / f"{_key(kind, inputs, tuple(sources))}{_SUFFIX}"
-    stored = _read(path)
-    if stored is not None:
-        return stored
+    arrays = _read(path)
+    if arrays is not None:
+        return arrays
     start = time.process_time()
-    computed = _contiguous(make())
-    _write(path, kind, label, computed, time.process_time() - start)
-    return computed
+    arrays_made = _contiguous(make())
+    _write(path, kind, label, arrays_made, time.process_time() - start)
+    return arrays_made
 
 
 @attrs.frozen
@@ -214,7 +214,7 @@ def _digest(key: str, arrays: Tables, parts: Iterable[memoryview | bytes]) -> st
     return digest.hexdigest()[:32]
 
 
-def _padded(arrays: Mapping[str, np.ndarray]) -> Iterator[memoryview | bytes]:
+def _chunks(arrays: Mapping[str, np.ndarray]) -> Iterator[memoryview | bytes]:
     """Bytes of the arrays, without copies."""
     for array in arrays.values():
         if array.nbytes:
@@ -224,7 +224,7 @@ def _padded(arrays: Mapping[str, np.ndarray]) -> Iterator[memoryview | bytes]:
 
 def _write(path: Path, kind: str, label: str, arrays: Mapping[str, np.ndarray], seconds: float) -> None:
     words = {name: [array.dtype.str, list(array.shape)] for name, array in arrays.items()}
-    digest = _digest(path.stem, words, _padded(arrays))
+    digest = _digest(path.stem, words, _chunks(arrays))
     head = {"kind": kind, "what": label, "seconds": round(seconds, 3), "digest": digest, "arrays": words}
     line = json.dumps(head).encode()
     scratch = path.with_name(f".{path.stem}.{os.getpid()}.{uuid4().hex[:8]}")
@@ -235,7 +235,7 @@ def _write(path: Path, kind: str, label: str, arrays: Mapping[str, np.ndarray], 
             raise OSError(errno.ENOSPC, f"{size / 2**30:.2g} GiB to write, {free / 2**30:.2g} GiB free on the disk")
         with scratch.open("wb") as file:
             file.write(line + b" " * (-(len(line) + 1) % _ALIGNED) + b"\n")
-            for part in _padded(arrays):
+            for part in _chunks(arrays):
                 file.write(part)
         scratch.replace(path)
     except OSError as why:

@@ -64,8 +64,8 @@ class Heading:
         if self.fields is None:
             return rows
         split = ([*_words(text, self.sign), *[""] * self.most] for text in rows)
-        picked = (("\t".join([words[k] for k in self.fields]), any(words[self.most :])) for words in split)
-        return [text if more else part for text, (part, more) in zip(rows, picked, strict=True)]
+        choice = (("\t".join([words[k] for k in self.fields]), any(words[self.most :])) for words in split)
+        return [text if more else part for text, (part, more) in zip(rows, choice, strict=True)]
 
     def with_times(self, values: np.ndarray) -> np.ndarray:
         """Rows (n, k) with times [s] of the clock in the first column: of counted samples, or of times that were rounded."""
@@ -99,33 +99,33 @@ def heading_of(path: Path, encoding: str) -> Heading:
     """
     with open(path, encoding=encoding) as stream:
         lines = [text[:_LONGEST] for text in islice(stream, _LINES)]
-    filled = [k for k, text in enumerate(lines) if text.strip()]
-    if not filled:
+    full = [k for k, text in enumerate(lines) if text.strip()]
+    if not full:
         raise ValueError("is empty: a header line and samples are needed")
-    tables = [max(_runs(lines, filled, sign)) for sign in "\t;, "]
+    tables = [max(_runs(lines, full, sign)) for sign in "\t;, "]
     rank, first, fields = max(
         tables, key=lambda table: table[0][:3]
     )  # the first of equal ones: blanks stand beside commas, too
     sign = "\t;, "[tables.index((rank, first, fields))]
     if not fields:
-        sign = next((sign for sign in "\t;" if sign in lines[filled[0]].strip()), ",")
-        return Heading(_words(lines[filled[0]], sign), filled[0] + 1, filled[0] + 1, sign)
-    begin = filled.index(first)
-    rows = [_words(lines[k], sign) for k in filled[begin : begin + rank[3]]]
-    for k in reversed(filled[:begin]):  # rows without a sample, or with a number amid their text
+        sign = next((sign for sign in "\t;" if sign in lines[full[0]].strip()), ",")
+        return Heading(_words(lines[full[0]], sign), full[0] + 1, full[0] + 1, sign)
+    begin = full.index(first)
+    rows = [_words(lines[k], sign) for k in full[begin : begin + rank[3]]]
+    for k in reversed(full[:begin]):  # rows without a sample, or with a number amid their text
         numbers = _numbers(words := _words(lines[k], sign), sign)
         if fields[0] not in numbers and len(numbers) < max(sum(map(bool, words)), 1):
             break
         first = k
-    above, most = [k for k in filled if k < first], max(map(len, rows))
+    above, most = [k for k in full if k < first], max(map(len, rows))
     names, units, line = _names(lines, above, sign, fields, most)
     texts = [k for k in range(most) if k not in fields and any(words[k : k + 1] > [""] for words in rows)]
     notes = tuple(f"the text of '{_name(names, units, k)}' is left out" for k in texts)
     if line is not None and any(bare := names[most:]):
         notes = (*notes, f"no numbers stand under '{', '.join(filter(None, bare))}' of line {line + 1}")
-    picked = None if sign != " " and fields == tuple(range(most)) else fields
+    choice = None if sign != " " and fields == tuple(range(most)) else fields
     header = [_name(names, units, k) for k in fields]
-    heading = Heading(header, (first if line is None else line) + 1, first, sign, picked, most, notes)
+    heading = Heading(header, (first if line is None else line) + 1, first, sign, choice, most, notes)
     beside = [f"{name};{unit}" for name, unit in list(zip(names, units, strict=False))[fields[-1] + 1 :]]
     text = "\n".join([lines[k] for k in above if k != line] + beside)
     return _with_clock(
@@ -135,13 +135,13 @@ def heading_of(path: Path, encoding: str) -> Heading:
     )
 
 
-def _runs(lines: Sequence[str], filled: Sequence[int], sign: str) -> list[tuple[_Rank, int, tuple[int, ...]]]:
+def _runs(lines: Sequence[str], full: Sequence[int], sign: str) -> list[tuple[_Rank, int, tuple[int, ...]]]:
     """Consecutive lines with numbers in the same fields: what makes a table of them, the first line, the fields.
 
     Columns, several rows, words that are numbers, many rows.
     """
     runs = []
-    for fields, group in groupby(filled, key=lambda k: _numbers(_words(lines[k], sign), sign)):
+    for fields, group in groupby(full, key=lambda k: _numbers(_words(lines[k], sign), sign)):
         among = list(group)
         share = len(fields) / max(sum(map(bool, _words(lines[among[0]], sign))), 1)
         runs.append(((len(fields) > 1, len(among) >= _SEVERAL, share, len(among)), among[0], fields))
@@ -168,8 +168,8 @@ def _names(
             units = words if k == above[-1] else units
             continue
         numbers = [word for word in here if is_numeral(word) or not re.search(r"[^\W\d_]", word)]
-        counted = units and lines[k].strip()[0] not in _MARKS and all(word.isdigit() for word in numbers)
-        if (not numbers or counted) and here[0] not in numbers:
+        with_counts = units and lines[k].strip()[0] not in _MARKS and all(word.isdigit() for word in numbers)
+        if (not numbers or with_counts) and here[0] not in numbers:
             return words, units, k
     return ["" if _is_unit(word) else word for word in units], units, None
 
@@ -197,18 +197,18 @@ def _with_clock(heading: Heading, preamble: str, begin: Sequence[float]) -> Head
         raise ValueError(f"line {heading.line}: each channel has its own times: save one column of times for all channels")
     if (dimension := re.search(r"(?m)^X_Dimension\W+(?!Time)(\w+)", preamble)) is not None:
         raise ValueError(f"X_Dimension is {dimension[1]}: a record over time is needed. Save the signals instead")
-    found = _CLOCK.search(preamble.lower())
+    clock = _CLOCK.search(preamble.lower())
     if times and preamble:
         name = header[times[0]]
         if not _TIME.sub(r"\g<unit>", name):
             header = [*header[: times[0]], "time (s)", *header[times[0] + 1 :]]
             notes = (*notes, f"'{name}' is read as seconds: no unit stands beside it")
         return attrs.evolve(heading, header=header, clock=times[0], notes=notes)
-    size = float(found["size"].replace(",", ".")) if found and not times else 0.0
-    if found is None or not size:
+    size = float(clock["size"].replace(",", ".")) if clock and not times else 0.0
+    if clock is None or not size:
         return heading
     interval = (
-        1.0 / size / {"m": 1e6}.get(found["unit"], _PARTS[found["unit"]]) if found["rate"] else size * _PARTS[found["unit"]]
+        1.0 / size / {"m": 1e6}.get(clock["unit"], _PARTS[clock["unit"]]) if clock["rate"] else size * _PARTS[clock["unit"]]
     )
     apart = [after - before for before, after in pairwise(begin)]
     if apart and all(abs(step - interval) < 0.5 * interval for step in apart):

@@ -22,7 +22,7 @@ def allowed_bytes() -> float:
 def available_bytes() -> float:
     """What is left of it [B]: pages of the file cache that the system gives back are not in use."""
     own, resident = _own()
-    return max(min(_machine("MemAvailable"), *(limit - used for limit, used in _groups()), own - resident), 0.0)
+    return max(min(_machine("MemAvailable"), *(limit - usage for limit, usage in _groups()), own - resident), 0.0)
 
 
 def _machine(entry: str) -> float:
@@ -42,13 +42,13 @@ def _groups() -> list[tuple[float, float]]:
             _, kinds, name = line.split(":", 2)
             if kinds and "memory" not in kinds.split(","):
                 continue
-            root, (limit, used, idle) = (_GROUPS / "memory", _V1) if kinds else (_GROUPS, _V2)
+            root, (limit, usage, idle) = (_GROUPS / "memory", _V1) if kinds else (_GROUPS, _V2)
             place = root / name.strip("/")
             for group in (place, *place.parents):
                 with suppress(OSError, ValueError):  # no such file, or "max"
                     most = float((group / limit).read_text())
                     stat = dict(entry.split() for entry in (group / "memory.stat").read_text().splitlines())
-                    groups.append((most, float((group / used).read_text()) - float(stat.get(idle, 0.0))))
+                    groups.append((most, float((group / usage).read_text()) - float(stat.get(idle, 0.0))))
     return groups
 
 

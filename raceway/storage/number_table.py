@@ -95,9 +95,9 @@ def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTabl
                     for text, number in zip(rows, numbers, strict=True):
                         marks += "".join(mark for mark in ",." if mark in text and mark not in marks)
                         if len(marks) > 1:
-                            shown = text.strip()[:_SHOWN]
+                            begin = text.strip()[:_SHOWN]
                             raise ValueError(
-                                f"line {number}: commas and points in the file's numbers ({shown}): write one decimal sign only"
+                                f"line {number}: commas and points in the file's numbers ({begin}): write one decimal sign only"
                             )
                     rows, marks = [text.replace(",", ".") for text in rows] if marks == "," else rows, marks
                 end = count + len(rows)
@@ -146,11 +146,11 @@ def _parts(stream: TextIO, line: int) -> Iterator[tuple[list[str], np.ndarray]]:
     while lines := stream.readlines(_PART):
         numbers = np.arange(line + 1, line + 1 + len(lines))
         line += len(lines)
-        filled = [text for text in lines if text.strip()]
-        if len(filled) < len(lines):
+        texts = [text for text in lines if text.strip()]
+        if len(texts) < len(lines):
             numbers = numbers[[bool(text.strip()) for text in lines]]
-        if filled:
-            yield filled, numbers
+        if texts:
+            yield texts, numbers
 
 
 def _values(rows: list[str], numbers: np.ndarray, width: int, sign: str) -> np.ndarray:
@@ -165,10 +165,10 @@ def _values(rows: list[str], numbers: np.ndarray, width: int, sign: str) -> np.n
         pass
     table = []
     for text, number in zip(rows, numbers, strict=True):
-        words, shown = next(csv.reader([text], delimiter=sign)), text.strip()[:_SHOWN]
+        words, begin = next(csv.reader([text], delimiter=sign)), text.strip()[:_SHOWN]
         if len(words) != width or not all(map(is_numeral, words)):
-            raise ValueError(f"line {number}: {width} numbers are needed, found {shown!r}")
+            raise ValueError(f"line {number}: {width} numbers are needed, found {begin!r}")
         table.append([float(word) for word in words])
         if not all(abs(value) < NONE for value in table[-1]):
-            raise ValueError(f"line {number}: a sample is missing ({shown}): cut the record there")
+            raise ValueError(f"line {number}: a sample is missing ({begin}): cut the record there")
     return np.array(table)

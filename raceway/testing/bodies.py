@@ -165,7 +165,7 @@ def _is_key(scene: Scene, path: str) -> bool:
     }
 
 
-def _unbalanced(model: Model, q: np.ndarray, ball: np.ndarray) -> float:
+def _force_imbalance(model: Model, q: np.ndarray, ball: np.ndarray) -> float:
     """What is left of the loads on the free coordinates at a state (5,), (Z, k), over all forces."""
     from raceway.core.ring.kernels.layout import CAGE
 
@@ -190,7 +190,7 @@ def _nothing_built() -> Iterator[None]:
         del Bearing.__new__
 
 
-def _refused(scene: Scene) -> bool:
+def _is_refused(scene: Scene) -> bool:
     """Whether the plan refuses a scene."""
     try:
         make_plan(scene)
@@ -206,7 +206,7 @@ class BodiesSuite(Suite):
 
     @duty("faults(problem): a list of Mistakes with a key and a remedy, none for its example; nothing is built")
     def test_faults(self, bodies: BodiesKind) -> str:
-        registry, refused = _registry_with(bodies), []
+        registry, refusals = _registry_with(bodies), []
         with _nothing_built():
             for word, changes in {"its example": {}, **{word: changes for word, (changes, _) in _EXTRAS.items()}}.items():
                 scene = _scene_of(bodies, changes, registry)
@@ -217,8 +217,8 @@ class BodiesSuite(Suite):
                     require(_is_key(scene, fault.path), f"{word}: `{fault.path}` is no key of a scene")
                     require(len(fault.message) > 20, f"{word}: '{fault.message}' names no reason and no remedy")
                 require(changes or not faults, f"its example is refused: {'; '.join(map(str, faults))}")
-                refused += [word] if faults else []
-        return f"refused: {', '.join(refused) or 'nothing'}"
+                refusals += [word] if faults else []
+        return f"refused: {', '.join(refusals) or 'nothing'}"
 
     @duty(
         "traits, stable_step, decide, unused, cost: as the contract types them, finite, of keys that exist; nothing is built"
@@ -264,7 +264,7 @@ class BodiesSuite(Suite):
     @duty("the equilibrium balances the loads")
     def test_equilibrium(self, bodies: BodiesKind) -> str:
         model, equilibrium = settled(_scene_of(bodies))
-        unbalance = _unbalanced(model, equilibrium.displacement, equilibrium.ball)
+        unbalance = _force_imbalance(model, equilibrium.displacement, equilibrium.ball)
         require(unbalance < _BALANCE, f"{unbalance:.2g} of the loads is left")
         require(equilibrium.iterations >= 0, f"{equilibrium.iterations} iterations")
         return f"{unbalance:.1e} of the loads is left"
@@ -281,8 +281,8 @@ class BodiesSuite(Suite):
             for sign in (1.0, -1.0):
                 load = system.load + sign * size[at] * np.eye(5)[at]
                 ends.append(attrs.evolve(system, load=load).solve_equilibrium(equilibrium.displacement)[0][free])
-            moved = K @ (ends[0] - ends[1]) / (2.0 * size[at])
-            worst = max(worst, float(np.abs((moved - np.eye(len(free))[k]) * size[free] / size[at]).max()))
+            response = K @ (ends[0] - ends[1]) / (2.0 * size[at])
+            worst = max(worst, float(np.abs((response - np.eye(len(free))[k]) * size[free] / size[at]).max()))
         require(worst < _TANGENT, f"K dq differs by {worst:.2g} of the load that moves the ring by dq")
         if not system.conservative:
             return f"{worst:.1e}; no potential"
@@ -306,12 +306,12 @@ class BodiesSuite(Suite):
             model, alone = settled(with_number(scene, "load.radial[0]", load))
             require(states.status[k] == 0, f"no equilibrium under {load:g} N, where a run finds one")
             angles = bearing.contact_angles(states)
-            for found, expected in (
+            for column, number in (
                 (states.q[k], alone.displacement), (states.force[k], alone.contact_force),
                 (angles[0][k], alone.angle_inner), (angles[1][k], alone.angle_outer),
             ):  # fmt: skip
-                same = np.isnan(found) == np.isnan(expected)
-                off = np.nanmax(np.abs(found - expected), initial=0.0) / np.nanmax(np.abs(expected), initial=1e-300)
+                same = np.isnan(column) == np.isnan(number)
+                off = np.nanmax(np.abs(column - number), initial=0.0) / np.nanmax(np.abs(number), initial=1e-300)
                 require(same.all(), f"under {load:g} N other contacts are open")
                 worst = max(worst, float(off))
         require(worst < _COLUMNS, f"columns differ by {worst:.2g} from single points")
@@ -339,7 +339,7 @@ class BodiesSuite(Suite):
         shapes = [np.shape(angle) for angle in several]
         require(shapes == [(3, z)] * 2, f"the angles of three states have the shapes {shapes}, not (3, {z})")
         check_shape("over_edges() of three states", model.bearing.over_edges(model, *several, forces), (3,))
-        return _carried(model, equilibrium)
+        return _load_share(model, equilibrium)
 
     @duty("contact_ellipse, ball_columns, edge_warnings, report, warnings, mesh_error, contact_error: shapes and types")
     def test_told(self, bodies: BodiesKind) -> None:
@@ -369,21 +369,21 @@ class BodiesSuite(Suite):
     )
     def test_steps(self, bodies: BodiesKind) -> str:
         model, equilibrium = settled(_scene_of(bodies))
-        system, compiled = model.system, model.traits.compiled
+        system, has_loop = model.system, model.traits.compiled
         schedule, worst = Schedule(_OF_LIMIT * system.critical_time_step(equilibrium.stiffness), _STEPS, 1), 0.0
         for method in (Newmark(), CentralDifference(), QuasiStatic()):
             begin = model.bearing.at_rest if method.inertial else model.bearing.at_equilibrium
             start = begin(system, equilibrium.displacement, equilibrium.ball, False)
             record = integrate(method, system, start, schedule)
-            moved = record.displacement - equilibrium.displacement
-            size = float(np.abs(moved).max())
-            require(np.isfinite(moved).all() and size > 0.0, f"{method.name}: the ring does not move under the force")
-            if compiled and has_both(method):
-                stepped = integrate(FromPython(method), system, start, schedule)
-                worst = max(worst, float(np.abs(stepped.displacement - record.displacement).max()) / size)
+            motion = record.displacement - equilibrium.displacement
+            size = float(np.abs(motion).max())
+            require(np.isfinite(motion).all() and size > 0.0, f"{method.name}: the ring does not move under the force")
+            if has_loop and has_both(method):
+                from_python = integrate(FromPython(method), system, start, schedule)
+                worst = max(worst, float(np.abs(from_python.displacement - record.displacement).max()) / size)
                 # Both end their iterations at 1e-9 of all forces, of which the excitation is a small part.
                 require(worst < 1e-5, f"{method.name}: drivers differ by {worst:.2g} of the motion")
-        return f"drivers differ by {worst:.1e} of the motion" if compiled else "stepped"
+        return f"drivers differ by {worst:.1e} of the motion" if has_loop else "stepped"
 
     @duty("the same scene gives the same equilibrium to the last bit")
     def test_repeats(self, bodies: BodiesKind) -> None:
@@ -393,34 +393,34 @@ class BodiesSuite(Suite):
 
     @duty("what else a scene asks for is refused by the plan, or computed: nothing is left out in silence")
     def test_refused_or_computed(self, bodies: BodiesKind) -> str:
-        registry, computed = _registry_with(bodies), []
+        registry, names = _registry_with(bodies), []
         plain = settled(_scene_of(bodies, PLAIN, registry))[1].displacement
         for word, (changes, shows) in _EXTRAS.items():
             scene = _scene_of(bodies, changes, registry)
-            if _refused(scene) or not bodies.traits(resolve(scene)).resultants:
+            if _is_refused(scene) or not bodies.traits(resolve(scene)).resultants:
                 continue
-            computed.append(word)
+            names.append(word)
             try:
                 model, equilibrium = settled(scene)
             except RacewayError as why:
                 raise ConformityError(f"{word}: neither refused by faults() nor computed: {why}") from why
-            left_over = _unbalanced(model, equilibrium.displacement, equilibrium.ball)
+            left_over = _force_imbalance(model, equilibrium.displacement, equilibrium.ball)
             require(left_over < _BALANCE, f"{word}: {left_over:.2g} of the loads is left")
             require(shows(model, equilibrium, plain), f"{word}: changes nothing: refuse it by faults()")
-        return f"computed: {', '.join(computed) or 'nothing'}"
+        return f"computed: {', '.join(names) or 'nothing'}"
 
     @duty("a whole run ends with a stiffness, an error table and a result.json that names the kind")
     def test_run(self, bodies: BodiesKind) -> str:
         registry = _registry_with(bodies)
         result = run(_scene_of(bodies, registry=registry), registry)
-        stored = json.loads(json.dumps(result.to_dict(), allow_nan=False))
-        require(stored["scene"]["bodies"]["kind"] == bodies.name, "result.json names another kind of bodies")
-        stiffness = K.of(stored)
+        content = json.loads(json.dumps(result.to_dict(), allow_nan=False))
+        require(content["scene"]["bodies"]["kind"] == bodies.name, "result.json names another kind of bodies")
+        stiffness = K.of(content)
         require(stiffness is not None and stiffness > 0.0, f"the stiffness is {stiffness} N/m")
         return f"K = {stiffness:.4g} N/m"
 
 
-def _carried(model: Model, equilibrium: Equilibrium) -> str:
+def _load_share(model: Model, equilibrium: Equilibrium) -> str:
     """Sum of the inner races' forces against the loads on the free translations."""
     z, azimuth = model.system.ball_count, model.azimuth
     load = np.where(equilibrium.contact_force[:z] > 0.0, equilibrium.contact_force[:z], 0.0)

@@ -126,13 +126,13 @@ def drive(law: ContactLaw, n: int, nodal: bool = False, pairs: ContactPairs | No
     return _Driven(law, law.kernel(), np.ascontiguousarray(params, dtype=float))
 
 
-def _along(driven: _Driven, gaps: np.ndarray, rates: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
+def _along(kernel_run: _Driven, gaps: np.ndarray, rates: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
     """Forces (steps, n) along paths, from memory at rest, and the memory (n, m) at their end."""
     from raceway.testing.systems import along_path
 
-    state, forces = driven.rest(), np.zeros_like(gaps)
+    state, forces = kernel_run.rest(), np.zeros_like(gaps)
     paths = (np.ascontiguousarray(gaps), np.ascontiguousarray(rates))
-    along_path(driven.kernel, *paths, driven.params, dt, state, state.copy(), np.zeros((2, driven.n)), forces)
+    along_path(kernel_run.kernel, *paths, kernel_run.params, dt, state, state.copy(), np.zeros((2, kernel_run.n)), forces)
     return forces, state
 
 
@@ -152,9 +152,9 @@ class ContactLawSuite(Suite):
     def test_declaration(self, law: ContactLaw) -> None:
         check_class("contact_law", law)
         kinds = {"resultant", "nodal"}
-        declared = law.discretisations
-        require(isinstance(declared, frozenset) and declared, "`discretisations` must be a frozenset that is not empty")
-        require(declared <= kinds, f"`discretisations` = {sorted(declared)}: only {sorted(kinds)} exist")
+        names = law.discretisations
+        require(isinstance(names, frozenset) and names, "`discretisations` must be a frozenset that is not empty")
+        require(names <= kinds, f"`discretisations` = {sorted(names)}: only {sorted(kinds)} exist")
         require(type(law.state_size) is int and law.state_size >= 0, f"`state_size` = {law.state_size!r} must be 0 or more")
         require(type(law.dissipative) is bool, f"`dissipative` = {law.dissipative!r} must be True or False")
 
@@ -173,17 +173,17 @@ class ContactLawSuite(Suite):
     @duty("only a `renewed` law follows speed and load; its reach is 0 or more and vanishes with the entraining speed")
     def test_running(self, law: ContactLaw) -> str:
         """At standstill and as good as there a law is the same; 1e-15 of a speed leaves 1e-9 of any power above 0.6."""
-        renewed = said(law, "renewed")
-        require(type(renewed) is bool, f"`renewed` = {renewed!r} must be True or False")
+        renewal = said(law, "renewed")
+        require(type(renewal) is bool, f"`renewed` = {renewal!r} must be True or False")
         for name in ("reach", "report"):
-            require(renewed or not hasattr(law, name), f"{name}() is called for laws with `renewed` = True only")
+            require(renewal or not hasattr(law, name), f"{name}() is called for laws with `renewed` = True only")
         pairs = _pairs_of(law, 9)
         assert pairs.entraining_speed is not None and pairs.load is not None, "as made above"
         standstill = attrs.evolve(pairs, entraining_speed=None, load=None)
         resting, running = np.asarray(law.build(standstill)), np.asarray(law.build(pairs))
         require(resting.shape == running.shape, "build() returns another number of columns at standstill")
         require(np.isfinite(resting).all(), "build() returns values that are not finite at standstill")
-        if not renewed:
+        if not renewal:
             require(np.array_equal(resting, running), "parameters follow speed or load: say renewed = True")
             return "neither speed nor load"
         slow = attrs.evolve(pairs, entraining_speed=1e-15 * pairs.entraining_speed)
@@ -208,53 +208,53 @@ class ContactLawSuite(Suite):
 
     @duty("zero force and derivatives for gap > 0, zero force at gap = 0")
     def test_zero_outside(self, law: ContactLaw) -> None:
-        driven = drive(law, 64)
-        for state in (driven.rest(), self._reached(driven)):
+        kernel_run = drive(law, 64)
+        for state in (kernel_run.rest(), self._reached(kernel_run)):
             for rate in (-self.speed, 0.0, self.speed):
                 for gap in (0.0, 1e-300, 1e-9, self.depth, 1.0):
-                    force, d_gap, d_rate, _ = driven(gap, rate, state)
+                    force, d_gap, d_rate, _ = kernel_run(gap, rate, state)
                     require(not force.any(), f"force {np.abs(force).max():.3g} at gap {gap:g} m, rate {rate:g} m/s")
                     if gap > 0.0:
                         require(not d_gap.any() and not d_rate.any(), f"derivatives are not zero at gap {gap:g} m")
 
     @duty("the force is never negative")
     def test_never_negative(self, law: ContactLaw) -> None:
-        driven = drive(law, 4096)
+        kernel_run = drive(law, 4096)
         for speed in (1.0, 100.0):
             gap, rate = self._random(2, 4096)
             rate *= speed
-            force = driven(gap, rate, self._reached(driven))[0]
+            force = kernel_run(gap, rate, self._reached(kernel_run))[0]
             worst = int(np.argmin(force))
             require(force[worst] >= 0.0, f"force {force[worst]:.4g} at gap {gap[worst]:.3g} m, rate {rate[worst]:.3g} m/s")
 
     @duty("the force never falls as the approach grows, at any rate and memory")
     def test_monotonic(self, law: ContactLaw) -> None:
-        driven = drive(law, 16)
+        kernel_run = drive(law, 16)
         approaches = np.concatenate([np.geomspace(1e-12, 1e-8, 40), np.linspace(1e-8, self.depth, 400)])
-        for state in (driven.rest(), self._reached(driven)):
+        for state in (kernel_run.rest(), self._reached(kernel_run)):
             for rate in (-self.speed, 0.0, self.speed):
-                forces = np.array([driven(-a, rate, state)[0] for a in approaches])
+                forces = np.array([kernel_run(-a, rate, state)[0] for a in approaches])
                 fall = np.diff(forces, axis=0)
                 step, least = int(np.argmin(fall.min(axis=1))), fall.min()
                 where = f"from an approach of {approaches[step]:.4g} to {approaches[step + 1]:.4g} m"
                 require(least >= -1e-12 * forces.max(), f"{where} the force falls by {-least:.3g} at rate {rate:g} m/s")
-        require(driven(-self.depth)[0].min() > 0.0, f"no force at an approach of {self.depth:g} m")
+        require(kernel_run(-self.depth)[0].min() > 0.0, f"no force at an approach of {self.depth:g} m")
 
     @duty("d_gap and d_rate are the derivatives of the force, memory and time step held")
     def test_derivatives(self, law: ContactLaw) -> str:
         """Central differences; a point whose two sides disagree straddles a kink, which few may."""
-        driven, rng = drive(law, 2000), np.random.default_rng(3)
+        kernel_run, rng = drive(law, 2000), np.random.default_rng(3)
         kinks = 0
-        for state in (driven.rest(), self._reached(driven)):
+        for state in (kernel_run.rest(), self._reached(kernel_run)):
             for dt in (1e-5, 1e-3):
                 gap = -rng.uniform(0.002, 1.0, 2000) * self.depth
                 rate = rng.uniform(-1.0, 1.0, 2000) * self.speed
-                force, d_gap, d_rate, _ = driven(gap, rate, state, dt)
+                force, d_gap, d_rate, _ = kernel_run(gap, rate, state, dt)
                 for word, derivative, size in (("d_gap", d_gap, self.depth), ("d_rate", d_rate, self.speed)):
                     h = 1e-6 * size
                     by_gap, by_rate = (h, 0.0) if word == "d_gap" else (0.0, h)
-                    up = driven(gap + by_gap, rate + by_rate, state, dt)[0]
-                    down = driven(gap - by_gap, rate - by_rate, state, dt)[0]
+                    up = kernel_run(gap + by_gap, rate + by_rate, state, dt)[0]
+                    down = kernel_run(gap - by_gap, rate - by_rate, state, dt)[0]
                     slope = (up - down) / (2.0 * h)
                     scale = np.abs(derivative) + 1e-3 * np.abs(force).max() / size
                     bent = np.abs(up - 2.0 * force + down) / h > 1e-3 * scale
@@ -272,7 +272,7 @@ class ContactLawSuite(Suite):
     def test_closed_cycle(self, law: ContactLaw) -> str:
         """Cycles that leave contact and cycles that do not, slow and fast, some with a second harmonic."""
         n, steps, turns = 6, 400, 3
-        driven = drive(law, n)
+        kernel_run = drive(law, n)
         phase = 2.0 * np.pi * np.arange(steps * turns + 1) / steps
         shares = [[0.5, 0.0, 0.8, 0.3, 0.6, -0.2], [0.4, 0.9, 0.1, 0.6, 0.2, 0.7], [0.0, 0.0, 0.1, 0.1, 0.3, 0.2]]
         mean, first, second = self.depth * np.array(shares)[:, None, :]
@@ -281,16 +281,16 @@ class ContactLawSuite(Suite):
         largest = 0.0
         for frequency in (1.0, 100.0, 400.0):
             w = 2.0 * np.pi * frequency
-            forces, _ = _along(driven, -approach, -slope * w, 1.0 / (frequency * steps))
+            forces, _ = _along(kernel_run, -approach, -slope * w, 1.0 / (frequency * steps))
             # Trapezoids in the approach: for a law without rate or memory the way back cancels the way in exactly.
             work = 0.5 * (forces[1:] + forces[:-1]) * np.diff(approach, axis=0)
             size = np.abs(work).sum(axis=0) / turns + 1e-300
-            lost = work.reshape(turns, steps, n).sum(axis=1) / size
-            worst = lost[1:].min()
+            losses = work.reshape(turns, steps, n).sum(axis=1) / size
+            worst = losses[1:].min()
             # Quadrature of 400 steps: a dissipating law's loss is known to about 1e-4 of the energy that passes.
-            allowed = 1e-4 if law.dissipative else 1e-10
-            require(worst >= -allowed, f"a cycle of {frequency:g} Hz gains {-worst:.3g} of the energy that passes through")
-            most = float(lost.max())
+            tolerance = 1e-4 if law.dissipative else 1e-10
+            require(worst >= -tolerance, f"a cycle of {frequency:g} Hz gains {-worst:.3g} of the energy that passes through")
+            most = float(losses.max())
             words = f"a cycle of {frequency:g} Hz loses {most:.3g} of the energy that passes: say dissipative = True"
             require(law.dissipative or most <= 1e-10, words)
             largest = max(largest, most)
@@ -310,16 +310,16 @@ class ContactLawSuite(Suite):
         lambda law: "" if law.discretisations == {"resultant", "nodal"} else "one discretisation",
     )
     def test_pressures(self, law: ContactLaw) -> None:
-        driven, h = drive(law, 64, nodal=True), 1e-6 * self.depth
+        kernel_run, h = drive(law, 64, nodal=True), 1e-6 * self.depth
         approaches = np.linspace(0.01, 1.0, 100) * self.depth
-        outside = driven(1e-9)
+        outside = kernel_run(1e-9)
         require(not outside[0].any() and not outside[1].any(), "a pressure or a derivative outside contact")
-        pressures = np.array([driven(-a)[0] for a in approaches])
+        pressures = np.array([kernel_run(-a)[0] for a in approaches])
         require((pressures >= 0.0).all() and (np.diff(pressures, axis=0) >= 0.0).all(), "the pressure falls or is negative")
         require(pressures[-1].min() > 0.0, f"no pressure at an approach of {self.depth:g} m")
         for a in approaches[::10]:
-            slope = (driven(-a + h)[0] - driven(-a - h)[0]) / (2.0 * h)
-            d_gap = driven(-a)[1]
+            slope = (kernel_run(-a + h)[0] - kernel_run(-a - h)[0]) / (2.0 * h)
+            d_gap = kernel_run(-a)[1]
             # Truncation of the differences: (h / approach)^2, at most 1e-8.
             worst = np.abs(slope - d_gap).max() / max(np.abs(d_gap).max(), 1e-300)
             require(worst < 1e-5, f"d_gap is off by {worst:.2g} at an approach of {a:.3g} m")
@@ -327,13 +327,13 @@ class ContactLawSuite(Suite):
     @duty("empty and long arrays; a contact does not depend on its neighbours")
     def test_array_lengths(self, law: ContactLaw) -> None:
         for n in (0, 1, 100_000):
-            driven = drive(law, n)
+            kernel_run = drive(law, n)
             gap, rate = self._random(4, n)
-            results = driven(gap, rate)
+            results = kernel_run(gap, rate)
             require(all(np.isfinite(r).all() for r in results), f"results of {n} contacts are not all finite")
             if n > 1:
-                turned = _Driven(law, driven.kernel, np.ascontiguousarray(driven.params[::-1]))
-                back = turned(gap[::-1], rate[::-1])
+                backwards = _Driven(law, kernel_run.kernel, np.ascontiguousarray(kernel_run.params[::-1]))
+                back = backwards(gap[::-1], rate[::-1])
                 same = all(np.array_equal(a, b[::-1]) for a, b in zip(results, back, strict=True))
                 require(same, "the order of the contacts changes their results")
 
@@ -341,39 +341,39 @@ class ContactLawSuite(Suite):
     def test_no_allocation(self, law: ContactLaw) -> None:
         from raceway.testing.systems import repeat_law, require_no_allocation
 
-        driven = drive(law, 256)
-        state = driven.rest()
-        arrays = (np.linspace(-self.depth, 0.1 * self.depth, 256), np.zeros(256), driven.params, state, state.copy())
-        require_no_allocation(lambda count: repeat_law(count, driven.kernel, *arrays, 1e-5, *np.zeros((3, 256))))
+        kernel_run = drive(law, 256)
+        state = kernel_run.rest()
+        arrays = (np.linspace(-self.depth, 0.1 * self.depth, 256), np.zeros(256), kernel_run.params, state, state.copy())
+        require_no_allocation(lambda count: repeat_law(count, kernel_run.kernel, *arrays, 1e-5, *np.zeros((3, 256))))
 
     @duty("finite for extreme input")
     def test_extreme_input(self, law: ContactLaw) -> None:
-        driven = drive(law, 8)
-        for state in (driven.rest(), self._reached(driven)):
+        kernel_run = drive(law, 8)
+        for state in (kernel_run.rest(), self._reached(kernel_run)):
             for gap in (-1.0, -1e-3, -1e-15, -5e-324, -0.0, 0.0, 1e300):
                 for rate in (-1e4, -1e-300, 0.0, 1e4):
                     for dt in (0.0, 1e-15, 1.0):
-                        finite = all(np.isfinite(r).all() for r in driven(gap, rate, state, dt))
+                        finite = all(np.isfinite(r).all() for r in kernel_run(gap, rate, state, dt))
                         require(finite, f"not finite at gap {gap:g} m, rate {rate:g} m/s, dt {dt:g} s")
 
     @duty("every entry of every output is overwritten, and twice the same input gives the same output")
     def test_overwrites(self, law: ContactLaw) -> None:
-        driven = drive(law, 512)
-        (gap, rate), state = self._random(5, 512), self._reached(driven)
-        first, second = driven(gap, rate, state), driven(gap, rate, state)
+        kernel_run = drive(law, 512)
+        (gap, rate), state = self._random(5, 512), self._reached(kernel_run)
+        first, second = kernel_run(gap, rate, state), kernel_run(gap, rate, state)
         for word, a, b in zip(("force", "d_gap", "d_rate", "state_new"), first, second, strict=True):
             require(not np.isnan(a).any(), f"`{word}` is not overwritten whole")
             require(np.array_equal(a, b), f"`{word}` differs between two calls with the same input")
 
     @duty("gap, gap_rate, params and state_old are left untouched")
     def test_input_untouched(self, law: ContactLaw) -> None:
-        driven = drive(law, 512)
-        (gap, rate), state = self._random(6, 512), self._reached(driven)
-        inputs = {"gap": gap, "gap_rate": rate, "params": driven.params, "state_old": state}
+        kernel_run = drive(law, 512)
+        (gap, rate), state = self._random(6, 512), self._reached(kernel_run)
+        inputs = {"gap": gap, "gap_rate": rate, "params": kernel_run.params, "state_old": state}
         before = {word: array.copy() for word, array in inputs.items()}
-        driven(gap, rate, state)
-        changed = [word for word, array in inputs.items() if not np.array_equal(array, before[word])]
-        require(not changed, f"{', '.join(changed)} changed")
+        kernel_run(gap, rate, state)
+        differences = [word for word, array in inputs.items() if not np.array_equal(array, before[word])]
+        require(not differences, f"{', '.join(differences)} changed")
 
     @duty("no unit is built in: other units of length, force and time, in pairs and options, give the same physics")
     def test_unit_invariance(self, law: ContactLaw) -> str:
@@ -390,15 +390,17 @@ class ContactLawSuite(Suite):
             return f"not checked: the options' own rules refuse other units ({why})"
         pairs = _pairs_of(law, 64)
         factors = {name: _scale_of(unit, length, force, time) for name, unit in _PAIR_UNITS.items()}
-        scaled = ContactPairs(**{name: array * factors[name] for name, array in _arrays(pairs).items()})
+        in_other_units = ContactPairs(**{name: array * factors[name] for name, array in _arrays(pairs).items()})
         gap, rate = self._random(7, (20, 64), 0.3)
         forces, _ = _along(drive(law, 64, pairs=pairs), gap, rate, 1e-5)
-        scaled_forces, _ = _along(drive(scaled_law, 64, pairs=scaled), gap * length, rate * length / time, 1e-5 * time)
+        scaled_forces, _ = _along(
+            drive(scaled_law, 64, pairs=in_other_units), gap * length, rate * length / time, 1e-5 * time
+        )
         area = 1.0 if "resultant" in law.discretisations else length**2
         off = np.abs(scaled_forces * area / force - forces).max() / forces.max()
         words = "in other units: a dimensional number hides in"
         require(off < 1e-9, f"forces differ by {off:.2g} {words} build() or the kernel")
-        reach, other_reach = reach_of(law, pairs), reach_of(scaled_law, scaled) / length
+        reach, other_reach = reach_of(law, pairs), reach_of(scaled_law, in_other_units) / length
         off = np.abs(other_reach - reach).max() / max(reach.max(), 1e-300)
         require(off < 1e-9, f"reach() differs by {off:.2g} {words} it")
         return ""
@@ -408,6 +410,6 @@ class ContactLawSuite(Suite):
         rng = np.random.default_rng(seed)
         return rng.uniform(-self.depth, outside * self.depth, size), rng.uniform(-self.speed, self.speed, size)
 
-    def _reached(self, driven: _Driven) -> np.ndarray:
+    def _reached(self, kernel_run: _Driven) -> np.ndarray:
         """Memory (n, m) after a random history of contact and separation."""
-        return _along(driven, *self._random(7, (20, driven.n), 0.3), 1e-5)[1]
+        return _along(kernel_run, *self._random(7, (20, kernel_run.n), 0.3), 1e-5)[1]

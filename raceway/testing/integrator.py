@@ -86,7 +86,7 @@ def _start(method: Integrator, system: System) -> Motion:
     return motion(system, 1e-6 * _Y, 0.2e-6 * NATURAL * _Y[::-1].copy() * system.free)
 
 
-def _moved(method: Integrator) -> tuple[str, ...]:
+def _coordinates(method: Integrator) -> tuple[str, ...]:
     """Arrays of a record that a method computes."""
     return ("displacement", "velocity") if method.inertial else ("displacement",)
 
@@ -175,9 +175,9 @@ class IntegratorSuite(Suite):
     def test_equilibria(self, method: Integrator) -> None:
         system = linear_system()
         record = integrate(method, system, _start(method, system), Schedule(_TURN / 24, 24, 2))
-        unbalanced = record.displacement @ system.stiffness - record.force
+        residual = record.displacement @ system.stiffness - record.force
         # The method's own tolerance is on the sum of forces; the springs alone carry the force here.
-        worst = np.abs(unbalanced).max() / np.abs(record.force).max()
+        worst = np.abs(residual).max() / np.abs(record.force).max()
         require(worst < 1e-6, f"the forces do not balance: {worst:.2g} of the excitation is left")
 
     @duty("an impact gives back the speed that the law gives back: all of it, for Hertz", _no_transient)
@@ -234,10 +234,12 @@ class IntegratorSuite(Suite):
         if method.implicit:
             return
         try:
-            grown = np.abs(integrate(method, system, _start(method, system), Schedule(1.1 * critical, 1000, 2)).displacement)
+            growth = np.abs(
+                integrate(method, system, _start(method, system), Schedule(1.1 * critical, 1000, 2)).displacement
+            )
         except StabilityError:
             return
-        require(False, f"at 1.1 critical steps it reaches {grown.max():.3g} m without a StabilityError")
+        require(False, f"at 1.1 critical steps it reaches {growth.max():.3g} m without a StabilityError")
 
     @duty("2 N steps equal N steps and N more from Record.final; `steady`: the same motion from any start")
     def test_restart(self, method: Integrator) -> str:
@@ -253,7 +255,7 @@ class IntegratorSuite(Suite):
             half, full = (Schedule(_TURN / 90, 90, turns) for turns in (1, 2))
             once = integrate(method, system, start, full)
             second = integrate(method, system, integrate(method, system, start, half).final, half)
-            for word in _moved(method):
+            for word in _coordinates(method):
                 # The second half begins at time zero again: the force's phase differs by rounding, 1e-13 of a turn; an
                 # iteration that ends at 1e-9 of the forces may leave 1e-9 of the motion.
                 off = _apart(getattr(once, word)[90:], getattr(second, word))
@@ -304,8 +306,10 @@ class IntegratorSuite(Suite):
         worst = 0.0
         for system in (linear_system(), contact_system()):
             start, schedule = _start(method, system), Schedule(PERIOD / 60, 60, 2)
-            compiled, stepped = (integrate(each, system, start, schedule) for each in (method, FromPython(method)))
-            worst = max(worst, *(_apart(getattr(compiled, word), getattr(stepped, word)) for word in _moved(method)))
+            in_loop, from_python = (integrate(each, system, start, schedule) for each in (method, FromPython(method)))
+            worst = max(
+                worst, *(_apart(getattr(in_loop, word), getattr(from_python, word)) for word in _coordinates(method))
+            )
         # Iterations that end at 1e-9 of the forces may leave as much in each of 120 steps, resonance or not.
         require(worst < 1e-6, f"the drivers differ by {worst:.2g} of the motion")
         return f"they differ by {worst:.1e} of the motion"
@@ -351,8 +355,8 @@ class IntegratorSuite(Suite):
             errors.append(np.abs([(record.displacement[at] - q) * NATURAL, record.velocity[at] - v]).max())
         rates = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
         # The next order's share of the error at the coarser of two steps is below a tenth.
-        observed = ", ".join(f"{rate:.2f}" for rate in rates)
-        require(rates[-1] > method.order - 0.2, f"order {method.order} declared, {observed} observed")
+        orders = ", ".join(f"{rate:.2f}" for rate in rates)
+        require(rates[-1] > method.order - 0.2, f"order {method.order} declared, {orders} observed")
         return f"observed {rates[-1]:.2f}"
 
 
@@ -363,6 +367,6 @@ def _stated_error(record: Record) -> float:
     return float(error)  # type: ignore[arg-type]
 
 
-def _within(off: float, stated: float, word: str) -> str:
-    require(off <= _SHORTFALL * stated + _FLOOR, f"off {word} by {off:.2g} of the motion; it states {stated:.2g}")
-    return f"off {word} by {off:.1g}, states {stated:.1g}"
+def _within(off: float, tolerance: float, word: str) -> str:
+    require(off <= _SHORTFALL * tolerance + _FLOOR, f"off {word} by {off:.2g} of the motion; it states {tolerance:.2g}")
+    return f"off {word} by {off:.1g}, states {tolerance:.1g}"

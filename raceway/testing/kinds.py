@@ -382,5 +382,5 @@ class StudySuite(Suite):
         require(isinstance(command, click.Command), f"command() gives {type(command).__name__}, not a click.Command")
         require(command.name == study.name, f"the command is called '{command.name}', the study '{study.name}'")
         require(any("--json" in option.opts for option in command.params), "the command has no --json")
-        shown = CliRunner().invoke(command, ["--help"], standalone_mode=True)
-        require(shown.exit_code == 0 and command.help, "--help fails or says nothing")
+        answer = CliRunner().invoke(command, ["--help"], standalone_mode=True)
+        require(answer.exit_code == 0 and command.help, "--help fails or says nothing")

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _SAMPLES, _SAMPLED = 4096, 1e-4
 
 
-def _sampled(excitation: Excitation, times: np.ndarray, repeats: int = 1) -> np.ndarray:
+def _samples(excitation: Excitation, times: np.ndarray, repeats: int = 1) -> np.ndarray:
     """(n, 5) the force at times (n,), into an array that is full of NaN before."""
     from raceway.testing.systems import sample_force
 
@@ -44,7 +44,7 @@ def _fundamental(excitation: Excitation) -> np.ndarray:
     """(5,) complex line at ``frequency_hz`` over one period: the force is Re(line e^{jwt}) and other lines."""
     times = (excitation.period_s or 0.0) * np.arange(_SAMPLES) / _SAMPLES
     kernel = np.exp(-2j * np.pi * excitation.frequency_hz * times)
-    return 2.0 * (kernel[:, None] * _sampled(excitation, times)).mean(axis=0)
+    return 2.0 * (kernel[:, None] * _samples(excitation, times)).mean(axis=0)
 
 
 def _not_periodic(excitation: Excitation) -> str:
@@ -85,7 +85,7 @@ class ExcitationSuite(Suite):
     @duty("all five components are overwritten, in any order of times, the parameters untouched")
     def test_overwrites(self, excitation: Excitation) -> None:
         times = np.random.default_rng(1).uniform(0.0, 3.0 / excitation.frequency_hz, 200)
-        forward, backward = _sampled(excitation, times), _sampled(excitation, times[::-1])
+        forward, backward = _samples(excitation, times), _samples(excitation, times[::-1])
         missing = np.flatnonzero(np.isnan(forward).any(axis=0))
         require(not len(missing), f"components {missing.tolist()} are not overwritten")
         require(np.array_equal(forward, backward[::-1]), "the force depends on what was asked before")
@@ -97,7 +97,7 @@ class ExcitationSuite(Suite):
     @duty("finite at any time")
     def test_extreme_times(self, excitation: Excitation) -> None:
         times = np.array([0.0, -0.0, 5e-324, 1e-12, 1.0, 1e3, 1e6, -1e-3])
-        force = _sampled(excitation, times)
+        force = _samples(excitation, times)
         require(np.isfinite(force).all(), f"not finite at t = {times[~np.isfinite(force).all(axis=1)]} s")
 
     @duty("the kernel allocates no memory")
@@ -112,7 +112,7 @@ class ExcitationSuite(Suite):
     def test_period(self, excitation: Excitation) -> None:
         period = excitation.period_s or 0.0
         times = np.random.default_rng(2).uniform(0.0, 1.0, 300) * period
-        first, later = _sampled(excitation, times), _sampled(excitation, times + 7.0 * period)
+        first, later = _samples(excitation, times), _samples(excitation, times + 7.0 * period)
         # Rounding of the phase after seven periods, with a hundred for fast harmonics.
         wrong = np.abs(later - first).max() / max(np.abs(first).max(), 1e-300)
         require(wrong < 1e-10, f"after seven periods it differs by {wrong:.2g} of its largest value")
@@ -121,9 +121,9 @@ class ExcitationSuite(Suite):
     def test_amplitude(self, excitation: Excitation) -> None:
         line = _fundamental(excitation)[:3]
         major = np.linalg.svd(np.array([line.real, line.imag]), compute_uv=False)[0]
-        declared = excitation.amplitude_n
+        amplitude = excitation.amplitude_n
         words = f"its line at {excitation.frequency_hz:g} Hz has {major:.6g} N"
-        require(abs(major - declared) <= _SAMPLED * max(major, declared), f"`amplitude_n` = {declared:.6g} N; {words}")
+        require(abs(major - amplitude) <= _SAMPLED * max(major, amplitude), f"`amplitude_n` = {amplitude:.6g} N; {words}")
 
     @duty("the line at `frequency_hz` turns as `sense` says: forward, backward, or not at all", _not_periodic)
     def test_sense(self, excitation: Excitation) -> None:
@@ -246,21 +246,21 @@ class IdentifierSuite(Suite):
     @duty("attributes: needs, definition, options")
     def test_declaration(self, identifier: Identifier) -> None:
         check_class("identifier", identifier)
-        known = {"record", "speeds", "equilibrium", "period", "phase"}
+        names = {"record", "speeds", "equilibrium", "period", "phase"}
         needs, words = identifier.needs, identifier.definition
-        good = isinstance(needs, frozenset) and needs and needs <= known
-        require(good, f"`needs` = {needs!r}: a frozenset out of {sorted(known)}")
+        good = isinstance(needs, frozenset) and needs and needs <= names
+        require(good, f"`needs` = {needs!r}: a frozenset out of {sorted(names)}")
         require(isinstance(words, str) and len(words) > 20, "`definition` must be a sentence")
 
     @duty("an Identification with frequency, mass and force amplitude")
     def test_answer(self, identifier: Identifier) -> None:
         answer = self._identify(identifier)
         require(isinstance(answer, Identification), f"identify() returns {type(answer).__name__}, not an Identification")
-        for word, expected, relative in (
+        for word, target, relative in (
             ("frequency_hz", FREQUENCY, 1e-9), ("mass_used", MASS, 1e-3), ("force_amplitude", FORCE, 1e-3),
         ):  # fmt: skip
             value = getattr(answer, word)
-            require(abs(value - expected) < relative * expected, f"{word} = {value:g}, not {expected:g}")
+            require(abs(value - target) < relative * target, f"{word} = {value:g}, not {target:g}")
         values = (answer.forward_amplitude, answer.backward_amplitude, answer.orbit_major, answer.orbit_minor)
         require(np.isfinite(values).all() and min(values) >= 0.0, "orbit amplitudes must be finite and not negative")
 
@@ -294,9 +294,9 @@ class IdentifierSuite(Suite):
     def test_synchronous(self, identifier: Identifier) -> None:
         record = _synthetic_record()
         wave = np.exp(2j * np.pi * FREQUENCY * record.time)[:, None]
-        moved = record.displacement + (wave * (3.0 - 2.0j) * 1e-7 * np.eye(5)[1]).real
-        force, line = (2.0 * (wave.conj() * part[:, :3]).mean(axis=0) for part in (record.force, moved))
-        answer = identifier.identify([attrs.evolve(record, displacement=moved)], _equilibrium_at_rest(), _model_of())
+        displacement = record.displacement + (wave * (3.0 - 2.0j) * 1e-7 * np.eye(5)[1]).real
+        force, line = (2.0 * (wave.conj() * part[:, :3]).mean(axis=0) for part in (record.force, displacement))
+        answer = identifier.identify([attrs.evolve(record, displacement=displacement)], _equilibrium_at_rest(), _model_of())
         off = abs(answer.dynamic_stiffness / (np.vdot(force, force) / np.vdot(force, line)) - 1.0)
         require(off < 1e-8, f"Z differs by {off:.2g} from F^H F / F^H x: compiled loops would state another definition")
 

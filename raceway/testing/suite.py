@@ -184,9 +184,9 @@ class Suite:
         if hasattr(self.plugin, "examples"):
             yield from self.plugin.examples()
             return
-        required = ", ".join(a.name for a in attrs.fields(self.plugin) if a.default is attrs.NOTHING and a.init)
+        names = ", ".join(a.name for a in attrs.fields(self.plugin) if a.default is attrs.NOTHING and a.init)
         remedy = "give the class a classmethod `examples()` that returns instances for the suite"
-        require(not required, f"`{self.plugin.__qualname__}` has options without a default ({required}): {remedy}")
+        require(not names, f"`{self.plugin.__qualname__}` has options without a default ({names}): {remedy}")
         yield self.plugin()
 
     def expected(self) -> dict[str, str]:
@@ -202,10 +202,10 @@ class Suite:
             tables = tomllib.loads(path.read_text(encoding="utf-8"))
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as why:
             raise ConformityError(f"{EXPECTED_FAILURES} is not valid TOML: {why}") from why
-        listed = tables.get(self.kind, {}).get(cls.name, {})
-        bad = [name for name, reason in listed.items() if not isinstance(reason, str) or not reason.strip()]
+        entries = tables.get(self.kind, {}).get(cls.name, {})
+        bad = [name for name, reason in entries.items() if not isinstance(reason, str) or not reason.strip()]
         require(not bad, f"{EXPECTED_FAILURES}: {', '.join(bad)} need a reason in words")
-        return dict(listed)
+        return dict(entries)
 
     def row(self, name: str) -> Row:
         """Run one check on every example."""
@@ -255,13 +255,13 @@ def check_class(kind: str, plugin: attrs.AttrsInstance) -> None:
     cls = type(plugin)
     faults = broken_duties(kind, cls)
     require(not faults, f"`{cls.__qualname__}` " + ", ".join(faults))
-    require(_frozen(plugin), f"`{cls.__qualname__}` is not frozen: decorate it with @attrs.frozen")
-    undeclared = [f.name for f in attrs.fields(cls) if f.init and "unit" not in f.metadata]
-    words = ", ".join(undeclared)
-    require(not undeclared, f"options {words} are not declared with raceway.option: no unit, no help, no rule")
+    require(_is_frozen(plugin), f"`{cls.__qualname__}` is not frozen: decorate it with @attrs.frozen")
+    options = [f.name for f in attrs.fields(cls) if f.init and "unit" not in f.metadata]
+    words = ", ".join(options)
+    require(not options, f"options {words} are not declared with raceway.option: no unit, no help, no rule")
 
 
-def _frozen(plugin: Any) -> bool:
+def _is_frozen(plugin: Any) -> bool:
     name = next((f.name for f in attrs.fields(type(plugin))), "name")
     try:
         setattr(attrs.evolve(plugin), name, getattr(plugin, name))
@@ -274,11 +274,11 @@ def check_kernel(kernel: Kernel, signature: Signature, word: str) -> None:
     """A dispatcher compiled for exactly the contract's signature."""
     from raceway.core.jit import signature_words
 
-    compiled = getattr(kernel, "nopython_signatures", None)  # compiles it
-    if compiled is None:
+    signatures = getattr(kernel, "nopython_signatures", None)  # compiles it
+    if signatures is None:
         raise ConformityError(f"kernel() returns {kernel!r}, which is not compiled: decorate it with @jit({word})")
-    present = [signature_words(has) for has in compiled] or "nothing"
-    fits = [tuple(has.args) for has in compiled] == [tuple(signature.args)]
+    present = [signature_words(has) for has in signatures] or "nothing"
+    fits = [tuple(has.args) for has in signatures] == [tuple(signature.args)]
     require(fits, f"kernel() is compiled for {present}, not for {word} alone: decorate it with @jit({word})")
 
 
@@ -307,7 +307,7 @@ def apart(work: Callable[[], T]) -> T:
         _serve(work, writer)
     os.close(writer)
     try:
-        answer, late = _collected(reader)
+        answer, late = _output(reader)
     finally:
         os.close(reader)
         with suppress(ProcessLookupError):
@@ -320,8 +320,8 @@ def apart(work: Callable[[], T]) -> T:
         raise _Died(
             f"died: its process ended {f'by {signal.Signals(-code).name}' if code < 0 else f'with exit code {code}'}"
         )
-    answered, result = pickle.loads(answer)
-    if answered:
+    has_answer, result = pickle.loads(answer)
+    if has_answer:
         return result
     raise result
 
@@ -359,7 +359,7 @@ def _serve(work: Callable[[], object], writer: int) -> None:
         os._exit(code)
 
 
-def _collected(reader: int) -> tuple[bytes, bool]:
+def _output(reader: int) -> tuple[bytes, bool]:
     """All that the child writes, and whether its time was over before."""
     parts: list[bytes] = []
     end = time.monotonic() + LIMIT_S

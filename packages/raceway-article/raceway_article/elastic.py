@@ -432,7 +432,7 @@ class ElasticArticle(Answer):
             return ConvergenceError(f"every run failed; the first reason: {self.rows[0]['reason']}")
         return self.fault
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         from raceway_article.elastic_page import in_short
 
         return self.title, [("", "", words) for words in in_short(self.to_dict())]

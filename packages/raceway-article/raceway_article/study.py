@@ -442,7 +442,7 @@ class Article(Answer):
             return ConvergenceError(f"every run failed; the first reason: {rows[0]['reason']}")
         return self.fault
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         return self.title, [(f"claim {verdict.number}", verdict.kind, verdict.region) for verdict in self.verdicts]
 
     def report(self) -> Iterator[Part]:

@@ -156,7 +156,7 @@ class _Listing(Answer):
     def report(self) -> Sequence[Part]:
         return self.parts
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         return self.title, []
 
 

@@ -188,7 +188,7 @@ class _InferredTable(Answer):
             sentences[-1] += f", d_m in {summary['pitch_diameter_within_1_percent']:.1f} %"
         return [sentence.format(**summary) for sentence in sentences]
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         return f"Inferred from {self.table}", [(sentence, "", "") for sentence in self._sentences()]
 
     def report(self) -> list[Part]:

@@ -135,7 +135,7 @@ class Inferred(Answer):
             facts.append((f"contact angle {angle:g} deg", f"{found.value:.4g} deg", why))
         return facts
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         facts = self._number_facts()
         for quantity in QUANTITIES:
             if (error := self.worst(quantity)) is not None:

@@ -69,7 +69,7 @@ class FMU(Answer):
             rows.append({"": part, "variable": name, "unit": units, "range": ends, "what": words})
         return [row for row in rows if row[""] != "constant"]
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         return self.unit.words, [(row["variable"], row["unit"], row["what"]) for row in self.rows]
 
     def report(self) -> Iterator[Part]:

@@ -36,7 +36,7 @@ class Exports(Answer):
         numbers = self.exports[0].to_dict()
         return {"store": self.store, **numbers, "programs": programs, "notes": self.notes, "files": self.files}
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         return self._title, [("written", "", file) for file in self.files]
 
     def report(self) -> list[Part]:

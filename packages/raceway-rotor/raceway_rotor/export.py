@@ -124,7 +124,7 @@ class CoefficientFile(Shown):
         panel.legend(frameon=False)
         return panel
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         rows, constant = point_rows(self.coefficients.axes, self.coefficients.columns())
         over = " x ".join(f"{len(values)} values of {name}" for name, values in self.coefficients.axes.items())
         # What may make the numbers wrong for a rotor leads: of a text of 15 lines the last notes fall away.

@@ -123,7 +123,7 @@ class _Meshes(Answer):
             files.append(str(write_whole(picture, folder / "mesh.png")))
         return [Path(file) for file in files]
 
-    def _shown(self) -> tuple[str, list[Row]]:
+    def _facts(self) -> tuple[str, list[Row]]:
         return self.content["title"], self._rows()
 
     def report(self) -> Iterator[Part]:

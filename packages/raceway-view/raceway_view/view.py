@@ -97,7 +97,7 @@ class View(Answer):
         axes.set_axis_off()
         return axes
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         shown = self.content
         facts = [*largest_facts(shown, shown["shown"]), ("pictures", "", ", ".join(self.pictures))]
         where = [("written", "", str(path)) for path in self.files] or [("in memory", "", "save(folder) writes them")]

@@ -221,7 +221,7 @@ class Stability(Answer):
     def _counted(self) -> str:
         return f"{len(self.rows) - len(self.failed)} of {len(self.rows)} rows as expected, {self.cases} cases"
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         bad: list[Fact] = [("failed", row.case, row.note or row.reason) for row in self.failed]
         return self.title, [("rows", "", self._counted), *bad]
 

@@ -325,7 +325,7 @@ class Verification(Answer):
     def _counts(self) -> list[str]:
         return [f"{count['within']} of {count['of']} {BASES[basis]}" for basis, count in self.kept.items()]
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         misses: list[Fact] = [("off", row.case, f"{row.quantity} {row.note}") for row in self.rows if not row.ok]
         return "Reference cases", [("within their tolerance", "", words) for words in self._counts()] + misses
 

@@ -200,7 +200,7 @@ class Fitted(Answer):
         table = rows_table(rows, f"{self.title}\nfitted to {self.source}")
         return [table, words, *(Words(text, "yellow") for text in self.warnings)]
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         facts = [interval(name, *numbers) for name, numbers in self._numbers.items()]
         title = f"Fitted to {self.source}\n{self.title.splitlines()[0]}"
         return title, [*facts, *(("warning", "", text) for text in self.warnings)]

@@ -303,7 +303,7 @@ class Identified(Answer):
         warnings = [Words(f"warning: {text}", "yellow") for text in self.warnings]
         return [Words(self.title, "bold"), sections(rows), *warnings]
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         title = f"Identified from {self.source} at {self.speed_rpm:.1f} r/min\n{self.title.splitlines()[0]}"
         return title, [*self._coefficients(), *(("warning", "", text) for text in self.warnings)]
 

@@ -168,7 +168,7 @@ class _RigStudy(Answer):
                 files.append(write_recording(recording, folder / f"{name}-{point.name}.csv"))
         return files
 
-    def _shown(self) -> tuple[str, list[Fact]]:
+    def _facts(self) -> tuple[str, list[Fact]]:
         facts: list[Fact] = [
             (
                 point.name,
