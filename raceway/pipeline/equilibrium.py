@@ -38,8 +38,8 @@ def solve_equilibrium(
         None found, or a motion that nothing holds (named).
     """
     system = model.system
-    loaded = np.any(model.system.load * model.system.free) or model.problem.bearing.preloaded
-    if not loaded and model.system.free[0] > 0.0:
+    has_load = np.any(model.system.load * model.system.free) or model.problem.bearing.preloaded
+    if not has_load and model.system.free[0] > 0.0:
         raise ConvergenceError(
             "no load acts on the bearing: all motions are free and the stiffness is undefined. Set `load.axial`, or hold "
             'the ring with supports.axial = "displacement" under an axial load.'
@@ -51,14 +51,14 @@ def solve_equilibrium(
     q, ball, iterations = model.bearing.solve_equilibrium(near, on_progress)
     still = system.without(CAGE)
     now = still.evaluate(q, ball=ball)
-    held = still.stiffness_at(q, now), still.damping_at(q, now)
-    stiffness, damping = still.rows_following(q, now, *held)
+    rates = still.stiffness_at(q, now), still.damping_at(q, now)
+    stiffness, damping = still.rows_following(q, now, *rates)
     _refuse_free_motion(model, stiffness, q)
     inner, outer = model.bearing.contact_angles(model, q, now.ball, now.contact_force)
     model.bearing.refuse_impossible(model, now.contact_force, {"q": q, "ball": now.ball})
     warnings = _warnings(model, inner, outer, now.contact_force)
     state = now.ball, now.gap, now.contact_force, inner, outer
-    equilibrium = Equilibrium(q, stiffness, damping, *held, *state, iterations, warnings)
+    equilibrium = Equilibrium(q, stiffness, damping, *rates, *state, iterations, warnings)
     law = law_report_of(model, equilibrium)
     return equilibrium if law is None else attrs.evolve(equilibrium, warnings=(*law.warnings, *warnings))
 
@@ -67,16 +67,16 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
     system = model.system
     free, scale = np.flatnonzero(system.free), 1.0 / system.arm
     weight = np.array([1.0, 1.0, 1.0, scale, scale])[free]
-    scaled = weight[:, None] * (stiffness + system.stiffness)[free[:, None], free] * weight
-    values, vectors = np.linalg.eigh(0.5 * (scaled + scaled.T))
+    matrix = weight[:, None] * (stiffness + system.stiffness)[free[:, None], free] * weight
+    values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
     loose = values <= 1e-12 * max(values[-1], 0.0)
     if not loose.any():
         return
     # Of several free motions any combination is one: the parts of all of them, equal ones in the order of coordinates.
     motion = np.round(np.linalg.norm(vectors[:, loose], axis=1), 3)
     names = [COORDINATES[free[k]] for k in np.argsort(-motion, kind="stable") if motion[k] > 0.3 * motion.max()]
-    held = "supports.tilt" if names[0].startswith("tilt") else "an axial load"
-    why = lost_preload(model) or f"Hold it ({held}) or load more balls."
+    remedy = "supports.tilt" if names[0].startswith("tilt") else "an axial load"
+    why = lost_preload(model) or f"Hold it ({remedy}) or load more balls."
     raise ConvergenceError(f"the equilibrium is singular: no stiffness against {' with '.join(names)}. {why}", {"q": q})
 
 

@@ -84,8 +84,8 @@ def body_errors(model: Model, equilibrium: Equilibrium, how: Note) -> Tables:
     """The table with the errors of mesh and contacts, which the equilibrium has; of all else ``how``."""
     table = no_error(how)
     table["mesh"], table["how"]["mesh"] = model.bearing.mesh_error(model, equilibrium)
-    loaded = (equilibrium.contact_force > 0.0).any()
-    contact = model.bearing.contact_error(model, equilibrium) if loaded else (None, Estimate.UNLOADED())
+    has_contact = (equilibrium.contact_force > 0.0).any()
+    contact = model.bearing.contact_error(model, equilibrium) if has_contact else (None, Estimate.UNLOADED())
     table["contact"], table["how"]["contact"] = contact
     return table
 
@@ -135,8 +135,8 @@ def error_warnings(error: Tables, identified: bool) -> list[str]:
     if names:
         size, name = max((error[name], name) for name in names)
         cause = "its estimated error" if name == "total" else f"the error of {name.replace('_', ' ')}"
-        number, lost = ("Z", "K and C carry") if identified else ("the stiffness", "it carries")
-        warnings.append(f"{number} is not resolved: {cause} is {size:.2g} times its size, so that {lost} no information")
+        number, what = ("Z", "K and C carry") if identified else ("the stiffness", "it carries")
+        warnings.append(f"{number} is not resolved: {cause} is {size:.2g} times its size, so that {what} no information")
     elif contact >= _OTHER_LAW:
         warnings.append(
             f"the contact law deviates from Hertz's by {contact:.2g}, which the stated error does not include: {error['how']['contact']}"
@@ -157,8 +157,8 @@ def _no_total(run: Identified, parts: dict[str, Part]) -> Note | None:
     # A ramp that stands in for an orbit: single turns may be far from where they lead.
     if not start.repeats and start.orbit is None and (spread is None or spread > _REPEATS):
         return Estimate.TURNS_DIFFER()
-    needed = ("time_step", "transient", *(("identification",) if run.several_speeds else ()))
-    unknown = {name.replace("_", " "): parts[name].how for name in needed if parts[name].size is None}
+    parts_of_total = ("time_step", "transient", *(("identification",) if run.several_speeds else ()))
+    unknown = {name.replace("_", " "): parts[name].how for name in parts_of_total if parts[name].size is None}
     if not unknown:
         return None
     reasons = " and ".join(f"the error of the {name} is unknown ({how})" for name, how in unknown.items())
@@ -167,11 +167,11 @@ def _no_total(run: Identified, parts: dict[str, Part]) -> Note | None:
 
 def _total(parts: dict[str, Part]) -> float | None:
     """Errors whose phases are known may cancel; half the larger is kept, because each is known to that only."""
-    estimated = [part for part in parts.values() if part.size is not None]
-    if not estimated:
+    estimates = [part for part in parts.values() if part.size is not None]
+    if not estimates:
         return None
-    sizes = [part.size or 0.0 for part in estimated if part.shift is None]
-    shifts = [part.shift for part in estimated if part.shift is not None]
+    sizes = [part.size or 0.0 for part in estimates if part.shift is None]
+    shifts = [part.shift for part in estimates if part.shift is not None]
     together = max(abs(sum(shifts)), *(0.5 * abs(shift) for shift in shifts)) if shifts else 0.0
     return float(together + sum(sizes))
 
@@ -217,8 +217,8 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
         further = second_steps is None and _LEAST_RATIO * count <= closer <= steps / _LEAST_RATIO
         # Coarse steps leave their orbit by more than their order tells, and vibrate freely about another one: that hides what
         # they change, where it would be the largest error.
-        hidden = coarse.halves is not None and coarse.halves > abs(change) > ratio * abs(run.value - fine.value)
-        if further and hidden:
+        below_vibration = coarse.halves is not None and coarse.halves > abs(change) > ratio * abs(run.value - fine.value)
+        if further and below_vibration:
             return _time_step(run, closer)
     else:
         change = run.value - run.identify([motion.record for motion in again])
@@ -268,15 +268,15 @@ def _finer_value(run: Identified, count: int) -> complex:
     surrogate, whose motion has nearly the same harmonics.
     """
 
-    def identified(states: list[tuple[Model, Equilibrium]], steps: int) -> complex:
+    def identification(states: list[tuple[Model, Equilibrium]], steps: int) -> complex:
         return run.identify([simulate(*state, run.on_progress, steps).record for state in states])
 
     if compiled(run.model.system) is not None:
-        return identified([(motion.model, motion.equilibrium) for motion in run.motions], count)
+        return identification([(motion.model, motion.equilibrium) for motion in run.motions], count)
     models = [attrs.evolve(motion.model, system=surrogate(motion.model.system)) for motion in run.motions]
 
     def change(steps: int) -> complex:
-        return identified([(model, solve_equilibrium(model)) for model in models], steps)
+        return identification([(model, solve_equilibrium(model)) for model in models], steps)
 
     return run.value + change(count) - change(run.motion.steps_per_turn)
 
@@ -291,12 +291,12 @@ def _transient(run: Identified, step: Part) -> Part:
         return Part(0.0, Estimate.EQUILIBRIA())
     if model.problem.compared_with_steady:
         try:
-            settled = settled_value(run)
+            steady = settled_value(run)
         except BeyondPlanError as why:
             return Part(None, Estimate.STEADY_BEYOND_PLAN(why=why))
-        if settled is not None:
+        if steady is not None:
             # Less the part of the time step; relative to the smaller of both.
-            shift = (value - settled) / min(abs(value), abs(settled)) - (step.shift or 0.0)
+            shift = (value - steady) / min(abs(value), abs(steady)) - (step.shift or 0.0)
             return Part(float(abs(shift)), Estimate.FROM_STEADY(), shift)
     if run.several_speeds:
         return Part(None, Estimate.STEADY_SPEEDS_UNKNOWN())
@@ -379,9 +379,9 @@ def _largest_misfit(run: Identified) -> tuple[float, float]:
         series.append((fit.speed, by_lines.identify([record], run.equilibrium, model).dynamic_stiffness))
     misfits = []
     for w, z in series:
-        fitted = complex(K.of(fit) - fit.mass_used * w**2, w * C.of(fit))
-        scale = min(abs(z), abs(fitted)) if abs(w / fit.speed - 1.0) <= _SAME_SPEED else abs(z)
-        misfits.append((abs(z - fitted) / scale, w * 30.0 / pi))
+        fit_value = complex(K.of(fit) - fit.mass_used * w**2, w * C.of(fit))
+        scale = min(abs(z), abs(fit_value)) if abs(w / fit.speed - 1.0) <= _SAME_SPEED else abs(z)
+        misfits.append((abs(z - fit_value) / scale, w * 30.0 / pi))
     return max(misfits)
 
 

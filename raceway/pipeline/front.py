@@ -73,10 +73,10 @@ def run(
     from raceway.pipeline.result import chosen_reports
     from raceway.pipeline.run import run as compute
 
-    read, chosen = as_scene(scene, plugins=plugins), chosen_reports(reports, registry_with(plugins))
+    read, writers = as_scene(scene, plugins=plugins), chosen_reports(reports, registry_with(plugins))
     folder = None if out is None else writable(Path(out))
     with telling(progress) as report:
-        result = attrs.evolve(compute(read, default_registry(), report, patience=patience), reports=tuple(chosen))
+        result = attrs.evolve(compute(read, default_registry(), report, patience=patience), reports=tuple(writers))
     if folder is not None:
         result.save(folder)
     return result

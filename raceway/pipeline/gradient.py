@@ -206,16 +206,16 @@ class SteadyOrbit:
         """(5,) Re Z, C and K [N/m, N s/m, N/m], amplitude [m], Im Z [N/m]."""
         return _line(self.solved, self.model.mass_used)
 
-    def near(self, model: Model, moved: np.ndarray) -> np.ndarray:
+    def near(self, model: Model, shift: np.ndarray) -> np.ndarray:
         """The same of a neighbouring model, whose equilibrium is moved by (5,)."""
         speed, path = 2.0 * np.pi / float(model.excitation.period_s), self.solved.path
         problem = attrs.evolve(self.solved.problem, system=surrogate(model.system), speed=speed, clock=speed)
-        return _line(solve(problem, attrs.evolve(path, q=path.q + moved), _SOLVED), model.mass_used)
+        return _line(solve(problem, attrs.evolve(path, q=path.q + shift), _SOLVED), model.mass_used)
 
 
-def _line(solved: Solved, mass: float) -> np.ndarray:
-    z, amplitude = synchronous_response(solved)
-    omega = solved.problem.speed
+def _line(solution: Solved, mass: float) -> np.ndarray:
+    z, amplitude = synchronous_response(solution)
+    omega = solution.problem.speed
     return np.array([z.real, z.imag / omega, z.real + mass * omega**2, amplitude, z.imag])
 
 
@@ -249,8 +249,8 @@ class Gradients:
         SceneError, ConvergenceError
             The force has none, or none was found.
         """
-        searched = self.moving and self.model.excitation is not None
-        return SteadyOrbit.of(self.model, self.equilibrium) if searched else None
+        has_orbit = self.moving and self.model.excitation is not None
+        return SteadyOrbit.of(self.model, self.equilibrium) if has_orbit else None
 
     @cached_property
     def _plugins(self) -> list[str]:
@@ -293,9 +293,9 @@ class Gradients:
             answers |= self._by_columns(
                 [key for key in keys if key.path not in answers and not why_no_column(scene, key.path)]
             )
-        for done, key in enumerate(keys):
+        for count, key in enumerate(keys):
             if on_progress is not None:
-                on_progress("keys", done, len(keys))
+                on_progress("keys", count, len(keys))
             if key.path not in answers:
                 try:
                     answers[key.path] = self._by_models(key)
@@ -306,7 +306,7 @@ class Gradients:
     def _ends(self, keys: Sequence[Key]) -> dict[str, NoDerivative]:
         """Keys at the end of their range, whatever they do."""
 
-        def refused(keys: Iterable[Key], side: float) -> str:
+        def refusal(keys: Iterable[Key], side: float) -> str:
             numbers = {key.path: key.value + side * _step(key, _WIDE) for key in keys}
             try:
                 with_numbers(self.model.scene, numbers)
@@ -316,12 +316,12 @@ class Gradients:
 
         def ends(keys: list[Key], side: float) -> dict[str, str]:
             """By halves: several at once take as long as one, and few are refused."""
-            why, half = refused(keys, side), len(keys) // 2
+            why, half = refusal(keys, side), len(keys) // 2
             if not why or half == 0:
                 return {key.path: why for key in keys if why}
             return ends(keys[:half], side) | ends(keys[half:], side)
 
-        why = {key.path: refused([key], -1.0) for key in keys if key.value == 0.0}
+        why = {key.path: refusal([key], -1.0) for key in keys if key.value == 0.0}
         inside = [key for key in keys if not why.get(key.path)]
         why |= ends(inside, 1.0) | ends(inside, -1.0)
         zero = "is 0, the end of its range: it switches a part of the model on"
@@ -362,14 +362,14 @@ class Gradients:
             fine &= orbits.status == 0
             expected = self.orbit.line
             fine[0] &= abs(z[0] - complex(expected[0], expected[4])) <= _SAME * abs(z[0])
-        chosen = [k for k in range(len(keys)) if fine[0] and fine[1 + 2 * k] and fine[2 + 2 * k]]
-        if not chosen:
+        usable = [k for k in range(len(keys)) if fine[0] and fine[1 + 2 * k] and fine[2 + 2 * k]]
+        if not usable:
             return {}
         sides = {
-            side: {name: value[offset::2][chosen] for name, value in values.items()} for side, offset in ((-1, 1), (1, 2))
+            side: {name: value[offset::2][usable] for name, value in values.items()} for side, offset in ((-1, 1), (1, 2))
         }
         base = {name: value[0] for name, value in values.items()}
-        answers, uneven = _gradients([keys[k] for k in chosen], np.array(steps)[chosen], sides, base)
+        answers, uneven = _gradients([keys[k] for k in usable], np.array(steps)[usable], sides, base)
         if uneven and relative > _LEAST_STEP:
             answers |= self._by_columns(uneven, relative / _SMALLER)
         return answers
@@ -389,7 +389,7 @@ class Gradients:
         wide = self.model.problem.bearing.preloaded or renews(self.model.problem.contact.law)
         step, shifts = _step(key, _WIDE if wide else relative), (-2, -1, 1, 2) if wide else (-1, 1)
         base, ahead = self._values(self.model, self.equilibrium), self._model(key, step)
-        solutions, moves = dict.fromkeys(shifts, base), _changed(self.model, ahead)
+        solutions, moves = dict.fromkeys(shifts, base), _has_other_contacts(self.model, ahead)
         if moves or self.stated:
             models = {k: ahead if k == 1 else self._model(key, k * step) for k in shifts}
             solve = self._solution if moves else partial(self._values, equilibrium=self.equilibrium)
@@ -397,8 +397,8 @@ class Gradients:
                 solutions = {k: solve(neighbour) for k, neighbour in models.items()}
             except ConvergenceError as why:
                 raise NoDerivative(f"the neighbouring states have no balance: {why}") from None
-        stacked = {k: {name: value[None] for name, value in solution.items()} for k, solution in solutions.items()}
-        answers, uneven = _gradients([key], np.array([step]), stacked, base, len(shifts))
+        columns = {k: {name: value[None] for name, value in solution.items()} for k, solution in solutions.items()}
+        answers, uneven = _gradients([key], np.array([step]), columns, base, len(shifts))
         if uneven and not wide and relative > _LEAST_STEP:
             return self._by_models(key, relative / _SMALLER)
         return answers[key.path]
@@ -443,14 +443,14 @@ def refuse_points(problem: Problem) -> None:
         raise SceneError.at("bodies.kind", problem.bodies.name, f"{why} on rigid or condensed bodies")
 
 
-def other_meshes(problem: Problem, changed: Problem) -> str:
+def other_meshes(problem: Problem, other: Problem) -> str:
     """Why a changed problem gives no derivative: its bodies have other meshes; empty where they have the same."""
-    if problem.body_kind.same_bodies(changed):
+    if problem.body_kind.same_bodies(other):
         return ""
     return "changes the meshes of the bodies: the difference of two meshes is their error, no derivative. bodies.kind = 'rigid' has one"
 
 
-def _changed(model: Model, neighbour: Model) -> bool:
+def _has_other_contacts(model: Model, neighbour: Model) -> bool:
     """Whether anything differs, to the last bit.
 
     Raises
@@ -488,8 +488,8 @@ def _gradients(
     bends = largest = unevenness([solutions[k]["stiffness"] for k in (-1, 1)], base["stiffness"])
     if "line" in base:  # Z
         largest = np.maximum(bends, unevenness([solutions[k]["line"][:, ::4] for k in (-1, 1)], base["line"][::4]))
-    loaded = base["contact_force"] > 0.0
-    edges = np.any([((solution["contact_force"] > 0.0) != loaded).any(axis=1) for solution in solutions.values()], axis=0)
+    has_load = base["contact_force"] > 0.0
+    edges = np.any([((solution["contact_force"] > 0.0) != has_load).any(axis=1) for solution in solutions.values()], axis=0)
     answers, uneven = {}, []
     for k, key in enumerate(keys):
         line, statics = None, {name: slope[k] for name, slope in slopes.items()}

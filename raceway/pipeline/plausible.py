@@ -77,11 +77,11 @@ def refuse_impossible(model: Model, equilibrium: Equilibrium, record: Record) ->
     ConvergenceError
         The ring moves further than the groove centres are apart: the ball would climb out of its groove.
     """
-    moved = float(np.abs(record.displacement[:, :3] - equilibrium.displacement[:3]).max())
+    distance = float(np.abs(record.displacement[:, :3] - equilibrium.displacement[:3]).max())
     limit = model.bearing.largest_motion
-    if moved > limit:
+    if distance > limit:
         raise ConvergenceError(
-            f"the ring moves by {1e3 * moved:.3g} mm, more than the groove centres are apart ({1e3 * limit:.3g} mm): balls "
+            f"the ring moves by {1e3 * distance:.3g} mm, more than the groove centres are apart ({1e3 * limit:.3g} mm): balls "
             f"would leave their grooves. The excitation's force is {model.excitation.amplitude_n:.4g} N: check its unit "
             "(unbalance in kg m), or load the bearing more.",
             {"q": record.final.q, "v": record.final.v, "ball": record.final.ball},
@@ -200,11 +200,11 @@ def model_spread(
     kinematics, own = model.problem.kinematics, _numbers(model, equilibrium)
     rows: list[tuple[Tables, Tables]] = []
 
-    def solve(changed: Tables) -> None:
+    def solve(combination: Tables) -> None:
         nonlocal how
         change: Tables = dict.fromkeys(_QUANTITIES)
         try:
-            problem = attrs.evolve(model.problem, kinematics=attrs.evolve(kinematics, **changed))
+            problem = attrs.evolve(model.problem, kinematics=attrs.evolve(kinematics, **combination))
             variant, state = _under(model, problem, equilibrium)
             for name, number in _numbers(variant, state).items():
                 before = own[name]
@@ -212,14 +212,14 @@ def model_spread(
             of_secant = np.nan if secant is None else secant(variant, state)
             change[K.name] = of_secant if np.isfinite(of_secant) else None
         except (RacewayError, ArithmeticError, np.linalg.LinAlgError) as error:
-            how += f"; not under {changed}: {str(error).splitlines()[0]}"
-        rows.append((changed, change))
+            how += f"; not under {combination}: {str(error).splitlines()[0]}"
+        rows.append((combination, change))
 
     for key, others in values.items():
         for value in others:
             solve({key: value})
-    for changed in _extremes(values, rows):
-        solve(changed)
+    for combination in _extremes(values, rows):
+        solve(combination)
     return _table(rows, bound), Estimate.EACH_HYPOTHESIS(how=how, why=why)
 
 
@@ -235,7 +235,7 @@ def _numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float | None]:
 
 def _extremes(values: dict[str, list[Any]], rows: list[tuple[Tables, Tables]]) -> list[Tables]:
     """Combinations of hypotheses of several keys that change a quantity most to either side, by what each changes alone."""
-    found: list[Tables] = []
+    combinations: list[Tables] = []
     for name, sign in product(_QUANTITIES, (-1.0, 1.0)):
         together: Tables = {}
         for key in values:
@@ -243,9 +243,9 @@ def _extremes(values: dict[str, list[Any]], rows: list[tuple[Tables, Tables]]) -
             most, value = max(alone, key=lambda pair: pair[0], default=(0.0, None))
             if most > 0.0:
                 together[key] = value
-        if len(together) > 1 and together not in found:
-            found.append(together)
-    return found
+        if len(together) > 1 and together not in combinations:
+            combinations.append(together)
+    return combinations
 
 
 def closed_bound(model: Model, equilibrium: Equilibrium) -> float | None:
@@ -277,8 +277,8 @@ def _alternatives(problem: Problem, compiled_ring: bool) -> tuple[dict[str, list
     """Values of the keys left open that the scene can run with, and what it cannot; a note where there are none."""
     if problem.spin_speed == 0.0:
         return {}, Estimate.NOTHING_TURNS()
-    unstated = [key for key in _HYPOTHESES if getattr(problem.scene.kinematics, key) == "auto"]
-    if not unstated:
+    automatic = [key for key in _HYPOTHESES if getattr(problem.scene.kinematics, key) == "auto"]
+    if not automatic:
         return {}, Estimate.HYPOTHESES_STATED()
     if not compiled_ring:
         return {}, Estimate.POINTS_TOO_SLOW(kind=problem.bodies.name)
@@ -286,7 +286,7 @@ def _alternatives(problem: Problem, compiled_ring: bool) -> tuple[dict[str, list
         return {}, Estimate.NO_STEADY_MOTION()
     values: dict[str, list[Any]] = {}
     why = ""
-    for key in unstated:
+    for key in automatic:
         for value in _HYPOTHESES[key]:
             if value == getattr(problem.kinematics, key) or (value is True and some(problem.mounting.shaft_interference)):
                 continue  # a fit that is given is not left out
@@ -303,18 +303,18 @@ def _bound(
     problem: Problem, basis: Basis, ellipse: Ellipse, table: np.ndarray, inner: np.ndarray, keys: Collection[str]
 ) -> np.ndarray:
     """Of inner loads (..., Z) with their ellipse and balls' numbers (..., Z, k), at one point or many."""
-    loaded = inner > 0.0
-    least = np.where(loaded, inner, np.inf).min(axis=-1)
+    carrying = inner > 0.0
+    least = np.where(carrying, inner, np.inf).min(axis=-1)
     bound = np.where(np.isfinite(least), 0.0, np.inf)
     if "gyroscopic" in keys:
-        bound += _MOMENTS * np.divide(table[..., CENTRIFUGAL], inner, out=np.zeros_like(inner), where=loaded).max(axis=-1)
+        bound += _MOMENTS * np.divide(table[..., CENTRIFUGAL], inner, out=np.zeros_like(inner), where=carrying).max(axis=-1)
     if "ring_growth" in keys:
         running = problem.running
         either = (with_values(running.kinematics, ring_growth=grows) for grows in (True, False))
         more, now = (growth_of(attrs.evolve(running, kinematics=one), basis.row) for one in either)
         radial = np.abs(more.common[..., None, 1] + more.by_ball[..., 1] - now.common[..., None, 1] - now.by_ball[..., 1])
         with np.errstate(invalid="ignore"):  # of points without a load
-            approach = ellipse.approach(np.where(loaded, inner, least[..., None])).max(axis=-1)
+            approach = ellipse.approach(np.where(carrying, inner, least[..., None])).max(axis=-1)
         bound += _GROWTH * radial.max(axis=-1) / approach
     return bound
 
@@ -379,10 +379,10 @@ def _secant(
         return stiffness(waves @ orbit.force, waves @ orbit.displacement)
 
     try:
-        recorded = orbit(model, first, 5 * _LIMIT)
+        samples = orbit(model, first, 5 * _LIMIT)
     except RacewayError as error:
         return None, f"not estimated: {str(error).splitlines()[0]}"
-    base = value(recorded)
+    base = value(samples)
     if not abs(base - identification.dynamic_stiffness) <= _SAME * abs(base):
         return None, "not estimated: the motion that was identified is no steady orbit"
     speed = identification.speed
@@ -390,7 +390,7 @@ def _secant(
     def of_orbit(variant: Model, state: Equilibrium) -> float:
         apart = state.displacement - equilibrium.displacement
         try:
-            z = value(orbit(variant, recorded.displacement + apart, _LIMIT))
+            z = value(orbit(variant, samples.displacement + apart, _LIMIT))
         except RacewayError:  # balls lift off: from the linear response, on a mesh that follows the motion
             if not method.inertial:
                 raise

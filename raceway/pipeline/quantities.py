@@ -42,13 +42,13 @@ def stated_quantities(model: Model, equilibrium: Equilibrium, record: Record | N
     """
     points, values, tables, warnings = solved_point(model, equilibrium, record), Tables(), dict[str, Tables](), list[str]()
     for plugin in fitting_quantities(model.problem):
-        computed = quantities_at(plugin, points)
-        tables[plugin.name], sentences = quantity_report(plugin, points, computed)
+        numbers = quantities_at(plugin, points)
+        tables[plugin.name], sentences = quantity_report(plugin, points, numbers)
         warnings += sentences
-        values |= {name: value[0] if value.ndim > 1 else float(value[0]) for name, value in computed.items()}
+        values |= {name: value[0] if value.ndim > 1 else float(value[0]) for name, value in numbers.items()}
     missing = {name: why for name, why in missing_quantities(model.problem).items() if why}
-    asked = model.scene.source.get("quantities", {})
-    warnings += [f"[quantities.{name}] has no effect: {why}" for name, why in missing.items() if asked.get(name)]
+    given = model.scene.source.get("quantities", {})
+    warnings += [f"[quantities.{name}] has no effect: {why}" for name, why in missing.items() if given.get(name)]
     return StatedQuantities(values, tables, tuple(warnings), missing)
 
 

@@ -393,8 +393,8 @@ class Result(Answer):
     def _across(self) -> float | None:
         """Error of Z across its own direction, over |Z|: mesh and calibration change the size of a stiffness and turn no phase."""
         total, bodies, z = self.error["total"], self.error.get("bodies") or 0.0, self.dynamic_stiffness
-        turned = abs(z.imag) / abs(z) if z else 0.0
-        return None if total is None else max(total - bodies, 0.0) + bodies * turned
+        angle = abs(z.imag) / abs(z) if z else 0.0
+        return None if total is None else max(total - bodies, 0.0) + bodies * angle
 
     def report(self) -> Iterable[Part]:
         """The answer first, then what it rests on; what makes the numbers doubtful before them."""
@@ -432,13 +432,13 @@ def _complex(z: complex) -> Tables:
 
 def band_table(ends: list[Result]) -> Tables:
     """``identification.band``: numbers of the results at both ends of the band of time constants, [low, high]."""
-    identified = [end.identification for end in ends if end.identification is not None]
-    assert len(identified) == len(ends), "static scenes have no band"
+    identifications = [end.identification for end in ends if end.identification is not None]
+    assert len(identifications) == len(ends), "static scenes have no band"
     return {
         "time_constant_s": list(TIME_CONSTANTS),
         **{quantity.name: [quantity.of(end) for end in ends] for quantity in (C, C_ERROR, K)},
-        "loss_factor": [z.equivalent_damping * z.speed / z.equivalent_stiffness for z in identified],
-        "phase_lag_deg": [z.phase_lag_deg for z in identified],
+        "loss_factor": [z.equivalent_damping * z.speed / z.equivalent_stiffness for z in identifications],
+        "phase_lag_deg": [z.phase_lag_deg for z in identifications],
     }
 
 
@@ -468,25 +468,30 @@ def facts(result: Result) -> list[Fact]:
     count = len(result.warnings)
     warning = [(f"{count} warning{'' if count == 1 else 's'}", "see .warnings", result.warnings[0])] if count else []
     loads, forces = result.ball_loads, result.equilibrium.contact_force
-    told = {"uncertainty": result.uncertainty, "equilibrium": result.at_rest}
+    of_result = {"uncertainty": result.uncertainty, "equilibrium": result.at_rest}
     problem, cost = result.model.problem, result.cost
     kind = f"{problem.bodies.name} bodies, {problem.contact.kind}, {problem.integrator.kind}"
     steps = f"{cost['steps']} steps" if cost["steps"] else "static"
-    compiled = f"; compiling, apart and once: {cost['compile_s']:.2g} s" if cost["compile_s"] else ""
+    compilation = f"; compiling, apart and once: {cost['compile_s']:.2g} s" if cost["compile_s"] else ""
     return [
         *_identified_facts(result),
         *warning,
-        *(stated(quantity, told) for quantity in (KXX, KYY, KYY_TILTS_FOLLOW) if quantity.of(result) is not None),
+        *(stated(quantity, of_result) for quantity in (KXX, KYY, KYY_TILTS_FOLLOW) if quantity.of(result) is not None),
         X.fact(result),
         ("ball loads", f"{np.min(loads):.5g} to {np.max(loads):.5g} N", f"static, {len(loads)} balls, inner race"),
         *largest_facts(largest_contacts(forces, pressures(result.model, forces), "largest"), "static"),
         ("bearing", str(problem.scene.source["bearing"].get("preset") or "own geometry"), kind),
-        ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compiled}"),
+        ("cost", number(cost["wall_s"], "s", 3), f"{steps}{compilation}"),
     ]
 
 
 def _identified_facts(result: Result) -> list[Fact]:
-    z, band, total, told = result.identification, result.band, result.error["total"], {"uncertainty": result.uncertainty}
+    z, band, total, of_result = (
+        result.identification,
+        result.band,
+        result.error["total"],
+        {"uncertainty": result.uncertainty},
+    )
     if z is None:
         return []
     speed = f"{60.0 * z.frequency_hz:g} r/min, {tilt_words(result.model.problem.supports.tilt)}"
@@ -495,7 +500,7 @@ def _identified_facts(result: Result) -> list[Fact]:
         remark = "both ends of the band of time constants; other numbers are of the low end"
         damping = C.label, C.span(band[C.name], 3), remark
     rows = [
-        stated(K, told),
+        stated(K, of_result),
         damping,
         Z.fact(result, speed),
         (

@@ -86,7 +86,7 @@ def run(
         try:
             once = partial(_run, registry=registry, on_progress=on_progress, near=near, patience=patience, stay=stay)
             band = scene.contact.in_a_band and scene.excitation is not None
-            return _finished(_run_band(scene, once) if band else once(scene), registry)
+            return _with_reports(_run_band(scene, once) if band else once(scene), registry)
         except (ArithmeticError, np.linalg.LinAlgError) as why:
             raise ConvergenceError(
                 f"the numbers of this scene exceed the range of floating-point arithmetic ({why}): check its units"
@@ -99,7 +99,7 @@ def run(
         raise
 
 
-def _finished(result: Result, registry: Registry) -> Result:
+def _with_reports(result: Result, registry: Registry) -> Result:
     """The result, with what plug-ins that hear of it fail in."""
     try:
         registry.notify("raceway_run_finished", result=result)
@@ -137,12 +137,12 @@ def steady_plan(scene: Scene) -> ScenePlan:
 def _run(
     scene: Scene, registry: Registry, on_progress: OnProgress | None, near: Result | None, patience: float, stay: bool
 ) -> Result:
-    started, processor = working_clock(), working_process_time()
+    start, processor = working_clock(), working_process_time()
     plan = steady_plan(scene)
     allowance = Allowance.of(plan, patience)
     registry.notify("raceway_plan_made", plan=plan)
     model = build_model(scene, plan)
-    built = working_clock()
+    after_model = working_clock()
 
     def progress(label: str, step: int, total: int) -> None:
         registry.notify("raceway_chunk_done", done=step, total=total)
@@ -155,23 +155,23 @@ def _run(
         answer = _Answer(body_errors(model, equilibrium, Estimate.STATIC_SCENE()))
     else:
         move = partial(_motions, equilibrium=equilibrium, progress=progress, near=near, stay=stay)
-        model, motions, doubts = _moved(model, move, allowance, registry)
+        model, motions, doubts = _motion_of(model, move, allowance, registry)
         answer = _answer(model, equilibrium, motions, allowance, doubts)
     answer.error["unresolved"] = unresolved(answer.error)
-    ended, processor = working_clock(), working_process_time() - processor
+    end, processor = working_clock(), working_process_time() - processor
     compile_s = take_compile_seconds()
     bodies = model.bearing.report(model, equilibrium) or None
     times = {
-        "wall_s": ended - started,
+        "wall_s": end - start,
         "cpu_s": processor,
         "compile_s": compile_s,
         "compiled_kept": clock["unkept"] == 0,
-        "build_s": max(built - started, 0.0),
-        "solve_s": ended - built - answer.error_s,
+        "build_s": max(after_model - start, 0.0),
+        "solve_s": end - after_model - answer.error_s,
         "error_s": answer.error_s,
     }
     simulation = answer.motions[-1] if answer.motions else None
-    stated = _stated(scene, model, equilibrium, simulation)
+    quantities = _quantities_of(scene, model, equilibrium, simulation)
     # Each once: a mesh too coarse for its answer comes first, keys without effect last.
     error, identification = answer.error, answer.identification
     warnings = [
@@ -184,7 +184,7 @@ def _run(
         *([] if identification is None else inertia_warnings(bodies, error["total"])),
         *pressure_warnings(model, equilibrium.contact_force),
         *equilibrium.warnings,
-        *stated.warnings,
+        *quantities.warnings,
         *sliding_warnings(model, equilibrium),
         *(text for motion in answer.motions for text in (*motion.warnings, *motion_warnings(motion.model, motion.record))),
         *scene_warnings(model.problem),
@@ -200,7 +200,7 @@ def _run(
         environment=_environment(model.problem, registry),
         lines=_lines(model, simulation),
         bodies=bodies,
-        stated=stated,
+        stated=quantities,
         warnings=tuple(dict.fromkeys(warnings)),
     )
 
@@ -232,15 +232,15 @@ def _answer(
     identification = model.problem.identifier.method.identify(records, equilibrium, model)
     if not np.isfinite(identification.dynamic_stiffness):
         raise ConvergenceError("the 1x displacement does no work with the force: no dynamic stiffness can be identified")
-    identified = Identified(model, equilibrium, motions, identification, allowance.check)
-    started = working_clock()
+    at_value = Identified(model, equilibrium, motions, identification, allowance.check)
+    start = working_clock()
     if allowance.spent:  # what is computed is kept
         doubts = [allowance.words("the error is not estimated, because the run far exceeded its plan"), *doubts]
         error = no_error(Estimate.BEYOND_PLAN())
     else:
-        error = error_table(identified)
-    identification = with_series_error(identified, error["time_step"])
-    return _Answer(error, identification, motions, working_clock() - started, tuple(doubts))
+        error = error_table(at_value)
+    identification = with_series_error(at_value, error["time_step"])
+    return _Answer(error, identification, motions, working_clock() - start, tuple(doubts))
 
 
 def _motions(
@@ -256,7 +256,7 @@ def _motions(
     return [simulate(model, equilibrium, progress, near=near.simulation if near is not None and same else None, stay=stay)]
 
 
-def _moved(
+def _motion_of(
     model: Model, move: Callable[[Model], list[Simulation]], allowance: Allowance, registry: Registry
 ) -> tuple[Model, list[Simulation], list[str]]:
     """The motions; integrated over time, with a warning, where planning chose a steady orbit that is not found or is unstable."""
@@ -290,15 +290,15 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
     return lines(simulation.record.time, simulation.record.displacement, frequencies)
 
 
-def _stated(scene: Scene, model: Model, equilibrium: Equilibrium, simulation: Simulation | None) -> StatedQuantities:
-    stated = stated_quantities(model, equilibrium, None if simulation is None else simulation.record)
+def _quantities_of(scene: Scene, model: Model, equilibrium: Equilibrium, simulation: Simulation | None) -> StatedQuantities:
+    quantities = stated_quantities(model, equilibrium, None if simulation is None else simulation.record)
     if scene.heat is not None:
         from raceway.pipeline.warm import band_of_heat, friction_band
 
-        band = stated.tables["heat"]["band"] = band_of_heat(scene, friction_band(stated.values))
+        band = quantities.tables["heat"]["band"] = band_of_heat(scene, friction_band(quantities.values))
         if simulation is not None:
             band["not_computed"] = "the motion is computed at one set of temperatures; kyy at rest has a band"
-    return stated
+    return quantities
 
 
 def _friction(motion: Simulation) -> float:
@@ -401,10 +401,10 @@ class Allowance:
     @classmethod
     def of(cls, plan: ScenePlan, patience: float) -> Allowance:
         """Without an end where the plan knows no more than what a run takes at least."""
-        planned = max(plan.predicted_wall_s, _LEAST_S)
+        seconds = max(plan.predicted_wall_s, _LEAST_S)
         if plan.at_least or patience == inf:
-            return cls(planned, inf)
-        return cls(planned, patience, bytes=plan.predicted_bytes)
+            return cls(seconds, inf)
+        return cls(seconds, patience, bytes=plan.predicted_bytes)
 
     @property
     def taken(self) -> float:

@@ -28,12 +28,12 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
     rows = [("Elastic bodies", "", str(model.get("bodies", "")))]
     elasticity = model.get("elasticity")
     if elasticity is not None:
-        told = ", ".join("-" if elasticity[i][i] is None else f"{100 * elasticity[i][i]:+.1f} %" for i in (0, 1))
-        rows.append(("kxx, kyy changed by", told, "against rigid rings and balls under the same loads"))
-    taken = model.get("compliance")
-    if taken is not None:
-        values = ", ".join(f"{1e9 * taken[name]:.2f}" for name in ("inner_m_per_n", "outer_m_per_n"))
-        angle = f"inner, outer contact at {taken['contact_angle_deg']:.1f} deg, beyond Hertz"
+        changes = ", ".join("-" if elasticity[i][i] is None else f"{100 * elasticity[i][i]:+.1f} %" for i in (0, 1))
+        rows.append(("kxx, kyy changed by", changes, "against rigid rings and balls under the same loads"))
+    compliance = model.get("compliance")
+    if compliance is not None:
+        values = ", ".join(f"{1e9 * compliance[name]:.2f}" for name in ("inner_m_per_n", "outer_m_per_n"))
+        angle = f"inner, outer contact at {compliance['contact_angle_deg']:.1f} deg, beyond Hertz"
         rows.append(("structural compliance", f"{values} nm/N", angle))
     mesh = model.get("mesh") or {}
     along, change = mesh.get("nodes_per_semi_axis"), mesh.get("change_from_coarser")
@@ -45,15 +45,15 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
         values = ", ".join(f"{1e9 * mesh[f'replaced_{race}_m_per_n']:.2f}" for race in ("inner", "outer"))
         how = f"inner, outer: compliance of the mesh below a contact, uncertain by {100.0 * sure:.1g} % of the contact's"
         rows.append(("replaced by the law", f"{values} nm/N", how))
-    share, unbalanced, energies = (model.get(name) for name in ("penetration_share", "unbalanced_n", "energies_j"))
+    share, imbalance, energies = (model.get(name) for name in ("penetration_share", "unbalanced_n", "energies_j"))
     if share is not None:
         rows.append(("penetration share", number(100.0 * share, "%", 3), "of the approach at most: penetration of the law"))
     rows += _subsurface(model.get("subsurface") or [])
-    if unbalanced is not None:
-        rows.append(("unbalanced force", number(unbalanced, "N", 2), "largest, reaction against load"))
+    if imbalance is not None:
+        rows.append(("unbalanced force", number(imbalance, "N", 2), "largest, reaction against load"))
     if energies is not None:
-        shown = ", ".join(f"{name} {1e3 * value:.3g}" for name, value in energies.items())
-        rows.append(("energies", "", f"{shown} mJ"))
+        parts = ", ".join(f"{name} {1e3 * value:.3g}" for name, value in energies.items())
+        rows.append(("energies", "", f"{parts} mJ"))
     inertia = model.get("inertia")
     if inertia is not None:
         rows += _inertia(inertia)
@@ -65,22 +65,22 @@ def _subsurface(sides: Sequence[ReadTables]) -> list[Row]:
     rows: list[Row] = []
     for race in dict.fromkeys(str(side["race"]) for side in sides):
         pair = [side for side in sides if side["race"] == race]
-        fine, coarse = ([side for side in pair if bool(side["resolved"]) is wanted] for wanted in (True, False))
+        fine, coarse = ([side for side in pair if bool(side["resolved"]) is state] for state in (True, False))
         value = ", ".join(f"{1e-6 * side['largest_shear_pa']:.0f}" for side in fine)
-        told = []
+        lines = []
         if fine:
             bodies, depths = (
                 ", ".join(side["body"] for side in fine),
                 ", ".join(f"{1e6 * side['depth_m']:.0f}" for side in fine),
             )
-            told.append(f"{bodies}, {depths} µm deep")
+            lines.append(f"{bodies}, {depths} µm deep")
         if coarse:
             worst, key = min(((side, key) for side in coarse for key in _CELLS), key=lambda pair: pair[0][pair[1]])
             bodies = " and ".join(side["body"] for side in coarse)
             which = "not resolved" if fine else "by this mesh"
-            told.append(f"{which} in {bodies}: {worst[key]:.2g} elements {_CELLS[key]}, not 4")
-        told.append(f"Hertz {1e-6 * pair[0]['hertz_largest_shear_pa']:.0f} MPa at {1e6 * pair[0]['hertz_depth_m']:.0f} µm")
-        rows.append((f"largest shear, {race}", f"{value} MPa" if fine else "not resolved", "; ".join(told)))
+            lines.append(f"{which} in {bodies}: {worst[key]:.2g} elements {_CELLS[key]}, not 4")
+        lines.append(f"Hertz {1e-6 * pair[0]['hertz_largest_shear_pa']:.0f} MPa at {1e6 * pair[0]['hertz_depth_m']:.0f} µm")
+        rows.append((f"largest shear, {race}", f"{value} MPa" if fine else "not resolved", "; ".join(lines)))
     return rows
 
 
@@ -91,16 +91,16 @@ def _inertia(inertia: ReadTables) -> list[Row]:
         "outer_supported": "outer ring",
         "ball_along_grooves": "ball along its grooves",
     }
-    known = {word: name for name, word in names.items() if inertia.get(f"{name}_hz") is not None}
-    if not known:
+    modes = {word: name for name, word in names.items() if inertia.get(f"{name}_hz") is not None}
+    if not modes:
         return []
-    slowest = min(known, key=lambda word: inertia[f"{known[word]}_hz"])
-    error = inertia[f"{known[slowest]}_error"]
+    slowest = min(modes, key=lambda word: inertia[f"{modes[word]}_hz"])
+    error = inertia[f"{modes[slowest]}_error"]
     moves = " is part of the motion" if slowest.startswith("ball") and inertia.get("ball_along_grooves_in_motion") else ""
     costs = moves if error is None else f", quasi-static: error (w / w1)^2 = {error:.1e}"
-    rings = min(inertia[f"{known[word]}_hz"] for word in known if word != "ball along its grooves")
+    rings = min(inertia[f"{modes[word]}_hz"] for word in modes if word != "ball along its grooves")
     remark = f"{slowest}{costs}; rings as supported from {1e-3 * rings:.3g} kHz"
-    return [("lowest elastic mode", number(1e-3 * inertia[f"{known[slowest]}_hz"], "kHz", 3), remark)]
+    return [("lowest elastic mode", number(1e-3 * inertia[f"{modes[slowest]}_hz"], "kHz", 3), remark)]
 
 
 #: Axial forces below this are rounding.
@@ -109,27 +109,27 @@ _ROUNDING_N = 1e-6
 
 def equilibrium_rows(result: ReadTables) -> list[Row]:
     """Displacement and loads; the tangent stiffness where it is not the answer itself."""
-    found, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
-    moved, dynamic = found["displacement"], result["identification"] is not None
+    equilibrium, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
+    displacement, dynamic = equilibrium["displacement"], result["identification"] is not None
     load = result["scene"]["load"]
     words = [f"{load['axial']:g} N axial"]
     words += [f"{load['radial'][0]:g}, {load['radial'][1]:g} N radial"] if any(load["radial"]) else []
     words += [f"{load['moment'][0]:g}, {load['moment'][1]:g} N m"] if any(load["moment"]) else []
     rows = [(f"Equilibrium under {', '.join(words)}", "", ""), X.fact(result, "axial, + preloads the bearing")]
-    across = [in_micro(moved[name]) for name in ("y", "z")]
+    across = [in_micro(displacement[name]) for name in ("y", "z")]
     if across != ["0", "0"]:
         rows.append(("displacement y, z", f"{', '.join(across)} µm", "radial"))
     if tilt != "locked":
-        tilts = ", ".join(in_micro(moved[name]) for name in ("tilt_y", "tilt_z"))
+        tilts = ", ".join(in_micro(displacement[name]) for name in ("tilt_y", "tilt_z"))
         rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
-    rows += mounting_rows(found)
+    rows += mounting_rows(equilibrium)
     rows += loaded_balls(result, ["most", "least"] if dynamic else ["least"])
     return rows + (tangent_rows(result) if dynamic else [])
 
 
-def mounting_rows(found: ReadTables) -> list[Row]:
+def mounting_rows(equilibrium: ReadTables) -> list[Row]:
     """Preload and held axial force: running, mounted and before mounting."""
-    rows, preload, held = [], found["preload"], found["held_axial"]
+    rows, preload, axial = [], equilibrium["preload"], equilibrium["held_axial"]
     if preload is not None:
         forces = ", ".join(number(force) for force in preload["rows_n"])
         what = {"rigid": "the offset of the rows", "spring": "the force of the rows on the spring"}[preload["kind"]]
@@ -142,10 +142,10 @@ def mounting_rows(found: ReadTables) -> list[Row]:
         loads = ", ".join("never" if load is None else number(load, "N") for load, _ in lifts)
         which = ", ".join(f"row {row} along {way}" for way, (_, row) in zip(("+x", "-x"), lifts, strict=True) if row)
         rows.append(("axial load at lift-off", loads, f"without other loads: {which}"))
-    if held is not None:
-        before = f"before mounting {held['before_mounting_n']:g} N, mounted {held['mounted_n']:.5g} N"
+    if axial is not None:
+        before = f"before mounting {axial['before_mounting_n']:g} N, mounted {axial['mounted_n']:.5g} N"
         how = f"force of the held displacement; {before}"
-        running = held["running_n"] if abs(held["running_n"]) > _ROUNDING_N else 0.0
+        running = axial["running_n"] if abs(axial["running_n"]) > _ROUNDING_N else 0.0
         rows.append(("axial force", number(running, "N"), how))
     return rows
 
@@ -168,30 +168,30 @@ _NEGLIGIBLE = 1e-2
 
 def error_rows(result: ReadTables) -> list[Row]:
     """Intervals of loads, pressure, life and preload; the numerical error of K with the parts of that of Z."""
-    error, identified = result["error"], result["identification"]
+    error, identification = result["error"], result["identification"]
     entries = {one.symbol.replace("_", " "): result["uncertainty"][one.name] for one in HEADLINE if one not in STIFFNESSES}
     texts = {name: interval(one) for name, one in entries.items() if one and one["parts"]["data"]["low"] is not None}
-    told = ", ".join(f"{name.removeprefix('peak ')} {text.partition(' %:')[0]}" for name, text in texts.items())
+    intervals = ", ".join(f"{name.removeprefix('peak ')} {text.partition(' %:')[0]}" for name, text in texts.items())
     makers = any("other makers" in text.partition("not estimated: ")[2] for text in texts.values())
-    rows: list[Row] = [("", "", f"{told} %{', for one maker' if makers else ''}")] if told else []
+    rows: list[Row] = [("", "", f"{intervals} %{', for one maker' if makers else ''}")] if intervals else []
     # Laws other than Hertz's are no part of the total: they widen the intervals.
     names = ["time_step", "transient", "identification", "mesh", *(["contact"] if error["bodies"] else [])]
     parts = {name.replace("_", " "): error.get(name) for name in names}
     least = _NEGLIGIBLE * (error["total"] or 0.0)
-    known = {name: f"{name} {value:.1e}" for name, value in parts.items() if value and value > least}
-    if identified is None:
-        return [*rows, *([("relative error", "", f"of the stiffness: {', '.join(known.values())}")] if known else [])]
+    sizes = {name: f"{name} {value:.1e}" for name, value in parts.items() if value and value > least}
+    if identification is None:
+        return [*rows, *([("relative error", "", f"of the stiffness: {', '.join(sizes.values())}")] if sizes else [])]
     rigid = result["model"] is None  # which have no mesh
     unknown = [name for name, value in parts.items() if value is None and not (rigid and name == "mesh")]
     # A single part is the total, whose number stands beside it.
-    words = [", ".join(known.values() if len(known) > 1 else known)] if known else []
+    words = [", ".join(sizes.values() if len(sizes) > 1 else sizes)] if sizes else []
     words += [f"{', '.join(unknown)} not estimated"] if unknown else []
     total = "not estimated" if error["total"] is None else f"{error['total']:.1e}"
     if (absolute := K_ERROR.of(result)) is None:
         rows.append(("relative error of Z", total, "; ".join(words)))
     else:
         rows.append(("numerical error of K", K.text(absolute, 2), f"of Z, relative: {total}, {'; '.join(words)}"))
-    series = [window for window in identified.get("series", []) if window["error"] is not None]
+    series = [window for window in identification.get("series", []) if window["error"] is not None]
     if series:
         worst = max(series, key=lambda window: window["error"])
         how = f"at {worst['speed_rpm']:.6g} r/min; of {len(series)} windows, all in result.json"
@@ -199,12 +199,12 @@ def error_rows(result: ReadTables) -> list[Row]:
     return rows
 
 
-def orbit_rows(found: Sequence[ReadTables]) -> list[Row]:
+def orbit_rows(orbits: Sequence[ReadTables]) -> list[Row]:
     """Steady motions under the same force, where more than one was found."""
-    if len(found) < 2:
+    if len(orbits) < 2:
         return []
     rows: list[Row] = [("Steady motions", "", "")]
-    for k, one in enumerate(found):
+    for k, one in enumerate(orbits):
         z, word = one["dynamic_stiffness"], "unstable" if not one["stable"] else one["verdict"]
         grows = f"{word}, multiplier {one['multiplier']:.4g} per turn, found {one['found']}{'; reported above' if one['taken'] else ''}"
         value = f"{1e-6 * z['real']:.5g} {'-' if z['imag'] < 0.0 else '+'} {1e-6 * abs(z['imag']):.4g}j N/µm"
@@ -214,11 +214,11 @@ def orbit_rows(found: Sequence[ReadTables]) -> list[Row]:
 
 def cost_row(cost: ReadTables) -> Row:
     """Time and memory; of a run that compiled, which happens once, time alone."""
-    compiled, digits = cost["compile_s"], 2 if cost["compile_s"] else 3
+    compile_s, digits = cost["compile_s"], 2 if cost["compile_s"] else 3
     words = [number(cost["cpu_s"], "CPU-s", digits)] if "cpu_s" in cost else []
-    if compiled:
-        cached = "cached" if cost.get("compiled_kept", True) else "not cached, the cache cannot be written"
-        words.append(f"compiling {number(compiled, 's', digits)}, {cached}")
+    if compile_s:
+        where = "cached" if cost.get("compiled_kept", True) else "not cached, the cache cannot be written"
+        words.append(f"compiling {number(compile_s, 's', digits)}, {where}")
     else:
         words += [f"{cost['steps']} steps"] if cost["steps"] else []
         words += [f"{cost['peak_memory_bytes'] / 2**20:.0f} MiB"]
@@ -226,11 +226,11 @@ def cost_row(cost: ReadTables) -> Row:
     return "wall time", number(cost["wall_s"], "s", 3), ", ".join(words)
 
 
-def stability_rows(found: ReadTables) -> list[Row]:
+def stability_rows(stability: ReadTables) -> list[Row]:
     """How the motion ended; nothing where none was integrated."""
-    limit, drift = found["critical_time_step_s"], found["energy_drift"]
+    limit, drift = stability["critical_time_step_s"], stability["energy_drift"]
     words = f"explicit limit {limit or 0.0:.3g} s" if drift is None else f"energy drift {drift:.1e}"
-    return [] if limit is None and drift is None else [("stability", found["status"], words)]
+    return [] if limit is None and drift is None else [("stability", stability["status"], words)]
 
 
 def interval_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
@@ -244,17 +244,17 @@ def interval_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
 
 def tangent_rows(result: ReadTables) -> list[Row]:
     """kxx, kyy and kyy with tilts that follow, each within its interval."""
-    told = [stated(one, result) for one in (KXX, KYY, KYY_TILTS_FOLLOW) if one.of(result) is not None]
-    axial, radial, *follows = [(label, value, words.partition(":")[0]) for label, value, words in told]
+    facts = [stated(one, result) for one in (KXX, KYY, KYY_TILTS_FOLLOW) if one.of(result) is not None]
+    axial, radial, *follows = [(label, value, words.partition(":")[0]) for label, value, words in facts]
     both = ("tangent kxx, kyy", f"{axial[1].partition(' ')[0]}, {radial[1]}", f"{axial[2]}, {radial[2]}")
     return [both, *follows, *held_rows(result)]
 
 
 def held_rows(result: ReadTables) -> list[Row]:
     """kxx within a motion, of a set with rows on a spring."""
-    held = result["equilibrium"]["stiffness_rows_held"]
+    stiffness = result["equilibrium"]["stiffness_rows_held"]
     how = "rows on the spring held as within a motion; above they follow"
-    return [] if held is None else [("kxx, rows held", KXX.text(held[0][0]), how)]
+    return [] if stiffness is None else [("kxx, rows held", KXX.text(stiffness[0][0]), how)]
 
 
 def loaded_balls(result: ReadTables, words: Sequence[str]) -> list[Row]:
@@ -267,8 +267,8 @@ def loaded_balls(result: ReadTables, words: Sequence[str]) -> list[Row]:
 
 def _loaded_ball(result: ReadTables, word: str, alike: bool) -> Row:
     """By row and number in its row, with azimuth; the most loaded one on the race where that is, then on the other one."""
-    found, balls = result["equilibrium"], result["equilibrium"]["balls"]
-    outer = word == "most" and found["largest_ball_load_race"] == "outer"
+    equilibrium, balls = result["equilibrium"], result["equilibrium"]["balls"]
+    outer = word == "most" and equilibrium["largest_ball_load_race"] == "outer"
     own, other = ("outer", "inner") if outer else ("inner", "outer")
     pick = max if word == "most" else min
     index, ball = pick(enumerate(balls), key=lambda item: item[1][f"load_{own}_n"])
@@ -288,6 +288,6 @@ def _contact(ball: ReadTables, race: str) -> str:
     if angle is None:
         return "open"
     names = {"points": f"peak_pressure_points_{race}_pa", "nodal": f"peak_pressure_nodal_{race}_pa"}
-    told = [f"{1e-6 * ball[key]:.0f} MPa {word}" for word, key in names.items() if ball.get(key) is not None]
-    hertz = f"{1e-6 * ball[f'peak_pressure_{race}_pa']:.0f} MPa{' by Hertz' if told else ''}"
-    return ", ".join([*told, hertz, f"{angle:.2f} deg"])
+    stresses = [f"{1e-6 * ball[key]:.0f} MPa {word}" for word, key in names.items() if ball.get(key) is not None]
+    hertz = f"{1e-6 * ball[f'peak_pressure_{race}_pa']:.0f} MPa{' by Hertz' if stresses else ''}"
+    return ", ".join([*stresses, hertz, f"{angle:.2f} deg"])

@@ -49,18 +49,18 @@ _OF_Z = (
 
 def _answer_rows(result: ReadTables) -> list[Row]:
     """The first section."""
-    found = result["identification"]
-    if found is None:
+    identification = result["identification"]
+    if identification is None:
         return _static(result)
     major, minor = ORBIT_MAJOR.of(result), ORBIT_MINOR.of(result)
     thin, dry = minor <= _LINE * major, dry_damping_note(result)
     axes = f"{ORBIT_MAJOR.read(major):.4g} x {'0' if thin else f'{ORBIT_MINOR.read(minor):.4g}'} {ORBIT_MAJOR.read_unit}"
     force = f"{FORCE_AMPLITUDE.text(FORCE_AMPLITUDE.of(result), 4)} {result['scene']['excitation']['kind']}"
     return [
-        (f"Answer at {SPEED.of(result):g} r/min, {force}, {tilt_words(found['tilt'])}", "", ""),
+        (f"Answer at {SPEED.of(result):g} r/min, {force}, {tilt_words(identification['tilt'])}", "", ""),
         *interval_rows(result, K),
         *_damping_rows(result),
-        Z.fact(result, f"{found['definition'].partition(':')[0]}, m = {MASS.of(result):.4g} kg"),
+        Z.fact(result, f"{identification['definition'].partition(':')[0]}, m = {MASS.of(result):.4g} kg"),
         ("orbit, semi-axes", axes, f"synchronous (1x){', a line' if thin else ''}"),
         *([("", "", dry)] if dry else []),
     ]
@@ -139,24 +139,26 @@ def screen(result: ReadTables) -> Screen:
         forces = f"{bearing['preload']:g} N" if bearing.get("preload") else "the rows' own forces"
         if bearing.get("second_preload"):
             forces += f" and {bearing['second_preload']:g} N"
-        braced = bearing.get("preload") or any(row.get("preload") for row in own)
+        has_preload = bearing.get("preload") or any(row.get("preload") for row in own)
         each = " of each row, as ground" if bearing.get("preload_of") == "row" else ""
-        mounted = f"preload {forces}{each} before mounting ({bearing['preload_kind']})" if braced else "without preload"
+        mounting = (
+            f"preload {forces}{each} before mounting ({bearing['preload_kind']})" if has_preload else "without preload"
+        )
         count = len(own) if kind == "single" else len(signs_of(kind))
         apart = bearing.get("row_distance") or bearing.get("width")
-        placed = own and all(row.get("position") is not None for row in own)
+        with_positions = own and all(row.get("position") is not None for row in own)
         places = (
             ", ".join(f"{1e3 * row['position']:g}" for row in own) + " mm"
-            if placed
+            if with_positions
             else f"{1e3 * (apart or 0.0):g} mm apart"
         )
         what = "unequal rows, see bearing.row" if any(set(row) & set(GEOMETRY) for row in own) else "rows of these balls"
         name = f"pair {kind}, {_PAIRS[kind]}" if kind in _PAIRS else f"set {kind}" if kind != "single" else "set of rows"
-        words.append(f"{name}: {'two' if count == 2 else count} {what}, {places}, {mounted}")
+        words.append(f"{name}: {'two' if count == 2 else count} {what}, {places}, {mounting}")
     words += [geometry["designation"]] if "designation" in geometry else []
     law = f"law {scene['contact']['kind']}, {scene['contact']['discretisation']}"
-    if chosen := result["plan"].get("integrator"):  # ``raceway plan`` has the reason
-        law += f"; integrator {chosen['kind']}{', by default' if chosen['why'] else ''}"
+    if method := result["plan"].get("integrator"):  # ``raceway plan`` has the reason
+        law += f"; integrator {method['kind']}{', by default' if method['why'] else ''}"
     words.append(f"{scene['bodies']['kind']} bodies, {law}")
     omitted = [row["part"] for row in result["plan"]["left_out"]]
     more = f" and {len(omitted) - _LEFT_OUT_SHOWN} more" if len(omitted) > _LEFT_OUT_SHOWN else ""
@@ -166,14 +168,14 @@ def screen(result: ReadTables) -> Screen:
 
 def report(result: ReadTables) -> list[Part]:
     """Of a terminal: what makes the numbers doubtful is read before them, how the bearing is arranged and modelled after them."""
-    shown = screen(result)
-    bearing, *model = shown.bearing.splitlines()
+    rows = screen(result)
+    bearing, *model = rows.bearing.splitlines()
     return [
-        *(Words(f"warning: {text}", "yellow") for text in shown.warnings),
-        Words(shown.title, "bold"),
+        *(Words(f"warning: {text}", "yellow") for text in rows.warnings),
+        Words(rows.title, "bold"),
         Words(bearing, "dim"),
-        sections(shown.rows),
-        Words("\n".join([*model, shown.left_out]), "dim"),
+        sections(rows.rows),
+        Words("\n".join([*model, rows.left_out]), "dim"),
     ]
 
 

@@ -137,11 +137,11 @@ def simulate(
     label = f"{model.problem.integrator.kind}, {schedule.steps} steps"
     progress = None if on_progress is None else (lambda step, total: on_progress(label, step, total))
     record = integrate(method, model.system, motion, schedule, progress)
-    used = turns - ceil(ramp)
+    window = turns - ceil(ramp)
     if start.kind == "static" and method.inertial and not method.steady:
-        used = max(model.plan.turns // 3, 1)
+        window = max(model.plan.turns // 3, 1)
     warnings = (*start.warnings, *step_warnings, *record.counts.get("warnings", ()))
-    return Simulation(model, equilibrium, record.last(max(used, 1)), record, critical, start, warnings)
+    return Simulation(model, equilibrium, record.last(max(window, 1)), record, critical, start, warnings)
 
 
 def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[Simulation]:
@@ -353,7 +353,7 @@ def last_turn(record: Record, period: float) -> Recorded | None:
     return Recorded(period, q, v, np.fft.irfft(lines, n, axis=0))
 
 
-def settles_elsewhere(model: Model, simulation: Simulation, settled: Record) -> bool:
+def settles_elsewhere(model: Model, simulation: Simulation, orbit: Record) -> bool:
     """Whether a motion repeats itself turn by turn on another orbit than the steady motion: several exist.
 
     Notes
@@ -366,9 +366,9 @@ def settles_elsewhere(model: Model, simulation: Simulation, settled: Record) -> 
     if len(record.time) < 2 * per_turn:
         return False
     last, before = record.displacement[-per_turn:, :3], record.displacement[-2 * per_turn : -per_turn, :3]
-    recorded, steady = (
+    motion, steady = (
         synchronous_phasor(turn.time[-n:], turn.displacement[-n:, :3], frequency)
-        for turn, n in ((record, per_turn), (settled, _SAMPLES))
+        for turn, n in ((record, per_turn), (orbit, _SAMPLES))
     )
     change = float(np.sqrt(2.0 * ((last - before) ** 2).sum(axis=1).mean()))
-    return change < _REPEATS * float(np.linalg.norm(recorded - steady))
+    return change < _REPEATS * float(np.linalg.norm(motion - steady))

@@ -119,10 +119,10 @@ def settled_value(run: Identified) -> complex | None:
         return run.steady.value(run.identification.speed)
     records = []
     for motion in run.motions:
-        settled = steady_record(motion.model, motion.equilibrium, motion, run.on_progress)
-        if settled is None or settles_elsewhere(motion.model, motion, settled):
+        orbit = steady_record(motion.model, motion.equilibrium, motion, run.on_progress)
+        if orbit is None or settles_elsewhere(motion.model, motion, orbit):
             return None
-        records.append(settled)
+        records.append(orbit)
     return run.identify(records)
 
 
@@ -149,23 +149,23 @@ def without_free_vibration(motion: Simulation) -> Clean | None:
     per_turn = motion.steps_per_turn // motion.whole.schedule.stride
     if len(record.time) >= 2 * per_turn:
         frequency, samples = motion.model.excitation.frequency_hz, len(record.time)
-        value, half = _windowed(record, slice(None), frequency), samples // per_turn // 2 * per_turn
+        value, half = _by_window(record, slice(None), frequency), samples // per_turn // 2 * per_turn
         ends = (slice(half), slice(samples - half, None))
-        values = [_windowed(record, end, frequency) for end in ends] if half >= 2 * per_turn else []
+        values = [_by_window(record, end, frequency) for end in ends] if half >= 2 * per_turn else []
         halves = abs(values[0] - values[1]) if values else None
         return Clean(value, _lasting(motion, record, value), Estimate.LEAKAGE(), halves)
     if len(motion.whole.time) <= per_turn or not motion.model.problem.integrator.method.inertial:
         return None
-    return Clean(_closed(motion, per_turn), 0j, Estimate.OPEN_TURN())
+    return Clean(_by_closed_turns(motion, per_turn), 0j, Estimate.OPEN_TURN())
 
 
-def _windowed(record: Record, part: slice, frequency_hz: float) -> complex:
+def _by_window(record: Record, part: slice, frequency_hz: float) -> complex:
     """Z [N/m] of some whole turns under Hann's window."""
     lines = hann_line(record.time[part], np.hstack([record.force, record.displacement])[part], frequency_hz)
     return stiffness(lines[:5], lines[5:])
 
 
-def _closed(motion: Simulation, per_turn: int) -> complex:
+def _by_closed_turns(motion: Simulation, per_turn: int) -> complex:
     """Z of the last turn less what its free vibration leaves in the 1x line."""
     from scipy.linalg import eigh
 
@@ -204,11 +204,11 @@ def _lasting(motion: Simulation, record: Record, value: complex) -> complex:
     periodic = by_turn.mean(axis=0)
     # The mean over the turns keeps 1 / turns of a free vibration's power.
     free = float(((by_turn - periodic) ** 2).sum(axis=2).mean()) * turns / (turns - 1)
-    forced = float(((periodic - periodic.mean(axis=0)) ** 2).sum(axis=1).mean())
-    if forced == 0.0 or free < _LEAST_FREE * forced:
+    periodic_power = float(((periodic - periodic.mean(axis=0)) ** 2).sum(axis=1).mean())
+    if periodic_power == 0.0 or free < _LEAST_FREE * periodic_power:
         return 0j
     tangent = default_registry().find("identifier", "tangent").plugin().identify([], motion.equilibrium, motion.model)
-    share = 2.0 * free / forced
+    share = 2.0 * free / periodic_power
     return share / (1.0 + share) * (value - tangent.dynamic_stiffness)
 
 
@@ -248,14 +248,16 @@ def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None
     if ramp_turns(problem.excitation) > 0.0:
         problem = attrs.evolve(problem, excitation=attrs.evolve(problem.excitation, ramp_turns=0.0))
     for kind in kinds:
-        started = attrs.evolve(problem, integrator=attrs.evolve(problem.integrator, start=kind))
+        other_problem = attrs.evolve(problem, integrator=attrs.evolve(problem.integrator, start=kind))
         try:
-            restarted = simulate(attrs.evolve(motion.model, problem=started), motion.equilibrium, on_progress, run.steps)
+            other_motion = simulate(
+                attrs.evolve(motion.model, problem=other_problem), motion.equilibrium, on_progress, run.steps
+            )
         except (ConvergenceError, StabilityError) as error:
             failure = error
             continue
-        if restarted.start.kind == kind:
-            value = Run.of(restarted).value
+        if other_motion.start.kind == kind:
+            value = Run.of(other_motion).value
             return abs(run.value - value) / min(abs(run.value), abs(value)), kind
     raise failure or ConvergenceError("no orbit was found to start on")
 
@@ -283,17 +285,17 @@ def with_series_error(run: Identified, time_step: float | None) -> Identificatio
     identification, errors = run.identification, list[float | None]()
     if not identification.series_error:
         return identification
-    compared = run.model.excitation.period_s is None and run.model.problem.compared_with_steady
-    for (speed, z), stated in zip(identification.series, identification.series_error, strict=True):
+    has_reference = run.model.excitation.period_s is None and run.model.problem.compared_with_steady
+    for (speed, z), error in zip(identification.series, identification.series_error, strict=True):
         try:
-            settled = run.steady.value(speed) if compared else None
+            reference = run.steady.value(speed) if has_reference else None
         except BeyondPlanError:  # of this window and of those to come nothing is known
             errors += [None] * (len(identification.series) - len(errors))
             break
-        if settled is not None:
-            errors.append(abs(z - settled) / min(abs(z), abs(settled)))
+        if reference is not None:
+            errors.append(abs(z - reference) / min(abs(z), abs(reference)))
         else:
-            errors.append(None if stated is None else stated + (time_step or 0.0))
+            errors.append(None if error is None else error + (time_step or 0.0))
     return attrs.evolve(identification, series_error=tuple(errors))
 
 

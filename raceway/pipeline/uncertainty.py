@@ -55,9 +55,9 @@ Range = tuple[float, float]
 
 def combined(parts: Mapping[str, ReadTables]) -> Range:
     """The interval of parts by ``RULE``, relative; 0 lies inside."""
-    known = {name: (part["low"], part["high"]) for name, part in parts.items() if part["low"] is not None}
-    signed = [_with_zero(known.pop(name)) for name in _SIGNED if name in known]
-    return _squares([(sum(low for low, _ in signed), sum(high for _, high in signed)), *known.values()])
+    intervals = {name: (part["low"], part["high"]) for name, part in parts.items() if part["low"] is not None}
+    same_sign = [_with_zero(intervals.pop(name)) for name in _SIGNED if name in intervals]
+    return _squares([(sum(low for low, _ in same_sign), sum(high for _, high in same_sign)), *intervals.values()])
 
 
 def _with_zero(change: Iterable[float]) -> Range:
@@ -78,7 +78,7 @@ def _part(change: Sequence[float] | None, how: str, **more: object) -> Tables:
 
 def uncertainty_table(result: Result) -> Tables:
     """The table: quantity -> value, unit, low, high, relative, parts, rule; None with its reason in ``why``."""
-    table, why, unresolved = dict[str, Tables | None](), dict[str, str](), ", ".join(result.error["unresolved"] or [])
+    table, why, unclear = dict[str, Tables | None](), dict[str, str](), ", ".join(result.error["unresolved"] or [])
     lives = result.stated.missing.get(L10R.path.partition(".")[0], "no life is computed")
     absent = {K: "the scene is static", L10R: lives, PRELOAD: "the bearing has no preload"}
     scatters, hertz = _at_scatters(result), dict[str, float]()
@@ -93,25 +93,25 @@ def uncertainty_table(result: Result) -> Tables:
             why[name] = absent.get(quantity, "supports.tilt is locked")
         elif not isfinite(value) or not value:
             why[name] = f"{value:g} has no relative change"
-        elif quantity is K and (unresolved or (result.equivalent_stiffness_error or 0.0) > abs(value)):
-            why[name] = f"not resolved: the error of Z ({unresolved or 'total'}) is as large as K"
+        elif quantity is K and (unclear or (result.equivalent_stiffness_error or 0.0) > abs(value)):
+            why[name] = f"not resolved: the error of Z ({unclear or 'total'}) is as large as K"
         if name in why:
             continue
         # K changes as the radial stiffness does.
         static = (KYY if result.kyy_tilts_follow is None else FOLLOWS).name if quantity is K else name
         data = [*_geometry(result, quantity, scatters), *_tolerances(result, quantity)]
         each = [{"part": word, **part} for word, part in data]
-        known = [part for part in each if part["low"] is not None]
+        intervals = [part for part in each if part["low"] is not None]
         how = "; ".join(f"{word}: {part['how']}" for word, part in data) or "the scene states its geometry"
         parts = {
             "numerical": _numerical(result, quantity),
             "hypotheses": _hypotheses(result, name, static),
-            "data": _part(_squares((part["low"], part["high"]) for part in known) if known else None, how, of=each),
+            "data": _part(_squares((part["low"], part["high"]) for part in intervals) if intervals else None, how, of=each),
             "contact": _contact(result, quantity, hertz.get(static)),
             "bodies": _bodies(elastic, KYY.name if quantity in (K, FOLLOWS) else name),
         }
         low, high = combined(parts)
-        if low == high or (quantity is PRELOAD and not known):
+        if low == high or (quantity is PRELOAD and not intervals):
             why[name] = f"not estimated: {', '.join(word for word, part in parts.items() if part['low'] is None)}"
             continue
         low = low if quantity in STIFFNESSES else max(low, -1.0)
@@ -135,12 +135,12 @@ def stated(quantity: Quantity, result: ReadTables) -> Fact:
 def interval(entry: ReadTables) -> str:
     """An interval and its parts in a line, the largest first."""
     (low, high), parts = entry["relative"], entry["parts"]
-    named = {part["part"]: part for part in parts["data"]["of"]} or {"tolerances": parts["data"]}
-    named |= {words: parts[name] for name, words in _SIGNED.items()} | {"numerical": parts["numerical"]}
-    sizes = {words: max(abs(part["low"]), abs(part["high"])) for words, part in named.items() if part["low"] is not None}
-    told = [words for words in sorted(sizes, key=lambda words: -sizes[words]) if sizes[words] > _TOLD * max(-low, high)]
-    each = ", ".join(f"{words} {_percents((named[words]['low'], named[words]['high']), '')}" for words in told)
-    unknown = ", ".join(words for words in named if words not in sizes)
+    by_name = {part["part"]: part for part in parts["data"]["of"]} or {"tolerances": parts["data"]}
+    by_name |= {words: parts[name] for name, words in _SIGNED.items()} | {"numerical": parts["numerical"]}
+    sizes = {words: max(abs(part["low"]), abs(part["high"])) for words, part in by_name.items() if part["low"] is not None}
+    largest = [words for words in sorted(sizes, key=lambda words: -sizes[words]) if sizes[words] > _TOLD * max(-low, high)]
+    each = ", ".join(f"{words} {_percents((by_name[words]['low'], by_name[words]['high']), '')}" for words in largest)
+    unknown = ", ".join(words for words in by_name if words not in sizes)
     return f"{_percents((low, high), '+- ')} %: {each}{unknown and f'; not estimated: {unknown}'}"
 
 
@@ -157,8 +157,8 @@ def _numerical(result: Result, quantity: Quantity) -> Tables:
     if quantity is K or (quantity in (PEAK_BALL_LOAD, P0) and result.simulation is not None):
         if error["total"] is None:
             return _part(None, how["total"])
-        calibrated = (error["contact"] or 0.0) if result.model.traits.calibrated else 0.0
-        size = max(error["total"] - calibrated, 0.0) * (Z.of(result) / abs(K.of(result)) if quantity is K else 1.0)
+        calibration = (error["contact"] or 0.0) if result.model.traits.calibrated else 0.0
+        size = max(error["total"] - calibration, 0.0) * (Z.of(result) / abs(K.of(result)) if quantity is K else 1.0)
         return _part((-size, size), "error.total, over K" if quantity is K else "error.total, of the motion")
     if error["mesh"] is None and result.bodies is not None:
         return _part(None, how["mesh"])
@@ -213,15 +213,15 @@ def _geometry(result: Result, quantity: Quantity, scatters: Mapping[str, Range])
 def _tolerances(result: Result, quantity: Quantity) -> Iterator[tuple[str, Tables]]:
     if (band := result.tolerances) is not None:
         names = {PEAK_BALL_LOAD: "largest_ball_load", L10R: L10R.name}
-        found = band["quantities"].get(names.get(quantity, quantity.symbol)) or {"value": 0.0}
-        ends = [(found[end] - found["value"]) / abs(found["value"]) for end in ("low", "high") if found["value"]]
+        ends_of = band["quantities"].get(names.get(quantity, quantity.symbol)) or {"value": 0.0}
+        ends = [(ends_of[end] - ends_of["value"]) / abs(ends_of["value"]) for end in ("low", "high") if ends_of["value"]]
         yield "tolerances", _part(ends or None, "95 % to first order" if ends else band["why"] or "no derivative")
 
 
 def _at_scatters(result: Result) -> dict[str, Range]:
     """Changes of numbers at rest by inferred numbers at the ends of their scatter."""
-    inferred, problem = (result.geometry or {}).get("inferred", {}), result.model.problem
-    scatters = {key: fact["scatter"] for key, fact in inferred.items() if fact["scatter"] and "." not in key}
+    inferences, problem = (result.geometry or {}).get("inferred", {}), result.model.problem
+    scatters = {key: fact["scatter"] for key, fact in inferences.items() if fact["scatter"] and "." not in key}
     # Rings that grow would be solved for at each of them.
     still = attrs.evolve(problem, kinematics=attrs.evolve(problem.kinematics, ring_growth=False))
     base, changes = _rigid_numbers(result.model, still), dict[str, list[Range]]()
@@ -229,8 +229,8 @@ def _at_scatters(result: Result) -> dict[str, Range]:
         number = getattr(problem.bearing, key)
         whole = isinstance(number, int)
         step = 1.0 / number if whole else scatter  # a ball more and a ball less
-        moved = [number * (1.0 + by) for by in (-step, step)]
-        ends = [_rigid_numbers(result.model, still, **{key: round(value) if whole else value}) for value in moved]
+        numbers = [number * (1.0 + by) for by in (-step, step)]
+        ends = [_rigid_numbers(result.model, still, **{key: round(value) if whole else value}) for value in numbers]
         for name in set(base).intersection(*ends):
             change = _with_zero(scatter / step * (end[name] / base[name] - 1.0) for end in ends)
             changes.setdefault(name, []).append(change)

@@ -108,9 +108,9 @@ def warm(scene: Scene, columns: Mapping[str, np.ndarray], plan: ScenePlan, facto
         nodes[rows] = solve(at, rows, [factor[rows] for factor in factors])
         return nodes[rows][:, _FELT_NODES]
 
-    level, steady, lost = _fixed_points(image, start, np.minimum(inlet, ambient))
+    level, steady, runaway = _fixed_points(image, start, np.minimum(inlet, ambient))
     level[~steady] = start[~steady]
-    return Warmth(_at(keys, level), nodes, lost)
+    return Warmth(_at(keys, level), nodes, runaway)
 
 
 def warm_plan(scene: Scene) -> ScenePlan:
@@ -128,8 +128,8 @@ def warm_plan(scene: Scene) -> ScenePlan:
     try:
         return plan_of(_at_row(scene, warmth.columns, 0))
     except SceneError as fault:
-        felt = zip(_FELT, warmth.temperatures[0, _FELT_NODES], strict=True)  # nan: nothing was solved at the start
-        level = "".join(f", {node} at {degrees:.4g} °C" for node, degrees in felt if np.isfinite(degrees))
+        levels = zip(_FELT, warmth.temperatures[0, _FELT_NODES], strict=True)  # nan: nothing was solved at the start
+        level = "".join(f", {node} at {degrees:.4g} °C" for node, degrees in levels if np.isfinite(degrees))
         raise ConvergenceError(
             f"the bearing cannot run at its steady temperatures{level}: {fault.mistakes[0].message}. Remedies: more or colder oil (heat.oil_flow, "
             "heat.oil_inlet_c), a wetted inner ring (heat.inner_wetting), a lower speed"
@@ -259,13 +259,13 @@ def _simple(scene: Scene) -> Scene:
 
 
 def _in_columns(
-    scene: Scene, mounted: ColumnBearing, at: Mapping[str, np.ndarray], rows: np.ndarray, factors: list[np.ndarray]
+    scene: Scene, cold: ColumnBearing, at: Mapping[str, np.ndarray], rows: np.ndarray, factors: list[np.ndarray]
 ) -> np.ndarray:
     """(m, 6) temperatures [C] that follow from those at which points (m,) are solved for; nan of what is no bearing in equilibrium."""
-    bearing = mounted.warmed(rows, column_problem(scene, at))
+    bearing = cold.warmed(rows, column_problem(scene, at))
     states = bearing.equilibria()
     fine = (states.status == 0) & ~bearing.impossible(states.force)
-    mounted.points.guess[rows[fine]] = states.q[fine]
+    cold.points.guess[rows[fine]] = states.q[fine]
     with np.errstate(all="ignore"):
         level = thermal_network(solved_columns(bearing, states), *factors).temperatures
     return np.where(fine[:, np.newaxis], level, np.nan)
@@ -294,10 +294,10 @@ def _fixed_points(
     ----------
     image : of x (m, k) and the rows (m,) that they belong to, G(x), nan where it is not defined;  least : (n,) of all x
     """
-    found = start.copy()
-    steady, lost = np.zeros(len(start), dtype=bool), np.zeros(len(start), dtype=bool)
+    answer = start.copy()
+    steady, runaway = np.zeros(len(start), dtype=bool), np.zeros(len(start), dtype=bool)
     for steps, quick in ((_QUICK, True), (_SLOW, False)):
-        rows = np.flatnonzero(~steady & ~lost)
+        rows = np.flatnonzero(~steady & ~runaway)
         x, step, before = start[rows], np.zeros((len(rows), start.shape[1])), np.zeros((len(rows), start.shape[1]))
         inverse = np.repeat(np.eye(start.shape[1])[np.newaxis], len(rows), axis=0)
         for count in range(steps):
@@ -311,16 +311,16 @@ def _fixed_points(
             else:
                 step = 0.5 * excess
             nearer = np.maximum(x + step, least[rows, np.newaxis])
-            step, defined = nearer - x, np.isfinite(excess).all(axis=1)
-            done = defined & (np.abs(excess).max(axis=1) <= _TOLERANCE)
-            found[rows[done]], steady[rows[done]] = nearer[done], True
-            gone = ~defined | (nearer.max(axis=1) > _HOTTEST)
+            step, is_number = nearer - x, np.isfinite(excess).all(axis=1)
+            converges = is_number & (np.abs(excess).max(axis=1) <= _TOLERANCE)
+            answer[rows[converges]], steady[rows[converges]] = nearer[converges], True
+            leaves = ~is_number | (nearer.max(axis=1) > _HOTTEST)
             if not quick:  # a cold bearing that is none is no runaway
-                lost[rows[gone & (defined | (count > 0))]] = True
-            left = ~done & ~gone
+                runaway[rows[leaves & (is_number | (count > 0))]] = True
+            left = ~converges & ~leaves
             rows, x, inverse, step, before = rows[left], nearer[left], inverse[left], step[left], excess[left]
-        lost[rows] |= not quick
-    return found, steady, lost
+        runaway[rows] |= not quick
+    return answer, steady, runaway
 
 
 def _updated(inverse: np.ndarray, step: np.ndarray, change: np.ndarray) -> np.ndarray:
