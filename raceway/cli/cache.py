@@ -6,38 +6,12 @@ from collections import Counter
 from datetime import datetime
 
 import click
-from rich.console import RenderableType
 
 from raceway.answers.table import sections
 from raceway.cli.frame import common, show, show_progress
-from raceway.storage.tables import ReadTables
 
 #: Compliances that are listed one by one; a study keeps thousands.
 _SHOWN = 10
-
-
-def _cache_screen(caches: ReadTables) -> RenderableType:
-    rows = [("Compiled kernels", "", f"in {caches['root']}")]
-    for folder in caches["folders"]:
-        size = f"{folder['bytes'] / 2**20:.1f} MiB"
-        rows.append((folder["name"], size, f"{folder['kernels']} kernels{', current' if folder['current'] else ''}"))
-    if not any(folder["current"] for folder in caches["folders"]):
-        rows.append((caches["current"], "empty", "current: the next run compiles, which takes some 20 s of a processor"))
-    total, most = caches["arrays_bytes"] / 2**20, caches["arrays_limit_bytes"] / 2**20
-    rows.append(("Compliances of bodies", "", f"{total:.1f} of at most {most:.0f} MiB, in {caches['arrays_root']}"))
-    arrays = sorted(caches["arrays"], key=lambda entry: -entry["used"])
-    for entry in arrays[:_SHOWN]:
-        last_use = datetime.fromtimestamp(entry["used"]).strftime("%Y-%m-%d %H:%M")
-        remark = f"{entry['what']}; made in {entry['made_in_s']:.1f} CPU-s, used {last_use}"
-        rows.append((entry["kind"], f"{entry['bytes'] / 2**20:.2f} MiB", remark))
-    if len(arrays) > _SHOWN:
-        rows.append(("", "", f"the {_SHOWN} last used of {len(arrays)}; all: raceway dev cache --json; by sort:"))
-        for kind, count in sorted(Counter(entry["kind"] for entry in arrays).items()):
-            size = sum(entry["bytes"] for entry in arrays if entry["kind"] == kind) / 2**20
-            rows.append((kind, f"{size:.2f} MiB", f"{count} in all"))
-    if not arrays:
-        rows.append(("none", "empty", "a condensed bearing makes them in seconds"))
-    return sections(rows)
 
 
 @click.command(short_help="List or clear the caches.")
@@ -74,5 +48,25 @@ def cache(clear: bool, as_json: bool) -> int:
         "cleared": clear,
     }
 
-    show(content, as_json, None, lambda: _cache_screen(content))
+    rows = [("Compiled kernels", "", f"in {content['root']}")]
+    for folder in content["folders"]:
+        extent = f"{folder['bytes'] / 2**20:.1f} MiB"
+        rows.append((folder["name"], extent, f"{folder['kernels']} kernels{', current' if folder['current'] else ''}"))
+    if not any(folder["current"] for folder in content["folders"]):
+        rows.append((content["current"], "empty", "current: the next run compiles, which takes some 20 s of a processor"))
+    total, most = content["arrays_bytes"] / 2**20, content["arrays_limit_bytes"] / 2**20
+    rows.append(("Compliances of bodies", "", f"{total:.1f} of at most {most:.0f} MiB, in {content['arrays_root']}"))
+    by_use = sorted(content["arrays"], key=lambda entry: -entry["used"])
+    for entry in by_use[:_SHOWN]:
+        last_use = datetime.fromtimestamp(entry["used"]).strftime("%Y-%m-%d %H:%M")
+        remark = f"{entry['what']}; made in {entry['made_in_s']:.1f} CPU-s, used {last_use}"
+        rows.append((entry["kind"], f"{entry['bytes'] / 2**20:.2f} MiB", remark))
+    if len(by_use) > _SHOWN:
+        rows.append(("", "", f"the {_SHOWN} last used of {len(by_use)}; all: raceway dev cache --json; by sort:"))
+        for kind, count in sorted(Counter(entry["kind"] for entry in by_use).items()):
+            extent = sum(entry["bytes"] for entry in by_use if entry["kind"] == kind) / 2**20
+            rows.append((kind, f"{extent:.2f} MiB", f"{count} in all"))
+    if not by_use:
+        rows.append(("none", "empty", "a condensed bearing makes them in seconds"))
+    show(content, as_json, None, lambda: sections(rows))
     return 0

@@ -112,10 +112,8 @@ class Command(NamedTuple):
         lines = re.sub(r"\n\s+", " ", _sections(front)[1])
         entries = [entry for line in lines.splitlines() for entry in re.split(r";  (?=[\w, *]+ : )", line)]
         pairs = (entry.partition(" : ") for entry in entries)
-        signature, words = (
-            inspect.signature(front),
-            {name.strip(): words.strip() for names, _, words in pairs for name in names.split(",")},
-        )
+        words = {name.strip(): words.strip() for names, _, words in pairs for name in names.split(",")}
+        signature = inspect.signature(front)
         params = [
             p for p in signature.parameters.values() if p.name not in _SHARED and self.options.get(p.name, True) is not None
         ]
@@ -146,7 +144,13 @@ class Command(NamedTuple):
             command = set_keys(scene_input(command))
         for parameter in reversed(params):
             if self._about(parameter).positional:
-                command = _argument(parameter, self._about(parameter).metavar)(command)
+                metavar = self._about(parameter).metavar
+                is_required = parameter.default is inspect.Parameter.empty
+                file_kind = FILE if "Path" in str(parameter.annotation) else None
+                start: dict[str, Any] = {} if is_required else {"default": parameter.default}
+                command = click.argument(parameter.name, type=file_kind, required=is_required, metavar=metavar, **start)(
+                    command
+                )
         return click.command(self.name, short_help=self.summary, help=help_text)(command)
 
     def _about(self, parameter: inspect.Parameter) -> Option:
@@ -200,13 +204,6 @@ def _kind(front: Callable[..., Value], parameter: inspect.Parameter) -> str:
     """The annotation as text, with what an alias of the front's module stands for."""
     text = str(parameter.annotation).removesuffix(" | None")
     return str(inspect.unwrap(front).__globals__.get(text, text))
-
-
-def _argument(parameter: inspect.Parameter, metavar: str | None) -> Callable[[Value], Value]:
-    is_required = parameter.default is inspect.Parameter.empty
-    kind = FILE if "Path" in str(parameter.annotation) else None
-    default: dict[str, Any] = {} if is_required else {"default": parameter.default}
-    return click.argument(parameter.name, type=kind, required=is_required, metavar=metavar, **default)
 
 
 def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,10 +19,10 @@ from raceway.cli.frame import common, faults, plugin_files, show, show_progress
 from raceway.errors import RacewayError
 from raceway.framework.contracts import KINDS, plural
 from raceway.framework.registry import default_registry, registry_with
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from raceway.testing.suite import Conformity
+    pass
 
 
 @click.command(short_help="List installed plug-ins and their options.")
@@ -54,7 +53,22 @@ def plugins(plugins: tuple[Path, ...], as_json: bool) -> int:
     if as_json:
         print_json({"plugins": rows, "errors": [{"path": None, "value": None, "message": text} for text in errors]})
         return 2 if errors else 0
-    show(rows, False, None, lambda: _plugins_screen(rows))
+    parts: list[RenderableType] = []
+    for kind in dict.fromkeys(row["kind"] for row in rows):
+        parts.append(Text(plural(kind), style="bold"))
+        for row in (r for r in rows if r["kind"] == kind):
+            table = Table.grid(padding=(0, 2))
+            table.add_column(min_width=20, no_wrap=True)
+            table.add_column(min_width=12)
+            table.add_column()
+            for option in row["options"]:
+                default = "" if option["default"] is None else str(option["default"])
+                unit = f" [{option['unit']}]" if option["unit"] else ""
+                table.add_row(escape(option["name"]), Words(default), Words(option["help"] + unit, "dim"))
+            parts.append(Text.assemble("  ", (row["name"], "cyan"), f"  {row['distribution']} {row['version']}"))
+            if row["options"]:
+                parts.append(Padding(table, (0, 0, 0, 6)))
+    show(rows, False, None, lambda: Group(*parts))
     if errors:
         raise RacewayError("\n  ".join(errors))
     return 0
@@ -93,7 +107,17 @@ def check_plugin(name: str, plugins: tuple[Path, ...], as_json: bool) -> int:
 
     with show_progress(waiting=f"checking {name}"):
         conformity = check_named(name, registry_with(plugins))
-    show(conformity.to_dict(), as_json, None, lambda: _conformity_screen(conformity))
+    table = Table.grid(padding=(0, 2))
+    table.add_column(no_wrap=True)
+    table.add_column(no_wrap=True)
+    table.add_column()
+    for row in conformity.rows:
+        status = Text(row.status, style="green" if row.good else "bold red")
+        table.add_row(escape(row.name), status, Words(f"{row.duty}: {row.message}" if row.message else row.duty, "dim"))
+    good = sum(row.good for row in conformity.rows)
+    verdict = "conforms" if conformity.conforms else "does not conform"
+    title = f"{conformity.kind.replace('_', ' ')} '{conformity.name}' {verdict}: {good} of {len(conformity.rows)} checks"
+    show(conformity.to_dict(), as_json, None, lambda: Group(Text(title, style="bold"), Padding(table, (0, 0, 0, 2))))
     return 0 if conformity.conforms else 1
 
 
@@ -120,37 +144,3 @@ def new_plugin(kind: str, name: str, out: Path, as_json: bool) -> int:
     steps = Text(f"next: pip install -e {folder} && python -m pytest {folder}", no_wrap=True, overflow="ignore")
     show({"folder": str(folder), "files": files}, as_json, None, lambda: Group(*file_lines([str(folder), *files]), steps))
     return 0
-
-
-def _plugins_screen(rows: Sequence[ReadTables]) -> RenderableType:
-    parts: list[RenderableType] = []
-    for kind in dict.fromkeys(row["kind"] for row in rows):
-        parts.append(Text(plural(kind), style="bold"))
-        for row in (r for r in rows if r["kind"] == kind):
-            table = Table.grid(padding=(0, 2))
-            table.add_column(min_width=20, no_wrap=True)
-            table.add_column(min_width=12)
-            table.add_column()
-            for option in row["options"]:
-                default = "" if option["default"] is None else str(option["default"])
-                unit = f" [{option['unit']}]" if option["unit"] else ""
-                table.add_row(escape(option["name"]), Words(default), Words(option["help"] + unit, "dim"))
-            parts.append(Text.assemble("  ", (row["name"], "cyan"), f"  {row['distribution']} {row['version']}"))
-            if row["options"]:
-                parts.append(Padding(table, (0, 0, 0, 6)))
-    return Group(*parts)
-
-
-def _conformity_screen(report: Conformity) -> RenderableType:
-    """One line a check, with the duty and what was found."""
-    table = Table.grid(padding=(0, 2))
-    table.add_column(no_wrap=True)
-    table.add_column(no_wrap=True)
-    table.add_column()
-    for row in report.rows:
-        status = Text(row.status, style="green" if row.good else "bold red")
-        table.add_row(escape(row.name), status, Words(f"{row.duty}: {row.message}" if row.message else row.duty, "dim"))
-    good = sum(row.good for row in report.rows)
-    verdict = "conforms" if report.conforms else "does not conform"
-    title = f"{report.kind.replace('_', ' ')} '{report.name}' {verdict}: {good} of {len(report.rows)} checks"
-    return Group(Text(title, style="bold"), Padding(table, (0, 0, 0, 2)))

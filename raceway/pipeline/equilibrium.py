@@ -80,9 +80,9 @@ def _refuse_free_motion(model: Model, stiffness: np.ndarray, q: np.ndarray) -> N
     raise ConvergenceError(f"the equilibrium is singular: no stiffness against {' with '.join(names)}. {why}", {"q": q})
 
 
-def _seating(model: Model, inner: np.ndarray) -> list[str]:
-    """Rows that lift off, and rows with a loaded ball at half its free contact angle or less; those with a clearance run at any."""
-    bearing, warnings = model.problem.bearing, list[str]()
+def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[str, ...]:
+    # Rows that lift off, and rows with a loaded ball at half its free contact angle or less; those with a clearance run at any.
+    problem, bearing, warnings = model.problem, model.problem.bearing, list[str]()
     for k, row in enumerate(bearing.of_rows):
         name = f"row {k + 1}" if len(bearing.rows) > 1 else "the bearing"
         least, free = np.fmin.reduce(inner, where=model.basis.row == k, initial=np.inf), model.problem.running.free_angle(k)
@@ -93,11 +93,6 @@ def _seating(model: Model, inner: np.ndarray) -> list[str]:
             warnings.append(
                 f"{name} loses axial contact: the contact angle of a loaded ball is {angles}. The axial load is too small or has the wrong sign"
             )
-    return warnings
-
-
-def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> tuple[str, ...]:
-    warnings, problem = _seating(model, inner), model.problem
     if any(problem.load.moment) and not problem.tilts:
         warnings.append("`load.moment` has no effect: supports.tilt is locked")
     if problem.contact.friction > 0.0 and model.traits.every_node:

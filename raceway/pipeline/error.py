@@ -115,7 +115,12 @@ def error_table(run: Identified) -> Tables:
         return table
     window = {"rpm": 60.0 * run.identification.frequency_hz}
     how["total"] = Estimate.SUM_OF_LAST_WINDOW(**window) if run.identification.series_error else Estimate.SUM()
-    table["total"] = _total(parts)
+    # Errors whose phases are known may cancel; half the larger is kept, because each is known to that only.
+    estimates = [part for part in parts.values() if part.size is not None]
+    sizes = [part.size or 0.0 for part in estimates if part.shift is None]
+    shifts = [part.shift for part in estimates if part.shift is not None]
+    together = max(abs(sum(shifts)), *(0.5 * abs(shift) for shift in shifts)) if shifts else 0.0
+    table["total"] = float(together + sum(sizes)) if estimates else None
     return table
 
 
@@ -163,17 +168,6 @@ def _no_total(run: Identified, parts: dict[str, Part]) -> Note | None:
         return None
     reasons = " and ".join(f"the error of the {name} is unknown ({how})" for name, how in unknown.items())
     return Estimate.PART_UNKNOWN(reasons=reasons, part=next(iter(unknown)))
-
-
-def _total(parts: dict[str, Part]) -> float | None:
-    """Errors whose phases are known may cancel; half the larger is kept, because each is known to that only."""
-    estimates = [part for part in parts.values() if part.size is not None]
-    if not estimates:
-        return None
-    sizes = [part.size or 0.0 for part in estimates if part.shift is None]
-    shifts = [part.shift for part in estimates if part.shift is not None]
-    together = max(abs(sum(shifts)), *(0.5 * abs(shift) for shift in shifts)) if shifts else 0.0
-    return float(together + sum(sizes))
 
 
 def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, Run | None]:

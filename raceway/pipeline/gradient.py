@@ -557,7 +557,11 @@ def derivatives(model: Model, equilibrium: Equilibrium, gradient: Gradient) -> d
     slopes |= _at_rest(equilibrium, statics)
     if (tilt := model.problem.supports.tilt) != "locked":
         by = float(statics.key.path == "supports.tilt")
-        slopes[KYY_TILTS_FOLLOW.symbol] = _slope_with_tilts(equilibrium.stiffness, statics.stiffness, tilt, by)
+        stiffness = equilibrium.stiffness
+        back = np.linalg.pinv(stiffness[3:, 3:] + (tilt if isinstance(tilt, float) else 0.0) * np.eye(2))
+        left, right = np.r_[1.0, -stiffness[1, 3:] @ back], np.r_[1.0, -back @ stiffness[3:, 1]]
+        slope = statics.stiffness[np.ix_([1, 3, 4], [1, 3, 4])] + by * np.diag([0.0, 1.0, 1.0])
+        slopes[KYY_TILTS_FOLLOW.symbol] = float(left @ slope @ right)
     return slopes
 
 
@@ -569,14 +573,6 @@ def _at_rest(equilibrium: Equilibrium, state: Equilibrium | _StaticGradient) -> 
         X.symbol: float(state.displacement[0]),
         LARGEST_BALL_LOAD.symbol: float(state.contact_force[np.argmax(equilibrium.contact_force)]),
     }
-
-
-def _slope_with_tilts(stiffness: np.ndarray, slope: np.ndarray, tilt: float | str, by: float) -> float:
-    """Of kyy_tilts_follow where the stiffness (5, 5) moves with ``slope``, and the shaft's against tilts with ``by``."""
-    tilts = stiffness[3:, 3:] + (tilt if isinstance(tilt, float) else 0.0) * np.eye(2)
-    back = np.linalg.pinv(tilts)
-    row_weights, right = np.r_[1.0, -stiffness[1, 3:] @ back], np.r_[1.0, -back @ stiffness[3:, 1]]
-    return float(row_weights @ (slope[np.ix_([1, 3, 4], [1, 3, 4])] + by * np.diag([0.0, 1.0, 1.0])) @ right)
 
 
 def first_order_band(

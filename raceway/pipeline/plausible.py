@@ -218,7 +218,18 @@ def model_spread(
     for key, others in values.items():
         for value in others:
             solve({key: value})
-    for combination in _extremes(values, rows):
+    # Those of several keys that change a quantity most to either side, by what each changes alone.
+    combinations: list[Tables] = []
+    for name, sign in product(_QUANTITIES, (-1.0, 1.0)):
+        together: Tables = {}
+        for key in values:
+            alone = [(sign * change[name], one[key]) for one, change in rows if key in one and change[name] is not None]
+            most, value = max(alone, key=lambda pair: pair[0], default=(0.0, None))
+            if most > 0.0:
+                together[key] = value
+        if len(together) > 1 and together not in combinations:
+            combinations.append(together)
+    for combination in combinations:
         solve(combination)
     return _table(rows, bound), Estimate.EACH_HYPOTHESIS(how=how, why=why)
 
@@ -231,21 +242,6 @@ def _numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float | None]:
         KYY_TILTS_FOLLOW.name: tilts_follow(k, model.problem.supports.tilt),
         PEAK_BALL_LOAD.name: float(np.max(forces)), P0.name: float(pressures(model, forces).max()),
     }  # fmt: skip
-
-
-def _extremes(values: dict[str, list[Any]], rows: list[tuple[Tables, Tables]]) -> list[Tables]:
-    """Combinations of hypotheses of several keys that change a quantity most to either side, by what each changes alone."""
-    combinations: list[Tables] = []
-    for name, sign in product(_QUANTITIES, (-1.0, 1.0)):
-        together: Tables = {}
-        for key in values:
-            alone = [(sign * change[name], one[key]) for one, change in rows if key in one and change[name] is not None]
-            most, value = max(alone, key=lambda pair: pair[0], default=(0.0, None))
-            if most > 0.0:
-                together[key] = value
-        if len(together) > 1 and together not in combinations:
-            combinations.append(together)
-    return combinations
 
 
 def closed_bound(model: Model, equilibrium: Equilibrium) -> float | None:

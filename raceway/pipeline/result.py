@@ -486,12 +486,7 @@ def facts(result: Result) -> list[Fact]:
 
 
 def _identified_facts(result: Result) -> list[Fact]:
-    z, band, total, of_result = (
-        result.identification,
-        result.band,
-        result.error["total"],
-        {"uncertainty": result.uncertainty},
-    )
+    z, band, total = result.identification, result.band, result.error["total"]
     if z is None:
         return []
     speed = f"{60.0 * z.frequency_hz:g} r/min, {tilt_words(result.model.problem.supports.tilt)}"
@@ -500,7 +495,7 @@ def _identified_facts(result: Result) -> list[Fact]:
         remark = "both ends of the band of time constants; other numbers are of the low end"
         damping = C.label, C.span(band[C.name], 3), remark
     rows = [
-        stated(K, of_result),
+        stated(K, {"uncertainty": result.uncertainty}),
         damping,
         Z.fact(result, speed),
         (

@@ -86,7 +86,12 @@ def run(
         try:
             once = partial(_run, registry=registry, on_progress=on_progress, near=near, patience=patience, stay=stay)
             band = scene.contact.in_a_band and scene.excitation is not None
-            return _with_reports(_run_band(scene, once) if band else once(scene), registry)
+            result = _run_band(scene, once) if band else once(scene)
+            try:
+                registry.notify("raceway_run_finished", result=result)
+            except RacewayError as why:  # what is computed is kept
+                return attrs.evolve(result, warnings=(*result.warnings, f"after the run: {why}"))
+            return result
         except (ArithmeticError, np.linalg.LinAlgError) as why:
             raise ConvergenceError(
                 f"the numbers of this scene exceed the range of floating-point arithmetic ({why}): check its units"
@@ -97,15 +102,6 @@ def run(
         except PluginError as fault:  # what the run failed with comes first
             error.add_note(str(fault))
         raise
-
-
-def _with_reports(result: Result, registry: Registry) -> Result:
-    """The result, with what plug-ins that hear of it fail in."""
-    try:
-        registry.notify("raceway_run_finished", result=result)
-    except RacewayError as why:  # what is computed is kept
-        return attrs.evolve(result, warnings=(*result.warnings, f"after the run: {why}"))
-    return result
 
 
 def _run_band(scene: Scene, once: Callable[[Scene], Result]) -> Result:

@@ -48,21 +48,8 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
     share, imbalance, energies = (model.get(name) for name in ("penetration_share", "unbalanced_n", "energies_j"))
     if share is not None:
         rows.append(("penetration share", number(100.0 * share, "%", 3), "of the approach at most: penetration of the law"))
-    rows += _subsurface(model.get("subsurface") or [])
-    if imbalance is not None:
-        rows.append(("unbalanced force", number(imbalance, "N", 2), "largest, reaction against load"))
-    if energies is not None:
-        parts = ", ".join(f"{name} {1e3 * value:.3g}" for name, value in energies.items())
-        rows.append(("energies", "", f"{parts} mJ"))
-    inertia = model.get("inertia")
-    if inertia is not None:
-        rows += _inertia(inertia)
-    return rows
-
-
-def _subsurface(sides: Sequence[ReadTables]) -> list[Row]:
-    """The largest shear stress below the most loaded contact of each race, a row each; no number that the mesh does not resolve."""
-    rows: list[Row] = []
+    # The largest shear stress below the most loaded contact of each race; no number that the mesh does not resolve.
+    sides = model.get("subsurface") or []
     for race in dict.fromkeys(str(side["race"]) for side in sides):
         pair = [side for side in sides if side["race"] == race]
         fine, coarse = ([side for side in pair if bool(side["resolved"]) is state] for state in (True, False))
@@ -81,6 +68,14 @@ def _subsurface(sides: Sequence[ReadTables]) -> list[Row]:
             lines.append(f"{which} in {bodies}: {worst[key]:.2g} elements {_CELLS[key]}, not 4")
         lines.append(f"Hertz {1e-6 * pair[0]['hertz_largest_shear_pa']:.0f} MPa at {1e6 * pair[0]['hertz_depth_m']:.0f} µm")
         rows.append((f"largest shear, {race}", f"{value} MPa" if fine else "not resolved", "; ".join(lines)))
+    if imbalance is not None:
+        rows.append(("unbalanced force", number(imbalance, "N", 2), "largest, reaction against load"))
+    if energies is not None:
+        parts = ", ".join(f"{name} {1e3 * value:.3g}" for name, value in energies.items())
+        rows.append(("energies", "", f"{parts} mJ"))
+    inertia = model.get("inertia")
+    if inertia is not None:
+        rows += _inertia(inertia)
     return rows
 
 

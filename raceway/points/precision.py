@@ -282,7 +282,10 @@ class Precision(Answer):
         facts: list[Fact] = [("reference", f"{reference.bound:.1g}", f"relative bound; {reference.how}")]
         for threshold, index in self.cheapest(self.base).items():
             row = None if index is None else self.judged[index]
-            name, value = f"cheapest within {100.0 * float(threshold):g} %", "none" if row is None else _time(row)
+            name, value = (
+                f"cheapest within {100.0 * float(threshold):g} %",
+                "none" if row is None else f"{1e3 * row['cost']['time_s']:.3g} ms",
+            )
             facts.append((name, value, "" if row is None else _words_of(row["setting"])))
         front = set(self.front(self.base))
         rows = [
@@ -336,10 +339,6 @@ class Precision(Answer):
         reasons = [row["reason"] for row in rows if row["reason"]]
         why = f"; the first reason: {reasons[0]}" if reasons else ": all errors are above 1 %"
         return ConvergenceError(f"no setting converged{why}")
-
-
-def _time(row: Row) -> str:
-    return f"{1e3 * row['cost']['time_s']:.3g} ms"
 
 
 def _reference_table(reference: Reference) -> Tables:

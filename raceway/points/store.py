@@ -111,7 +111,10 @@ class Store:
         if record is None or not self._sound(*record):
             return Row(key, "waiting", DAMAGED, {}, {})
         _, state, reason, content, cost, _ = record
-        return Row(key, state, reason or "", _from_blob(content), json.loads(cost or "{}"))
+        if isinstance(content, bytes):
+            with np.load(io.BytesIO(content)) as arrays:
+                return Row(key, state, reason or "", dict(arrays), json.loads(cost or "{}"))
+        return Row(key, state, reason or "", json.loads(content or "{}"), json.loads(cost or "{}"))
 
     def keys(self, state: str) -> set[Key]:
         """Keys of the rows in a state."""
@@ -294,13 +297,6 @@ def _to_blob(content: Tables) -> str | bytes:
     memory = io.BytesIO()
     np.savez(memory, **content)
     return memory.getvalue()
-
-
-def _from_blob(content: str | bytes | None) -> Tables:
-    if not isinstance(content, bytes):
-        return dict(json.loads(content or "{}"))
-    with np.load(io.BytesIO(content)) as arrays:
-        return dict(arrays)
 
 
 def _text(value: object) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterator
 from itertools import chain
 from pathlib import Path
 
@@ -57,7 +57,13 @@ def survey(tables: ReadTables, design: Design, registry: Registry) -> _Survey:
         try:
             scene = scene_from_dict(tables_at(tables, point, registry, notes), registry)
         except SceneError as error:
-            own = error.mistakes if design.listed else _own_mistakes(error.mistakes, point, axis_key)
+            own = list[Mistake](error.mistakes if design.listed else ())
+            # Of a grid those that the value makes by itself: of a swept key, or of its whole table where no other axis has a part.
+            for mistake in () if design.listed else error.mistakes:
+                if mistake.path in point:
+                    own.append(mistake)
+                elif [key for key in point if key.startswith(f"{mistake.path}.")] == [axis_key]:
+                    own.append(Mistake(axis_key, point[axis_key], f"{mistake.path}: {mistake.message}"))
             mistakes += [Mistake(f"{where}{m.path}", m.value, m.message) for m in own]
             if len(mistakes) >= _MOST_MISTAKES:
                 break
@@ -72,18 +78,6 @@ def survey(tables: ReadTables, design: Design, registry: Registry) -> _Survey:
         for name, path in paths.items()
     }
     return _Survey(first, frozenset(plugins), digests, tuple(notes))
-
-
-def _own_mistakes(mistakes: Iterable[Mistake], point: ReadTables, axis_key: str) -> list[Mistake]:
-    """Those that the changed value makes by itself: of a swept key, or of its whole table where no other axis has a part."""
-    own = []
-    for mistake in mistakes:
-        inside = [key for key in point if key.startswith(f"{mistake.path}.")]
-        if mistake.path in point:
-            own.append(mistake)
-        elif inside == [axis_key]:
-            own.append(Mistake(axis_key, point[axis_key], f"{mistake.path}: {mistake.message}"))
-    return own
 
 
 def _others(design: Design, continuous: Collection[str]) -> Iterator[tuple[str, str, Tables]]:

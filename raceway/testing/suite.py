@@ -304,7 +304,27 @@ def apart(work: Callable[[], T]) -> T:
     child = os.fork()
     if not child:
         os.close(reader)
-        _serve(work, writer)
+        code = 1
+        try:
+            faulthandler.disable()
+            os.setpgid(0, 0)
+            os.dup2(2, 1)  # what is printed here is no part of an answer in JSON
+            with open("/proc/self/statm", encoding="ascii") as file:
+                limit = int(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE") + LIMIT_BYTES
+            _, hard = resource.getrlimit(resource.RLIMIT_AS)
+            resource.setrlimit(resource.RLIMIT_AS, (limit if hard == resource.RLIM_INFINITY else min(limit, hard), hard))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            try:
+                output = pickle.dumps((True, work()))
+            except Exception as why:  # handed over
+                output = pickle.dumps((False, why))
+            with os.fdopen(writer, "wb") as pipe:
+                pipe.write(output)
+            code = 0
+        except SystemExit as why:
+            code = why.code if isinstance(why.code, int) else 1
+        finally:
+            os._exit(code)
     os.close(writer)
     try:
         answer, late = _output(reader)
@@ -332,31 +352,6 @@ def _import_compiler() -> None:
     for name in ("scipy.sparse.linalg", "scipy.optimize", "raceway.pipeline.run"):
         import_module(name)
     import_module("raceway.contact_laws.hertz").three_halves().compile()
-
-
-def _serve(work: Callable[[], object], writer: int) -> None:
-    """What the child does; it does not come back."""
-    code = 1
-    try:
-        faulthandler.disable()
-        os.setpgid(0, 0)
-        os.dup2(2, 1)  # what is printed here is no part of an answer in JSON
-        with open("/proc/self/statm", encoding="ascii") as file:
-            limit = int(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE") + LIMIT_BYTES
-        _, hard = resource.getrlimit(resource.RLIMIT_AS)
-        resource.setrlimit(resource.RLIMIT_AS, (limit if hard == resource.RLIM_INFINITY else min(limit, hard), hard))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        try:
-            answer = pickle.dumps((True, work()))
-        except Exception as why:  # handed over
-            answer = pickle.dumps((False, why))
-        with os.fdopen(writer, "wb") as pipe:
-            pipe.write(answer)
-        code = 0
-    except SystemExit as why:
-        code = why.code if isinstance(why.code, int) else 1
-    finally:
-        os._exit(code)
 
 
 def _output(reader: int) -> tuple[bytes, bool]:
