@@ -140,11 +140,8 @@ class _Column:
     def least(self) -> int:
         """Signs that it needs, with its head and long texts in lines of one word each."""
         texts = (self.head, *(() if self.whole else self.cells))
-        return max(map(len, (*_words(texts), *(self.cells if self.whole else ()))))
-
-
-def _words(texts: Sequence[str]) -> list[str]:
-    return [word for text in texts for word in re.split(r"[ \n]", fixed(text))]
+        words = [word for text in texts for word in re.split(r"[ \n]", fixed(text))]
+        return max(map(len, (*words, *(self.cells if self.whole else ()))))
 
 
 @attrs.frozen

@@ -135,7 +135,9 @@ class Command(NamedTuple):
             default = f"{RESULTS}/{title}{self.folder}" if "scene" in signature.parameters else f"{RESULTS}/{self.name}"
             command = out_option("nothing is written" if self.folder is None else default)(command)
         for parameter in reversed(params):
-            command = self._option(parameter, _kind(front, parameter), words.get(parameter.name, ""))(command)
+            text = str(parameter.annotation).removesuffix(" | None")
+            kind = str(inspect.unwrap(front).__globals__.get(text, text))  # what an alias of the front's module stands for
+            command = self._option(parameter, kind, words.get(parameter.name, ""))(command)
         if "scene" in signature.parameters:
             is_required = signature.parameters["scene"].default is inspect.Parameter.empty
             scene_input = click.argument("scene", type=FILE, required=is_required)
@@ -144,13 +146,10 @@ class Command(NamedTuple):
             command = set_keys(scene_input(command))
         for parameter in reversed(params):
             if self._about(parameter).positional:
-                metavar = self._about(parameter).metavar
-                is_required = parameter.default is inspect.Parameter.empty
-                file_kind = FILE if "Path" in str(parameter.annotation) else None
-                start: dict[str, Any] = {} if is_required else {"default": parameter.default}
-                command = click.argument(parameter.name, type=file_kind, required=is_required, metavar=metavar, **start)(
-                    command
-                )
+                empty, file = parameter.default is inspect.Parameter.empty, "Path" in str(parameter.annotation)
+                facts: dict[str, Any] = {"required": empty, "metavar": self._about(parameter).metavar}
+                facts |= {} if empty else {"default": parameter.default}
+                command = click.argument(parameter.name, type=FILE if file else None, **facts)(command)
         return click.command(self.name, short_help=self.summary, help=help_text)(command)
 
     def _about(self, parameter: inspect.Parameter) -> Option:
@@ -198,12 +197,6 @@ class Command(NamedTuple):
             help=text,
             **start,
         )
-
-
-def _kind(front: Callable[..., Value], parameter: inspect.Parameter) -> str:
-    """The annotation as text, with what an alias of the front's module stands for."""
-    text = str(parameter.annotation).removesuffix(" | None")
-    return str(inspect.unwrap(front).__globals__.get(text, text))
 
 
 def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:

@@ -20,18 +20,13 @@ def scene_keys(context: click.Context, option: click.Parameter, incomplete: str)
     from raceway.scene.schema import scene_schema
 
     key, equals, value = incomplete.partition("=")
-    words = _words(scene_schema(default_registry()))
+    # Path of each key -> words that it takes, of all plug-ins that have the key.
+    words: dict[str, dict[str, None]] = {}
+    for path, word in _walk(scene_schema(default_registry()), ""):
+        words.setdefault(path, {}).update({word: None} if word else {})
     if equals:
         return [f"{key}={word}" for word in words.get(key, {}) if word.startswith(value)]
     return sorted(path for path in words if path.startswith(key))
-
-
-def _words(schema: ReadTables) -> dict[str, dict[str, None]]:
-    """Path of each key -> words that it takes, of all plug-ins that have the key."""
-    words: dict[str, dict[str, None]] = {}
-    for path, word in _walk(schema, ""):
-        words.setdefault(path, {}).update({word: None} if word else {})
-    return words
 
 
 def _walk(schema: ReadTables, path: str) -> Iterator[tuple[str, str]]:

@@ -23,7 +23,20 @@ class Studies(Commands):
         return default_registry().names("study")
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        return _command_of(cmd_name) if cmd_name in self.list_commands(ctx) else None
+        if cmd_name not in self.list_commands(ctx):
+            return None
+        entry = default_registry().find("study", cmd_name)
+        who = f"study '{cmd_name}' of {entry.distribution}"
+        try:
+            with foreign_words():
+                command = entry.plugin().command()
+        except RacewayError:
+            raise
+        except Exception as why:  # a third party's own code
+            raise PluginError(f"{who}: command() raises {type(why).__name__}: {why}") from why
+        if not isinstance(command, click.Command):
+            raise PluginError(f"{who}: command() gives {type(command).__name__}, which is no click.Command")
+        return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         registry = default_registry()
@@ -32,28 +45,6 @@ class Studies(Commands):
             formatter.write_dl([(entry.name, entry.plugin.help) for entry in entries])
         for fault in registry.faults:
             formatter.write_text(f"not loaded: {fault}")
-
-
-def _command_of(name: str) -> click.Command:
-    """The command of a study.
-
-    Raises
-    ------
-    PluginError
-        A name that two plug-ins claim, or a study whose command cannot be had: whose it is, and why.
-    """
-    entry = default_registry().find("study", name)
-    who = f"study '{name}' of {entry.distribution}"
-    try:
-        with foreign_words():
-            command = entry.plugin().command()
-    except RacewayError:
-        raise
-    except Exception as why:  # a third party's own code
-        raise PluginError(f"{who}: command() raises {type(why).__name__}: {why}") from why
-    if not isinstance(command, click.Command):
-        raise PluginError(f"{who}: command() gives {type(command).__name__}, which is no click.Command")
-    return command
 
 
 def _load(_context: click.Context, _option: click.Parameter, files: tuple[Path, ...]) -> None:

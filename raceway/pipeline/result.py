@@ -333,6 +333,10 @@ class Result(Answer):
 
     def to_dict(self) -> Tables:
         """The content of result.json: plain numbers, lists and tables, None where a number does not exist."""
+        model, note = self.model_spread
+        notes = {**self.error["how"], "model": note}
+        how, few = ({name: words(note) for name, note in notes.items()} for words in (str, short))
+        motion = self.simulation
         return without_nan(
             {
                 "schema": SCHEMA,
@@ -345,26 +349,16 @@ class Result(Answer):
                 "not_computed": self.stated.missing,
                 "identification": self._identification(),
                 "model": self.bodies,
-                "motion": self._motion(),
+                "motion": None if motion is None else {**motion_table(self.model, motion.record), "orbits": motion.orbits},
                 "uncertainty": self.uncertainty,
                 "tolerances": self.tolerances,
-                "error": self._errors(),
+                "error": {**self.error, "model": model, "how": how, "short": few},
                 "cost": self.cost,
                 "stability": self.stability,
                 "environment": self.environment,
                 "warnings": list(self.warnings),
             }
         )
-
-    def _errors(self) -> Tables:
-        model, note = self.model_spread
-        notes = {**self.error["how"], "model": note}
-        how, few = ({name: words(note) for name, note in notes.items()} for words in (str, short))
-        return {**self.error, "model": model, "how": how, "short": few}
-
-    def _motion(self) -> Tables | None:
-        motion = self.simulation
-        return None if motion is None else {**motion_table(self.model, motion.record), "orbits": motion.orbits}
 
     def _identification(self) -> Tables | None:
         z = self.identification
@@ -385,7 +379,13 @@ class Result(Answer):
             "tilt": self.model.problem.supports.tilt,
             "lines": [{key: getattr(line, name) for key, name in lines.items()} for line in self.lines],
             "series": [
-                {"speed_rpm": speed * 30.0 / math.pi, **_complex(value), "error": error}
+                {
+                    "speed_rpm": speed * 30.0 / math.pi,
+                    "real": value.real,
+                    "imag": value.imag,
+                    "abs": abs(value),
+                    "error": error,
+                }
                 for (speed, value), error in zip_longest(z.series, z.series_error)
             ],
         }
@@ -424,10 +424,6 @@ class Result(Answer):
             with suppress(OSError):
                 (folder / name).unlink(missing_ok=True)
         return paths + _write_reports(self.reports, self, folder)
-
-
-def _complex(z: complex) -> Tables:
-    return {"real": z.real, "imag": z.imag, "abs": abs(z)}
 
 
 def band_table(ends: list[Result]) -> Tables:

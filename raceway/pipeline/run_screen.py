@@ -51,7 +51,16 @@ def _answer_rows(result: ReadTables) -> list[Row]:
     """The first section."""
     identification = result["identification"]
     if identification is None:
-        return _static(result)
+        return [
+            (
+                f"Answer of a static scene, {tilt_words(result['scene']['supports']['tilt'])}",
+                "",
+                "without a table [excitation] no K(w), C or orbit is identified",
+            ),
+            *interval_rows(result, KXX, KYY, KYY_TILTS_FOLLOW),
+            *held_rows(result),
+            *loaded_balls(result, ["most"]),
+        ]
     major, minor = ORBIT_MAJOR.of(result), ORBIT_MINOR.of(result)
     thin, dry = minor <= _LINE * major, dry_damping_note(result)
     axes = f"{ORBIT_MAJOR.read(major):.4g} x {'0' if thin else f'{ORBIT_MINOR.read(minor):.4g}'} {ORBIT_MAJOR.read_unit}"
@@ -77,19 +86,6 @@ def _damping_rows(result: ReadTables) -> list[Row]:
         (C.label, C.span(band[C.name], 3), origin),
         ("loss factor", f"{low:.3g} to {high:.3g}", "w C / K at both ends; other numbers are of the low end"),
         (PHASE_LAG.label, PHASE_LAG.span(band["phase_lag_deg"], 3), PHASE_LAG.words),
-    ]
-
-
-def _static(result: ReadTables) -> list[Row]:
-    return [
-        (
-            f"Answer of a static scene, {tilt_words(result['scene']['supports']['tilt'])}",
-            "",
-            "without a table [excitation] no K(w), C or orbit is identified",
-        ),
-        *interval_rows(result, KXX, KYY, KYY_TILTS_FOLLOW),
-        *held_rows(result),
-        *loaded_balls(result, ["most"]),
     ]
 
 

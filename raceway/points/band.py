@@ -37,7 +37,7 @@ from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.scene.tolerance import Tolerance, stated_tolerances, tolerances_of
 from raceway.storage.files import without_nan
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -80,51 +80,6 @@ def indices(values: np.ndarray, dimensions: int) -> _Indices:
 
 
 _SAMPLES, _LIMIT_COLOUR, _TOTAL, _FIRST = "#b9c9da", "#0b5fa5", "#b9c9da", "#0b5fa5"
-
-
-def _draw(content: ReadTables) -> Figure:
-    """Of each quantity the histogram of its samples, and below it bars of Sobol indices where they are known."""
-    quantities, keys = content["quantities"], [entry["key"] for entry in content["tolerances"]]
-    with_indices = any(entry["total"] is not None for entry in quantities.values())
-    heights = [2.2, 0.8 + 0.35 * len(keys)] if with_indices else [2.2]
-    columns = min(len(quantities), MOST_COLUMNS)
-    blocks = -(-len(quantities) // columns)
-    figure = new_figure(1.2 + 2.9 * columns, 0.7 + (sum(heights) + 0.6 * len(heights)) * blocks)
-    rows = figure.subplots(len(heights) * blocks, columns, squeeze=False, height_ratios=heights * blocks)
-    for k, (name, entry) in enumerate(quantities.items()):
-        block, column = divmod(k, columns)
-        axes = rows[len(heights) * block, column]
-        (value, unit), (low, _), (high, _) = (read_in(entry[end], entry["unit"]) for end in ("value", "low", "high"))
-        edges = [read_in(edge, entry["unit"])[0] for edge in entry["histogram"]["edges"]]
-        axes.stairs(entry["histogram"]["counts"], edges, fill=True, color=_SAMPLES)
-        for end, label in ((low, "95 % of samples"), (high, None)):
-            axes.axvline(end, color=_LIMIT_COLOUR, linewidth=1.2, label=label)
-        axes.axvline(value, color="#555f6b", linewidth=1.0, linestyle="--", label="nominal")
-        axes.set_title(f"{name.replace('_', ' ')}\n{low:.5g} to {high:.5g} {unit}", fontsize=10)
-        axes.set_xlabel(unit, fontsize=9)
-        axes.tick_params(labelsize=8)
-        axes.locator_params(axis="x", nbins=4)
-        rows[len(heights) * block, 0].set_ylabel("samples", fontsize=9)
-        if with_indices:
-            panel = rows[2 * block + 1, column]
-            places = np.arange(len(keys))
-            panel.set_xlim(0.0, 1.05)
-            panel.set_ylim(len(keys) - 0.4, -0.6)
-            panel.set_yticks(places, keys if column == 0 else [""] * len(keys), fontsize=8)
-            panel.set_xlabel("Sobol' index", fontsize=9)
-            panel.tick_params(axis="x", labelsize=8)
-            # Estimates of small indices scatter about 0, those of a single cause about 1.
-            total, first = (np.clip(entry[order] or np.zeros(len(keys)), 0.0, 1.0) for order in ("total", "first_order"))
-            panel.barh(places, total, color=_TOTAL, height=0.7, label="total")
-            panel.barh(places, first, color=_FIRST, height=0.3, label="first order")
-    for panel in rows[-len(heights) :, len(quantities) - columns * (blocks - 1) :].flat:
-        panel.set_visible(False)
-    handles, labels = rows[0, 0].get_legend_handles_labels()
-    if with_indices:
-        handles, labels = (a + b for a, b in zip((handles, labels), rows[1, 0].get_legend_handles_labels(), strict=True))
-    figure.legend(handles, labels, loc="outside lower right", ncols=4, fontsize=8, frameon=False)
-    figure.suptitle(wrapped(content["title"]), fontsize=11)
-    return figure
 
 
 #: Samples of a piece of work, which is what a killed worker loses; limits of the band.
@@ -234,7 +189,48 @@ class Band(Answer):
 
     def draw(self) -> Figure:
         """Histograms with their limits, and Sobol indices."""
-        return _draw(self.to_dict())
+        content = self.to_dict()
+        quantities, keys = content["quantities"], [entry["key"] for entry in content["tolerances"]]
+        with_indices = any(entry["total"] is not None for entry in quantities.values())
+        heights = [2.2, 0.8 + 0.35 * len(keys)] if with_indices else [2.2]
+        columns = min(len(quantities), MOST_COLUMNS)
+        blocks = -(-len(quantities) // columns)
+        figure = new_figure(1.2 + 2.9 * columns, 0.7 + (sum(heights) + 0.6 * len(heights)) * blocks)
+        rows = figure.subplots(len(heights) * blocks, columns, squeeze=False, height_ratios=heights * blocks)
+        for k, (name, entry) in enumerate(quantities.items()):
+            block, column = divmod(k, columns)
+            axes = rows[len(heights) * block, column]
+            (value, unit), (low, _), (high, _) = (read_in(entry[end], entry["unit"]) for end in ("value", "low", "high"))
+            edges = [read_in(edge, entry["unit"])[0] for edge in entry["histogram"]["edges"]]
+            axes.stairs(entry["histogram"]["counts"], edges, fill=True, color=_SAMPLES)
+            for end, label in ((low, "95 % of samples"), (high, None)):
+                axes.axvline(end, color=_LIMIT_COLOUR, linewidth=1.2, label=label)
+            axes.axvline(value, color="#555f6b", linewidth=1.0, linestyle="--", label="nominal")
+            axes.set_title(f"{name.replace('_', ' ')}\n{low:.5g} to {high:.5g} {unit}", fontsize=10)
+            axes.set_xlabel(unit, fontsize=9)
+            axes.tick_params(labelsize=8)
+            axes.locator_params(axis="x", nbins=4)
+            rows[len(heights) * block, 0].set_ylabel("samples", fontsize=9)
+            if with_indices:
+                panel = rows[2 * block + 1, column]
+                places = np.arange(len(keys))
+                panel.set_xlim(0.0, 1.05)
+                panel.set_ylim(len(keys) - 0.4, -0.6)
+                panel.set_yticks(places, keys if column == 0 else [""] * len(keys), fontsize=8)
+                panel.set_xlabel("Sobol' index", fontsize=9)
+                panel.tick_params(axis="x", labelsize=8)
+                # Estimates of small indices scatter about 0, those of a single cause about 1.
+                total, first = (np.clip(entry[order] or np.zeros(len(keys)), 0.0, 1.0) for order in ("total", "first_order"))
+                panel.barh(places, total, color=_TOTAL, height=0.7, label="total")
+                panel.barh(places, first, color=_FIRST, height=0.3, label="first order")
+        for panel in rows[-len(heights) :, len(quantities) - columns * (blocks - 1) :].flat:
+            panel.set_visible(False)
+        handles, labels = rows[0, 0].get_legend_handles_labels()
+        if with_indices:
+            handles, labels = (a + b for a, b in zip((handles, labels), rows[1, 0].get_legend_handles_labels(), strict=True))
+        figure.legend(handles, labels, loc="outside lower right", ncols=4, fontsize=8, frameon=False)
+        figure.suptitle(wrapped(content["title"]), fontsize=11)
+        return figure
 
     def report(self) -> Iterator[Part]:
         """A line a quantity; below it the tolerances, the definitions, and the samples that have no answer."""

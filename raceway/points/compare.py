@@ -143,8 +143,21 @@ class Comparison(Answer, Findings):
 
     def table(self) -> list[dict[str, str]]:
         """One row a run, as short text for a screen; why a run is unreliable is a sentence below."""
-        names, with_notes = _short_names(self.axes), any(row.doubt for row in self.rows)
-        return [_screen_row(row, names, with_notes, self.quantities) for row in self.rows]
+        names, with_notes, texts = _short_names(self.axes), any(row.doubt for row in self.rows), list[dict[str, str]]()
+        quantities, first = self.quantities, next(iter(self.quantities.values()))
+        for row in self.rows:
+            text = {name: shown(row.point[key]) for key, name in names.items()}
+            for name, about in quantities.items():
+                value = row.value(name)
+                text[f"{about.symbol} {about.read_unit}"] = "" if value is None else f"{about.read(value):.3f}"
+            text[f"{first.symbol} within"] = _within(row, first)
+            if quantities is MOVING:
+                text[f"{C.symbol} {C.unit}"] = row.damping_words
+                text["error %"] = "" if row.value(Z.name) is None else f"{100.0 * row.error:.2g}"
+            if with_notes:
+                text["note"] = row.result["status"] if row.failed else "unreliable" if row.doubt else ""
+            texts.append(text)
+        return texts
 
     def draw(self) -> Figure:
         """All quantities."""
@@ -181,21 +194,6 @@ def _within(row: Row, about: Quantity) -> str:
     """The interval of a quantity; what distinguishes runs, whose unknowns are alike, is seen below it."""
     entry = (row.result.get("uncertainty") or {}).get(about.name)
     return interval(entry).partition(":")[0] if entry else ""
-
-
-def _screen_row(row: Row, names: dict[str, str], with_note: bool, quantities: dict[str, Quantity]) -> dict[str, str]:
-    text = {name: shown(row.point[key]) for key, name in names.items()}
-    for name, about in quantities.items():
-        value = row.value(name)
-        text[f"{about.symbol} {about.read_unit}"] = "" if value is None else f"{about.read(value):.3f}"
-    first = next(iter(quantities.values()))
-    text[f"{first.symbol} within"] = _within(row, first)
-    if quantities is MOVING:
-        text[f"{C.symbol} {C.unit}"] = row.damping_words
-        text["error %"] = "" if row.value(Z.name) is None else f"{100.0 * row.error:.2g}"
-    if with_note:
-        text["note"] = row.result["status"] if row.failed else "unreliable" if row.doubt else ""
-    return text
 
 
 def _short_names(axes: tuple[Axis, ...]) -> dict[str, str]:

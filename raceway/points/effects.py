@@ -450,7 +450,14 @@ def _courses(comparison: Findings) -> list[str]:
         if len(trends) < 2 or max(changes) - min(changes) < _HARDLY:
             continue
         partners = [key for key in factorial.keys if key != axis.key]
-        partner = comparison.axis(max(partners, key=lambda key: _together(factorial, axis.key, key)))
+        partner = comparison.axis(
+            max(
+                partners,
+                key=lambda key: max(
+                    (abs(e.log_change) for e in factorial.effects if set(e.term) == {axis.key, key}), default=0.0
+                ),
+            )
+        )
         for value in partner.values:
             here = [t for t in trends if t["at"][partner.key] == value]
             parts = []
@@ -463,11 +470,6 @@ def _courses(comparison: Findings) -> list[str]:
             if parts:
                 words.append(f"With {partner.key} = {shown(value)}, {label} along {_step(axis)} {_series(parts)}{note}.")
     return words
-
-
-def _together(factorial: Factorial, key: str, partner: str) -> float:
-    """Size of the interaction of two axes."""
-    return max((abs(e.log_change) for e in factorial.effects if set(e.term) == {key, partner}), default=0.0)
 
 
 def _inertia(comparison: Findings) -> list[str]:

@@ -37,7 +37,14 @@ def draw(content: ReadTables) -> Figure:
         for attractor in content["doubled"]:
             _curve(panel, attractor["rows"], column, factor, ", twice the period")
         _curve(panel, content["rows"], column, factor, "")
-        _marks(panel, [x for attractor in (content, *content["doubled"]) for x in attractor["labels"]], column, factor)
+        labels = [x for attractor in (content, *content["doubled"]) for x in attractor["labels"]]
+        for kind, mark in _MARKS.items():
+            kind_labels = [label for label in labels if label["kind"] == kind]
+            if kind_labels:
+                panel.plot(
+                    [x["parameter"] for x in kind_labels], [factor * x[column] for x in kind_labels], linestyle="", marker=mark,
+                    markersize=6, color="black", markerfacecolor="white", label=kind,
+                )  # fmt: skip
         panel.set_ylabel(words)
         dress(panel)
     panels[-1].set_xlabel(content["key"])
@@ -70,16 +77,6 @@ def _curve(panel: Axes, rows: Sequence[ReadTables], column: str, factor: float, 
 
 def _unstable(row: ReadTables) -> bool:
     return bool(row["verdict"] == "unstable")
-
-
-def _marks(panel: Axes, labels: Sequence[ReadTables], column: str, factor: float) -> None:
-    for kind, mark in _MARKS.items():
-        kind_labels = [label for label in labels if label["kind"] == kind]
-        if kind_labels:
-            panel.plot(
-                [x["parameter"] for x in kind_labels], [factor * x[column] for x in kind_labels], linestyle="", marker=mark,
-                markersize=6, color="black", markerfacecolor="white", label=kind,
-            )  # fmt: skip
 
 
 def _section(panel: Axes, attractor: ReadTables) -> None:

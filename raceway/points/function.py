@@ -313,8 +313,13 @@ class Function:
         fit = np.flatnonzero(~refusals)
         status[refusals], reason = PointStatus.REFUSED, np.full(n, "", dtype=object)
         values: Columns = {}
-        for turning, rows in self._alike(columns, fit):
-            plan = self._plan(columns, rows, turning)
+        # A plan decides alike about rows whose balls turn, and about those whose balls stand.
+        turns = np.full(len(fit), resolve(self.scene).spin_speed > 0.0)
+        for key in ("excitation.speed_rpm", "kinematics.spin_speed_rpm"):
+            if key in columns and (key.startswith("kin") or self.scene.kinematics.spin_speed_rpm is None):
+                turns = columns[key][fit] > 0.0
+        for turning, rows in ((True, fit[turns]), (False, fit[~turns])):
+            plan = self._plan(columns, rows, turning) if len(rows) else None
             if plan is None:
                 continue
             inputs = {key: column[rows] for key, column in columns.items()}
@@ -376,14 +381,6 @@ class Function:
                 self._plans[turning] = make_plan(self._scene_of(columns, row))
                 break
         return self._plans.get(turning)
-
-    def _alike(self, columns: Mapping[str, np.ndarray], rows: np.ndarray) -> list[tuple[bool, np.ndarray]]:
-        """Rows whose balls a plan decides alike: they turn, or stand."""
-        turning = np.full(len(rows), resolve(self.scene).spin_speed > 0.0)
-        for key in ("excitation.speed_rpm", "kinematics.spin_speed_rpm"):
-            if key in columns and (key.startswith("kin") or self.scene.kinematics.spin_speed_rpm is None):
-                turning = columns[key][rows] > 0.0
-        return [(turns, part) for turns, part in ((True, rows[turning]), (False, rows[~turning])) if len(part)]
 
     def _scene_of(self, flat: Mapping[str, np.ndarray], row: int) -> Scene:
         """The scene of one row; ``SceneError`` of what is no number, too."""

@@ -195,7 +195,40 @@ class LawCurves(Answer):
 
     def draw(self) -> Figure:
         """Force, stiffness, damping and the cycle's loop."""
-        return _draw(self)
+        from raceway.answers.picture import new_figure, wrapped
+
+        with_damping = self.cycle.energy != 0.0 or bool(self.damping.any())
+        figure = new_figure(9.6, 7.2 if with_damping else 3.9)
+        panels = figure.subplots(2 if with_damping else 1, 2, squeeze=False)
+        micro, contact, motion = 1e6 * self.approach, self.contact, self.cycle
+        (force, stiffness), further = panels[0], panels[1:]
+        for panel, still, hertz, unit in (
+            (force, self.force, self.hertz_force, 1.0),
+            (stiffness, self.stiffness, self.hertz_stiffness, 1e-6),
+        ):
+            panel.plot(micro, unit * still[0], color=_LAW, label=f"{self.law} at rest")
+            panel.plot(micro, unit * hertz, color=_HERTZ, linestyle="--", label="Hertz")
+        force.set(ylabel="force [N]", title="Force" if with_damping else f"Force; {self.damping_origin}")
+        stiffness.set(ylabel="stiffness [N/µm]", title="Stiffness at rest")
+        for loop, damping in further:
+            damping.plot(micro, self.damping[0], color=_LAW, label="at rest")
+            for k, word, style in ((1, "closing", "-"), (2, "opening", ":")):
+                label = f"{word} at {1e3 * abs(self.rate[k]):.3g} mm/s"
+                for panel, values in ((force, self.force), (damping, self.damping)):
+                    panel.plot(micro, values[k], color=_MOVING, linestyle=style, linewidth=0.9, label=label)
+            loop.plot(1e6 * motion.approach, motion.force, color=_LAW)
+            damping.set(ylabel="damping [N s/m]", title="Damping: force over rate")
+            title = f"Cycle at {motion.frequency:.4g} Hz: {1e6 * motion.energy:.3g} µJ lost\nC {motion.damping:.4g} N s/m"
+            loop.set(ylabel="force [N]", title=title)
+            damping.legend(frameon=False, fontsize=8.5)
+        force.plot([1e6 * contact.approach], [contact.load], "o", color=_LAW, label="equilibrium")
+        for panel in panels.flat:
+            panel.set_xlabel("approach [µm]")
+        for panel in (force, stiffness):
+            panel.legend(frameon=False, fontsize=8.5)
+        title = f"{self.law}, {contact.race} contact of ball {contact.ball}: {self.title.partition(chr(10))[0]}"
+        figure.suptitle(wrapped(title), fontsize=11)
+        return figure
 
     def report(self) -> Iterator[Part]:
         """The contact, the law beside Hertz', the cycle."""
@@ -357,41 +390,3 @@ def cycle(contact: Contact, amplitude: float, frequency: float) -> _Cycle:
 
 def _ratio(value: float | None) -> str:
     return "-" if value is None else f"{value:.4g}"
-
-
-def _draw(curves: LawCurves) -> Figure:
-    """Force and stiffness over the approach; of a law that loses energy the loop of the cycle and the damping, too."""
-    from raceway.answers.picture import new_figure, wrapped
-
-    with_damping = curves.cycle.energy != 0.0 or bool(curves.damping.any())
-    figure = new_figure(9.6, 7.2 if with_damping else 3.9)
-    panels = figure.subplots(2 if with_damping else 1, 2, squeeze=False)
-    micro, contact, motion = 1e6 * curves.approach, curves.contact, curves.cycle
-    (force, stiffness), further = panels[0], panels[1:]
-    for panel, still, hertz, unit in (
-        (force, curves.force, curves.hertz_force, 1.0),
-        (stiffness, curves.stiffness, curves.hertz_stiffness, 1e-6),
-    ):
-        panel.plot(micro, unit * still[0], color=_LAW, label=f"{curves.law} at rest")
-        panel.plot(micro, unit * hertz, color=_HERTZ, linestyle="--", label="Hertz")
-    force.set(ylabel="force [N]", title="Force" if with_damping else f"Force; {curves.damping_origin}")
-    stiffness.set(ylabel="stiffness [N/µm]", title="Stiffness at rest")
-    for loop, damping in further:
-        damping.plot(micro, curves.damping[0], color=_LAW, label="at rest")
-        for k, word, style in ((1, "closing", "-"), (2, "opening", ":")):
-            label = f"{word} at {1e3 * abs(curves.rate[k]):.3g} mm/s"
-            for panel, values in ((force, curves.force), (damping, curves.damping)):
-                panel.plot(micro, values[k], color=_MOVING, linestyle=style, linewidth=0.9, label=label)
-        loop.plot(1e6 * motion.approach, motion.force, color=_LAW)
-        damping.set(ylabel="damping [N s/m]", title="Damping: force over rate")
-        title = f"Cycle at {motion.frequency:.4g} Hz: {1e6 * motion.energy:.3g} µJ lost\nC {motion.damping:.4g} N s/m"
-        loop.set(ylabel="force [N]", title=title)
-        damping.legend(frameon=False, fontsize=8.5)
-    force.plot([1e6 * contact.approach], [contact.load], "o", color=_LAW, label="equilibrium")
-    for panel in panels.flat:
-        panel.set_xlabel("approach [µm]")
-    for panel in (force, stiffness):
-        panel.legend(frameon=False, fontsize=8.5)
-    title = f"{curves.law}, {contact.race} contact of ball {contact.ball}: {curves.title.partition(chr(10))[0]}"
-    figure.suptitle(wrapped(title), fontsize=11)
-    return figure

@@ -86,7 +86,26 @@ class Parameter:
     _problems: dict[float, Problem] = attrs.field(factory=dict, init=False)
 
     def __attrs_post_init__(self) -> None:
-        self._check()
+        for p in (self.first, self.last):
+            try:
+                scene = self.scene(p)
+            except ValueError as why:
+                over = f"{self.first:g}:{self.last:g}"
+                raise SceneError.at(self.key, p, f"{why} (followed over every value of {over})") from None
+        excitation = scene.excitation
+        if excitation is None:
+            raise SceneError.at("excitation", None, "is missing: there is no motion to follow")
+        if excitation.period_s is None:
+            raise SceneError.at("excitation.kind", excitation.name, "does not repeat every turn: there is no steady orbit")
+        model = build_model(scene)
+        refuse(model.system, Schedule(excitation.period_s / 36, 36, 1))
+        if model.system.scalars[CAGE] != 0.0:
+            words = (
+                "the ball-pass frequency of orbiting balls differs from that of the force, so K, C and multipliers per turn are undefined: follow the branch "
+                "with stationary balls, --set kinematics.orbiting=false. Single values with orbiting balls: "
+                "`raceway run` or `raceway sweep`"
+            )
+            raise SceneError.at("kinematics.orbiting", True, words)
         first, between, last = (self._ring_at(p) for p in (self.first, self.value(_BETWEEN), self.last))
         parts = {
             field.name: tuple(getattr(system, field.name) for system in (first, between, last))
@@ -161,29 +180,6 @@ class Parameter:
         ring = compiled(self.model(p).system)
         assert ring is not None, "refused before"
         return ring
-
-    def _check(self) -> None:
-        """Refuse ranges that leave what the key allows, and scenes without a steady orbit."""
-        for p in (self.first, self.last):
-            try:
-                scene = self.scene(p)
-            except ValueError as why:
-                over = f"{self.first:g}:{self.last:g}"
-                raise SceneError.at(self.key, p, f"{why} (followed over every value of {over})") from None
-        excitation = scene.excitation
-        if excitation is None:
-            raise SceneError.at("excitation", None, "is missing: there is no motion to follow")
-        if excitation.period_s is None:
-            raise SceneError.at("excitation.kind", excitation.name, "does not repeat every turn: there is no steady orbit")
-        model = build_model(scene)
-        refuse(model.system, Schedule(excitation.period_s / 36, 36, 1))
-        if model.system.scalars[CAGE] != 0.0:
-            words = (
-                "the ball-pass frequency of orbiting balls differs from that of the force, so K, C and multipliers per turn are undefined: follow the branch "
-                "with stationary balls, --set kinematics.orbiting=false. Single values with orbiting balls: "
-                "`raceway run` or `raceway sweep`"
-            )
-            raise SceneError.at("kinematics.orbiting", True, words)
 
 
 def _equal(first: object, second: object) -> bool:

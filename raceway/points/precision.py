@@ -97,7 +97,15 @@ class Precision(Answer):
     @cached_property
     def judged(self) -> list[Row]:
         """Rows with value, error, errors of all quantities, whether the reference limits them, and the observed order."""
-        rows = [{**row, **self._errors(row)} for row in self.rows]
+        rows = [{**row, "value": None, "error": None, "errors": {}, "at_bound": False, "order": None} for row in self.rows]
+        for row in (row for row in rows if row["quantities"]):
+            values, reference = row["quantities"], self.references[row["physics"]]
+            row["value"] = main_size(values)
+            if reference.values:
+                apart = minus(values, reference.values)
+                row["errors"] = {name: abs(share) for name, share in reference.relative(apart).items()}
+                row["error"] = distance(apart) / reference.size
+                row["at_bound"] = not row["error"] > EXACT * reference.bound
         # The order between each row and the next coarser one of its ladder.
         for key, inverse in _LADDERS.items():
             for places in _ladders(rows, key):
@@ -109,21 +117,6 @@ class Precision(Answer):
                         ratio = rows[fine]["setting"][key] / rows[coarse]["setting"][key]
                         rows[fine]["order"] = math.log(errors[0] / errors[1]) / math.log(ratio if inverse else 1.0 / ratio)
         return rows
-
-    def _errors(self, row: Row) -> Row:
-        out: Row = {"value": None, "error": None, "errors": {}, "at_bound": False, "order": None}
-        values = row["quantities"]
-        if not values:
-            return out
-        reference = self.references[row["physics"]]
-        out["value"] = main_size(values)
-        if not reference.values:
-            return out
-        apart = minus(values, reference.values)
-        out["errors"] = {name: abs(share) for name, share in reference.relative(apart).items()}
-        out["error"] = distance(apart) / reference.size
-        out["at_bound"] = not out["error"] > EXACT * reference.bound
-        return out
 
     def _largest_error(self, row: Row) -> float:
         """The largest error that the row can have."""
@@ -150,7 +143,7 @@ class Precision(Answer):
         fastest: dict[str, int | None] = {}
         for threshold in THRESHOLDS:
             good = [(time, k) for time, k in rows if self._largest_error(self.judged[k]) <= threshold]
-            fastest[_text(threshold)] = min(good)[1] if good else None
+            fastest[f"{threshold:.10f}".rstrip("0")] = min(good)[1] if good else None
         return fastest
 
     @property
@@ -282,11 +275,9 @@ class Precision(Answer):
         facts: list[Fact] = [("reference", f"{reference.bound:.1g}", f"relative bound; {reference.how}")]
         for threshold, index in self.cheapest(self.base).items():
             row = None if index is None else self.judged[index]
-            name, value = (
-                f"cheapest within {100.0 * float(threshold):g} %",
-                "none" if row is None else f"{1e3 * row['cost']['time_s']:.3g} ms",
-            )
-            facts.append((name, value, "" if row is None else _words_of(row["setting"])))
+            value = "none" if row is None else f"{1e3 * row['cost']['time_s']:.3g} ms"
+            words = "" if row is None else _words_of(row["setting"])
+            facts.append((f"cheapest within {100.0 * float(threshold):g} %", value, words))
         front = set(self.front(self.base))
         rows = [
             (
@@ -301,8 +292,19 @@ class Precision(Answer):
 
     def table(self) -> list[dict[str, str]]:
         """One line a row, as short text for a screen."""
-        front = set(self.front(self.base))
-        return [_screen_row(row, index in front) for index, row in enumerate(self.judged)]
+        front, texts = set(self.front(self.base)), list[dict[str, str]]()
+        for index, row in enumerate(self.judged):
+            cost = row["cost"]
+            text = {"setting": ("* " if index in front else "  ") + _words_of(row["setting"])}
+            text["error"] = "" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}"
+            text["own estimate"] = "" if row["own_error"] is None else f"{row['own_error']:.1e}"
+            text["order"] = "" if row["order"] is None else f"{row['order']:.2f}"
+            text["wall ms"] = "" if cost is None else f"{1e3 * cost['wall_s']:.1f}"
+            text["cpu ms"] = "" if cost is None else f"{1e3 * cost['cpu_s']:.1f}"
+            text["steps"] = "" if cost is None else str(cost["steps"])
+            text["status"] = "" if row["status"] == "completed" else row["status"]
+            texts.append(text)
+        return texts
 
     def texts(self, pictures: bool) -> dict[str, str]:
         """precision.md."""
@@ -381,23 +383,6 @@ def _words_of(setting: Tables) -> str:
     return ", ".join(word(key, value) for key, value in setting.items()) or "the scene itself"
 
 
-def _text(threshold: float) -> str:
-    return f"{threshold:.10f}".rstrip("0")
-
-
-def _screen_row(row: Row, on_front: bool) -> dict[str, str]:
-    cost = row["cost"]
-    text = {"setting": ("* " if on_front else "  ") + _words_of(row["setting"])}
-    text["error"] = "" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}"
-    text["own estimate"] = "" if row["own_error"] is None else f"{row['own_error']:.1e}"
-    text["order"] = "" if row["order"] is None else f"{row['order']:.2f}"
-    text["wall ms"] = "" if cost is None else f"{1e3 * cost['wall_s']:.1f}"
-    text["cpu ms"] = "" if cost is None else f"{1e3 * cost['cpu_s']:.1f}"
-    text["steps"] = "" if cost is None else str(cost["steps"])
-    text["status"] = "" if row["status"] == "completed" else row["status"]
-    return text
-
-
 def labelled(study: Precision) -> Dataset:
     """Error, time and value of every setting.
 
@@ -438,7 +423,18 @@ def _study(
 
     for setting in design.settings:
         tell(_words_of(setting.values))
-        results.append(_row(setting, repeats, registry, store))
+        head = {name: getattr(setting, name) for name in ("family", "model", "physics")} | {"setting": setting.values}
+        head |= {"expected_order": None, "reused": False}
+        if setting.scene is None:
+            results.append(
+                {**head, "status": "refused", "reason": setting.reason, "quantities": {}, "own_error": None, "cost": None}
+            )
+            continue
+        method = resolve(setting.scene).integrator.method
+        if needs_motion(setting.scene) and method.inertial:
+            head["expected_order"] = method.order
+        row, is_old = measured_once(setting.scene, repeats, repeats, registry, store)
+        results.append({**head, **row, "reused": is_old})
     runner = Runner(registry, store, limit_s, tell)
     for physics, group in groups.items():
         references[physics] = find_reference(group, runner, reference)
@@ -446,26 +442,6 @@ def _study(
     return Precision(
         design.title, tuple(results), references, design.base, design.left_out, design.notes, store.fault, bool(reference)
     )
-
-
-def _row(setting: Setting, repeats: int, registry: Registry, store: Store) -> Tables:
-    """One row: measured now, or taken from what an earlier study has kept."""
-    head = {
-        "family": setting.family,
-        "setting": setting.values,
-        "model": setting.model,
-        "physics": setting.physics,
-        "expected_order": None,
-        "reused": False,
-    }
-    if setting.scene is None:
-        failure: Tables = {"status": "refused", "reason": setting.reason, "quantities": {}, "own_error": None, "cost": None}
-        return {**head, **failure}
-    method = resolve(setting.scene).integrator.method
-    if needs_motion(setting.scene) and method.inertial:
-        head["expected_order"] = method.order
-    row, is_old = measured_once(setting.scene, repeats, repeats, registry, store)
-    return {**head, **row, "reused": is_old}
 
 
 @door

@@ -143,7 +143,39 @@ class Sensitivities(Answer):
 
     def draw(self) -> Figure | None:
         """Bars of relative influence."""
-        return _bars(self.to_dict()) if self.rows else None
+        if not self.rows:
+            return None
+        content = self.to_dict()
+        names = list(content["quantities"])
+        keys = [
+            key
+            for key in content["keys"]
+            if _largest(key, names) >= _LEAST * max(_largest(k, names) for k in content["keys"])
+        ]
+        keys = sorted(keys, key=lambda key: -_largest(key, names))[:_MOST]
+        columns = min(len(names), MOST_COLUMNS)
+        rows = -(-len(names) // columns)
+        figure = new_figure(2.6 + 2.3 * columns, 0.5 + (1.1 + 0.32 * max(len(keys), 3)) * rows)
+        panels = figure.subplots(rows, columns, sharey=True, squeeze=False).flat
+        for panel in panels[len(names) :]:
+            panel.set_visible(False)
+        for panel, name in zip(panels, names, strict=False):
+            shares = [key["influence"].get(name, 0.0) for key in keys]
+            colours = [_MORE if share >= 0.0 else _LESS for share in shares]
+            panel.barh(range(len(keys)), shares, color=colours, height=0.66)
+            panel.axvline(0.0, color="#555f6b", linewidth=0.8)
+            reach = 1.55 * max((abs(share) for share in shares), default=1.0) or 1.0
+            panel.set_xlim(-reach, reach)
+            for position, share in enumerate(shares):
+                if abs(share) >= _LEAST:
+                    side = "left" if share >= 0.0 else "right"
+                    panel.annotate(f"{share:+.2g}", (share, position), (3 if share >= 0.0 else -3, 0), textcoords="offset points", ha=side, va="center", fontsize=8)  # fmt: skip
+            panel.set_title(name.replace("_", " "), fontsize=11)
+            panel.set_xlabel("% per % of key", fontsize=9)
+            panel.set_yticks(range(len(keys)), [key["key"] for key in keys], fontsize=9)
+            panel.set_ylim(len(keys) - 0.4, -0.6)
+        figure.suptitle(wrapped(content["title"]), fontsize=11)
+        return figure
 
     def report(self) -> Iterator[Part]:
         """Keys in the order of their influence; below, what has none, what has no derivative, and the cost."""
@@ -214,38 +246,6 @@ _SHOWN = 1e-6
 _MORE, _LESS = "#0b5fa5", "#c8501e"
 #: Keys at most, and influence over the largest one below which none is drawn.
 _MOST, _LEAST = 14, 1e-3
-
-
-def _bars(content: ReadTables) -> Figure:
-    """Bars of relative influence, per cent a quantity grows when a key grows by one per cent."""
-    names = list(content["quantities"])
-    keys = [
-        key for key in content["keys"] if _largest(key, names) >= _LEAST * max(_largest(k, names) for k in content["keys"])
-    ]
-    keys = sorted(keys, key=lambda key: -_largest(key, names))[:_MOST]
-    columns = min(len(names), MOST_COLUMNS)
-    rows = -(-len(names) // columns)
-    figure = new_figure(2.6 + 2.3 * columns, 0.5 + (1.1 + 0.32 * max(len(keys), 3)) * rows)
-    panels = figure.subplots(rows, columns, sharey=True, squeeze=False).flat
-    for panel in panels[len(names) :]:
-        panel.set_visible(False)
-    for panel, name in zip(panels, names, strict=False):
-        shares = [key["influence"].get(name, 0.0) for key in keys]
-        colours = [_MORE if share >= 0.0 else _LESS for share in shares]
-        panel.barh(range(len(keys)), shares, color=colours, height=0.66)
-        panel.axvline(0.0, color="#555f6b", linewidth=0.8)
-        reach = 1.55 * max((abs(share) for share in shares), default=1.0) or 1.0
-        panel.set_xlim(-reach, reach)
-        for position, share in enumerate(shares):
-            if abs(share) >= _LEAST:
-                side = "left" if share >= 0.0 else "right"
-                panel.annotate(f"{share:+.2g}", (share, position), (3 if share >= 0.0 else -3, 0), textcoords="offset points", ha=side, va="center", fontsize=8)  # fmt: skip
-        panel.set_title(name.replace("_", " "), fontsize=11)
-        panel.set_xlabel("% per % of key", fontsize=9)
-        panel.set_yticks(range(len(keys)), [key["key"] for key in keys], fontsize=9)
-        panel.set_ylim(len(keys) - 0.4, -0.6)
-    figure.suptitle(wrapped(content["title"]), fontsize=11)
-    return figure
 
 
 def _largest(key: ReadTables, names: list[str]) -> float:

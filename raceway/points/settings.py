@@ -309,7 +309,14 @@ def _of_one_mesh(first: Setting, group: list[Setting], runner: Runner, extra: Re
     finest = [s.integrator.steps_per_turn for s in scenes if isinstance(s.integrator.steps_per_turn, int)]
     steps, turns = max(finest, default=360), max(s.integrator.turns for s in scenes)
     if not scene.integrator.method.inertial:
-        return _equilibria(first, steps, runner, extra)
+        rows = [runner.at(first, {**extra, "integrator.steps_per_turn": n * steps}) for n in (2, _FINER)]
+        if rows[0] is None or rows[1] is None:
+            return Reference({}, {}, "the series of equilibria at finer steps could not be run")
+        values, change = rows[1]["quantities"], minus(rows[1]["quantities"], rows[0]["quantities"])
+        floor = _all(values, max(_FLOOR, rows[1]["own_error"] or 0.0))
+        bounds = {name: max(abs(change[name]), floor[name]) for name in values}
+        how = f"series of {_FINER * steps} equilibria per turn; bound by its own estimate and its change from {2 * steps}"
+        return Reference(values, bounds, how)
     # Where every turn is alike, a longer run shows the same; elsewhere the window belongs to the question.
     alike = scene.contact.friction == 0.0 and not scene.kinematics.orbiting and scene.excitation.period_s is not None
     common = {**extra, "integrator.turns": max(turns, _LEAST_TURNS) if alike else turns}
@@ -335,17 +342,6 @@ def _all(values: Values, relative: float) -> Values:
     """The same relative bound for every quantity; parts of Z are measured by |Z|."""
     size = main_size(values)
     return {name: relative * (size if name in _PARTS_OF_Z else abs(value)) for name, value in values.items()}
-
-
-def _equilibria(first: Setting, steps: int, runner: Runner, extra: Tables) -> Reference:
-    rows = [runner.at(first, {**extra, "integrator.steps_per_turn": n * steps}) for n in (2, _FINER)]
-    if rows[0] is None or rows[1] is None:
-        return Reference({}, {}, "the series of equilibria at finer steps could not be run")
-    values, change = rows[1]["quantities"], minus(rows[1]["quantities"], rows[0]["quantities"])
-    floor = _all(values, max(_FLOOR, rows[1]["own_error"] or 0.0))
-    bounds = {name: max(abs(change[name]), floor[name]) for name in values}
-    how = f"series of {_FINER * steps} equilibria per turn; bound by its own estimate and its change from {2 * steps}"
-    return Reference(values, bounds, how)
 
 
 def _direct(first: Setting, extra: Tables, runner: Runner) -> Reference | None:

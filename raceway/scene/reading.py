@@ -228,7 +228,10 @@ def scene_from_dict(
     acts = any(fits.get(key, 0.0) > 0.0 for key in ("shaft_interference", "housing_interference"))
     if entry is not None and entry.tolerance_class and isinstance(classes, dict) and acts:
         plain["tolerances"] = {"class": entry.tolerance_class, **classes}
-    at_inlet = _at_inlet(plain)
+    # [heat] begins with oil at the temperature of its inlet.
+    heat, oil, at_inlet = plain.get("heat", {}), plain.get("lubricant", {}), plain
+    if "oil_inlet_c" in heat and ("oil" in oil or "viscosity_40" in oil):
+        at_inlet = {**plain, "lubricant": {**oil, "temperature_c": heat["oil_inlet_c"]}}
     parts: Tables = {}
     for name, cls in TABLES.items():
         if name in OPTIONAL_TABLES and name not in plain:
@@ -255,14 +258,6 @@ def scene_from_dict(
 
         check_tolerances(scene)
     return scene
-
-
-def _at_inlet(tables: Tables) -> Tables:
-    """The tables with the temperature of the oil that [heat] begins with, that of its inlet."""
-    heat, oil = tables.get("heat", {}), tables.get("lubricant", {})
-    if "oil_inlet_c" not in heat or not ("oil" in oil or "viscosity_40" in oil):
-        return tables
-    return {**tables, "lubricant": {**oil, "temperature_c": heat["oil_inlet_c"]}}
 
 
 def _of_inlet(mistake: Mistake) -> Mistake:

@@ -227,17 +227,15 @@ class Suite:
 
     def _notes(self, check: Check) -> str:
         """Notes of a check on all examples."""
-        notes = [self._run(check, plugin) for plugin in self._examples()]
-        require(notes, "there is no example to check")
-        return "; ".join(dict.fromkeys(n for n in notes if n))
-
-    def _examples(self) -> list[object]:
         try:
-            return list(self.examples())
+            examples = list(self.examples())
         except ConformityError:
             raise
         except Exception as why:  # the plug-in's own code
             raise ConformityError(f"no example can be made: {type(why).__name__}: {why}") from why
+        notes = [self._run(check, plugin) for plugin in examples]
+        require(notes, "there is no example to check")
+        return "; ".join(dict.fromkeys(n for n in notes if n))
 
     def _run(self, check: Check, plugin: object) -> str | None:
         try:
@@ -255,19 +253,17 @@ def check_class(kind: str, plugin: attrs.AttrsInstance) -> None:
     cls = type(plugin)
     faults = broken_duties(kind, cls)
     require(not faults, f"`{cls.__qualname__}` " + ", ".join(faults))
-    require(_is_frozen(plugin), f"`{cls.__qualname__}` is not frozen: decorate it with @attrs.frozen")
+    example: Any = plugin
+    name = next((f.name for f in attrs.fields(cls)), "name")
+    try:
+        setattr(attrs.evolve(example), name, getattr(plugin, name))
+        frozen = False
+    except AttributeError as why:  # else a class without slots for it
+        frozen = isinstance(why, attrs.exceptions.FrozenInstanceError)
+    require(frozen, f"`{cls.__qualname__}` is not frozen: decorate it with @attrs.frozen")
     options = [f.name for f in attrs.fields(cls) if f.init and "unit" not in f.metadata]
     words = ", ".join(options)
     require(not options, f"options {words} are not declared with raceway.option: no unit, no help, no rule")
-
-
-def _is_frozen(plugin: Any) -> bool:
-    name = next((f.name for f in attrs.fields(type(plugin))), "name")
-    try:
-        setattr(attrs.evolve(plugin), name, getattr(plugin, name))
-    except AttributeError as why:  # else a class without slots for it
-        return isinstance(why, attrs.exceptions.FrozenInstanceError)
-    return False
 
 
 def check_kernel(kernel: Kernel, signature: Signature, word: str) -> None:
