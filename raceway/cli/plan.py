@@ -42,7 +42,7 @@ class _Planned(Answer):
         memory, wall_time = plan["predicted_bytes"], ("not known", "unknown before the mesh is read")
         if not plan["predicted_at_least"]:
             wall_time = duration(plan["predicted_wall_s"]), "with compiled kernels in the cache"
-        size = [
+        size: list[Row] = [
             ("Size and cost, predicted", "", ""),
             ("degrees of freedom", str(plan["dofs"]), "ring and balls"),
             *([("memory", f"{memory / 2**20:.3g} MiB", "at the peak")] if memory else []),
@@ -51,7 +51,14 @@ class _Planned(Answer):
             *([_derived_row(plan, "steps_per_turn", "steps per turn")] if plan["time_step_s"] else []),
             _derived_row(plan, "spin_speed", "spin speed", "r/min", 30.0 / pi),
         ]
-        yield sections([*size, *([] if plan["mesh"] is None else _mesh_rows(plan["mesh"]))])
+        if (mesh := plan["mesh"]) is not None:  # all bodies, and each; balls in one line
+            peak = f"{mesh['bytes'] / 2**20:.4g} MiB peak while meshing"
+            size += [("Mesh, predicted", "", ""), ("hexahedra", str(mesh["cells"]), peak)]
+            bodies = {body["name"]: (body["cells"], body["bytes"]) for body in mesh["bodies"]}
+            for name, (cells, bytes_of_body) in grouped(bodies):
+                each = " each" if name.startswith("balls (") else ""
+                size.append((name, str(cells), f"{bytes_of_body / 2**20:.3g} MiB{each}"))
+        yield sections(size)
         yield from (_reasons("Included", plan["kept"]), _reasons("Left out", plan["left_out"]))
 
 
@@ -71,18 +78,6 @@ def plan(scene: Scene, plugins: Iterable[str | Path] = ()) -> _Planned:
 def _derived_row(plan: ReadTables, name: str, words: str, unit: str = "", units: float = 1.0) -> Row:
     """A derived quantity, in so many ``units`` for one of its own, and what decides it."""
     return (words, number(units * plan["derived"][name]["value"], unit, 5), plan["derived"][name]["why"])
-
-
-def _mesh_rows(mesh: ReadTables) -> list[Row]:
-    """Predicted cells and memory of all bodies and of each; balls in one line."""
-    rows: list[Row] = [
-        ("Mesh, predicted", "", ""),
-        ("hexahedra", str(mesh["cells"]), f"{mesh['bytes'] / 2**20:.4g} MiB peak while meshing"),
-    ]
-    for name, bodies in grouped({body["name"]: (body["cells"], body["bytes"]) for body in mesh["bodies"]}):
-        cells, size = bodies
-        rows.append((name, str(cells), f"{size / 2**20:.3g} MiB" + (" each" if name.startswith("balls (") else "")))
-    return rows
 
 
 def _reasons(heading: str, items: Sequence[Mapping[str, str]]) -> RenderableType:

@@ -423,7 +423,18 @@ class Result(Answer):
         for name in ("failure.json", "last-good-state.npz"):
             with suppress(OSError):
                 (folder / name).unlink(missing_ok=True)
-        return paths + _write_reports(self.reports, self, folder)
+        failures = list[str]()  # a report that fails stops no other
+        for entry, writer in self.reports:
+            try:
+                with blamed(str(entry), "write()"):
+                    paths += cast(list[Path], writer.write(folder, self))
+            except PluginError as why:
+                failures.append(str(why))
+            except RacewayError as why:
+                failures.append(f"{entry}: {why}")
+        if failures:
+            raise PluginError(f"{'; '.join(failures)}. The result is saved: `{folder / 'result.json'}`")
+        return paths
 
 
 def band_table(ends: list[Result]) -> Tables:
@@ -525,25 +536,3 @@ def chosen_reports(names: Iterable[str], registry: Registry) -> list[Chosen]:
         with blamed(str(entry), "making it without options"):
             reports.append((entry, entry.plugin()))
     return reports
-
-
-def _write_reports(reports: Iterable[Chosen], result: Result, folder: Path) -> list[Path]:
-    """Write every report; one that fails stops no other.
-
-    Raises
-    ------
-    PluginError
-        In the end: which failed, and why.
-    """
-    failures, files = list[str](), list[Path]()
-    for entry, report in reports:
-        try:
-            with blamed(str(entry), "write()"):
-                files += cast(list[Path], report.write(folder, result))
-        except PluginError as why:
-            failures.append(str(why))
-        except RacewayError as why:
-            failures.append(f"{entry}: {why}")
-    if not failures:
-        return files
-    raise PluginError(f"{'; '.join(failures)}. The result is saved: `{folder / 'result.json'}`")

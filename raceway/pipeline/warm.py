@@ -305,7 +305,11 @@ def _fixed_points(
                 break
             excess = image(x, rows) - x
             if quick:
-                inverse = _updated(inverse, step, excess - before) if count else inverse
+                if count:  # Broyden's good update of H, which makes steps H f of f = G(x) - x
+                    back, row = np.einsum("nij,nj->ni", inverse, excess - before), np.einsum("ni,nij->nj", step, inverse)
+                    scale = (row * (excess - before)).sum(axis=1)
+                    scale = np.where(np.abs(scale) > 1e-12 * (step**2).sum(axis=1), scale, np.inf)
+                    inverse = inverse - (step + back)[:, :, None] * row[:, None, :] / scale[:, None, None]
                 step = np.einsum("nij,nj->ni", inverse, excess)
                 step *= np.minimum(1.0, _LONGEST / np.maximum(np.abs(step).max(axis=1), 1e-300))[:, np.newaxis]
             else:
@@ -321,12 +325,3 @@ def _fixed_points(
             rows, x, inverse, step, before = rows[left], nearer[left], inverse[left], step[left], excess[left]
         runaway[rows] |= not quick
     return answer, steady, runaway
-
-
-def _updated(inverse: np.ndarray, step: np.ndarray, change: np.ndarray) -> np.ndarray:
-    """Broyden's good update of H, which makes steps H f of f = G(x) - x, after a step and the change of f by it."""
-    back = np.einsum("nij,nj->ni", inverse, change)
-    row = np.einsum("ni,nij->nj", step, inverse)
-    scale = (row * change).sum(axis=1)
-    scale = np.where(np.abs(scale) > 1e-12 * (step**2).sum(axis=1), scale, np.inf)
-    return inverse - (step + back)[:, :, None] * row[:, None, :] / scale[:, None, None]

@@ -86,7 +86,14 @@ def parse_axes(definitions: Vary, option: str = "--vary", most: int = MOST_POINT
     pairs = definitions.items() if isinstance(definitions, Mapping) else ((text, None) for text in definitions)
     for text, values in pairs:
         try:
-            axis = parse_axis(text, option, most) if values is None else _axis_of(text, values, option, most)
+            if values is None or isinstance(values, str):
+                axis = parse_axis(text if values is None else f"{text}={values}", option, most)
+            else:
+                items = tidy(list(itertools.islice(values, most + 1)) if isinstance(values, Iterator) else values)
+                items = items if isinstance(items, list) else [items]
+                if not items:
+                    raise SceneError.at(text, None, "has no values: at least one is needed")
+                axis = _axis(text, items)
         except SceneError as error:
             mistakes += error.mistakes
             continue
@@ -129,28 +136,6 @@ def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Ax
     if ranges and len(items) > 1:
         raise SceneError.at(key, values, "mixes a list and a range: give one of them")
     return _axis(key, _range(key, items[0], most) if ranges else [parse_value(item) for item in items])
-
-
-def _axis_of(key: str, values: object, option: str = "--vary", most: int = MOST_POINTS) -> Axis:
-    """One axis of a mapping.
-
-    Parameters
-    ----------
-    values : a list, an array (n,), a range, an iterator, one value, or the text "a,b,c" or "start:stop:count"
-
-    Raises
-    ------
-    SceneError
-        Naming the axis and the rule.
-    """
-    if isinstance(values, str):
-        return parse_axis(f"{key}={values}", option, most)
-    items = tidy(list(itertools.islice(values, most + 1)) if isinstance(values, Iterator) else values)
-    if not isinstance(items, list):
-        items = [items]
-    if not items:
-        raise SceneError.at(key, None, "has no values: at least one is needed")
-    return _axis(key, items)
 
 
 def _axis(key: str, values: Sequence[Any]) -> Axis:

@@ -381,7 +381,21 @@ def explain(comparison: Findings) -> list[str]:
         words += [*_main_effects(comparison, quantity), *_interactions(comparison, quantity)]
     if comparison.factorials:
         words += [*_courses(comparison), *_inertia(comparison)]
-    return [*words, _what_was_run(comparison)]
+    # What was run, and how far the runs' own errors reach.
+    few = [axis.values if len(axis.values) <= 6 else (*axis.values[:2], "...", axis.values[-1]) for axis in comparison.axes]
+    axes = [f"{axis.key} ({', '.join(map(shown, values))})" for axis, values in zip(comparison.axes, few, strict=True)]
+    text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {_series(axes)}."
+    if comparison.factorials:
+        factorial, error = next(iter(comparison.factorials.values())), max(f.error for f in comparison.factorials.values())
+        text += f" The effects compare the first with the last value of each axis ({factorial.corners.size} runs)"
+        text += ", as geometric means over the other settings"
+        text += f", at {_settings(comparison.held)}" if comparison.held else ""
+        text += f"; the runs' own errors move them by at most {100.0 * error:.2g} %." if error else "."
+        unknown = sum(
+            row.doubt is None and not row.estimated and bool(row.result["identification"]) for row in comparison.rows
+        )
+        text += f" {unknown} runs without an estimated error are taken as exact." if unknown else ""
+    return [*words, text]
 
 
 def in_few_words(comparison: Findings) -> list[str]:
@@ -483,21 +497,6 @@ def _inertia(comparison: Findings) -> list[str]:
     return [
         f"|Z| is K less m w^2, with m = {mass} kg: {1e-6 * min(force):.2f} to {1e-6 * max(force):.2f} N/µm; damping adds to it."
     ]
-
-
-def _what_was_run(comparison: Findings) -> str:
-    few = [axis.values if len(axis.values) <= 6 else (*axis.values[:2], "...", axis.values[-1]) for axis in comparison.axes]
-    axes = [f"{axis.key} ({', '.join(map(shown, values))})" for axis, values in zip(comparison.axes, few, strict=True)]
-    text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {_series(axes)}."
-    if not comparison.factorials:
-        return text
-    factorial, error = next(iter(comparison.factorials.values())), max(f.error for f in comparison.factorials.values())
-    text += f" The effects compare the first with the last value of each axis ({factorial.corners.size} runs)"
-    text += ", as geometric means over the other settings"
-    text += f", at {_settings(comparison.held)}" if comparison.held else ""
-    text += f"; the runs' own errors move them by at most {100.0 * error:.2g} %." if error else "."
-    unknown = sum(row.doubt is None and not row.estimated and bool(row.result["identification"]) for row in comparison.rows)
-    return text + (f" {unknown} runs without an estimated error are taken as exact." if unknown else "")
 
 
 def _main_effects(comparison: Findings, quantity: str) -> list[str]:

@@ -193,7 +193,10 @@ def work_through(
         for index, answer in results:
             item = items[index]
             if isinstance(answer, Lost):
-                rows[index] = _row_of_loss(item, answer, lost)
+                if lost is None:
+                    reason = f"{answer.reason}, perhaps out of memory: run the command again, with --processes 1"
+                    raise RacewayError(f"{item.name}: {reason}")
+                rows[index] = lost(item, answer.reason)
             else:
                 rows[index] = answer[0]
                 # Store a row; on a disk that takes no more the study goes on without, and says so at its end.
@@ -206,12 +209,6 @@ def work_through(
             if on_progress is not None:
                 on_progress(item.name, len(rows), len(items))
     return [rows[index] for index in range(len(items))], old
-
-
-def _row_of_loss(item: Item, answer: Lost, lost: Callable[[Item, str], Tables] | None) -> Tables:
-    if lost is None:
-        raise RacewayError(f"{item.name}: {answer.reason}, perhaps out of memory: run the command again, with --processes 1")
-    return lost(item, answer.reason)
 
 
 def answers(executor: Executor, work: Work, batches: Iterable[Batch]) -> Generator[Answer, None, None]:

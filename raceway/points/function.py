@@ -226,7 +226,10 @@ class Function:
         refusals = np.flatnonzero(answer["status"] == PointStatus.REFUSED)
         answer["reason"][refusals] = _REFUSED
         for row in refusals[:_REASONS]:
-            answer["reason"][row] = self._reason(flat, int(row))
+            try:
+                make_plan(self._scene_of(flat, int(row)))
+            except RacewayError as why:
+                answer["reason"][row] = str(why)
         return answer
 
     @door
@@ -319,8 +322,13 @@ class Function:
             if key in columns and (key.startswith("kin") or self.scene.kinematics.spin_speed_rpm is None):
                 turns = columns[key][fit] > 0.0
         for turning, rows in ((True, fit[turns]), (False, fit[~turns])):
-            plan = self._plan(columns, rows, turning) if len(rows) else None
-            if plan is None:
+            # The first row that no rule refuses decides about parts, once for either.
+            for row in rows[:5] if turning not in self._plans else ():
+                with suppress(RacewayError):
+                    self._plans[turning] = make_plan(self._scene_of(columns, row))
+                    break
+            plan = self._plans.get(turning)
+            if plan is None or not len(rows):
                 continue
             inputs = {key: column[rows] for key, column in columns.items()}
             try:
@@ -374,14 +382,6 @@ class Function:
             return len(self.inputs) > 1 and keys[0].startswith("bearing.") and numbers[0] > 0.0
         return True
 
-    def _plan(self, columns: Mapping[str, np.ndarray], rows: np.ndarray, turning: bool) -> ScenePlan | None:
-        """That of the first row which no rule refuses, once for points whose balls turn, once for the others: it decides about parts."""
-        for row in rows[:5] if turning not in self._plans else ():
-            with suppress(RacewayError):
-                self._plans[turning] = make_plan(self._scene_of(columns, row))
-                break
-        return self._plans.get(turning)
-
     def _scene_of(self, flat: Mapping[str, np.ndarray], row: int) -> Scene:
         """The scene of one row; ``SceneError`` of what is no number, too."""
         point = {key: float(column[row]) for key, column in flat.items()}
@@ -389,13 +389,6 @@ class Function:
             if not np.isfinite(number):
                 raise SceneError.at(key, number, "is no number")
         return self.scene_at(point)
-
-    def _reason(self, flat: Mapping[str, np.ndarray], row: int) -> str:
-        try:
-            make_plan(self._scene_of(flat, row))
-        except RacewayError as why:
-            return str(why)
-        return _REFUSED
 
     def _run_all(self, flat: Mapping[str, np.ndarray], rows: np.ndarray, answer: Columns) -> Columns:
         """Runs of some rows, their values put into the answer."""

@@ -137,7 +137,10 @@ class Store:
         """
         lines = list[tuple[object, ...]]()
         for key, state, reason, content, cost in rows:
-            columns = (key, state, reason, _to_blob(content), _text(cost))
+            memory, arrays = io.BytesIO(), any(isinstance(value, np.ndarray) for value in content.values())
+            if arrays:
+                np.savez(memory, **content)
+            columns = (key, state, reason, memory.getvalue() if arrays else _text(content), _text(cost))
             lines.append((*columns, self._digest(*columns)))
         self._write(f"INSERT OR REPLACE INTO points ({_COLUMNS}) VALUES (?, ?, ?, ?, ?, ?)", lines)
 
@@ -288,15 +291,6 @@ def facts_digest(texts: Mapping[str, str]) -> str:
 
 def _damage(folder: Path, how: str = "its scene and design differ from those written") -> RacewayError:
     return RacewayError(f"`{folder / POINTS}` is damaged: {how}. Begin again in another folder with --out")
-
-
-def _to_blob(content: Tables) -> str | bytes:
-    """Plain values as text, arrays as a file of numpy's."""
-    if not any(isinstance(value, np.ndarray) for value in content.values()):
-        return _text(content)
-    memory = io.BytesIO()
-    np.savez(memory, **content)
-    return memory.getvalue()
 
 
 def _text(value: object) -> str:

@@ -65,19 +65,14 @@ def with_value(tables: ReadTables, key: str, value: object) -> Tables:
         table = table[name]
     if entry := _ENTRY.fullmatch(last):  # one number of several
         name, k = entry[1], int(entry[2])
-        numbers = list(table.get(name, _default(parents, name)))
+        defaults = TABLES.get(parents[0]) if len(parents) == 1 else None
+        field = attrs.fields_dict(defaults).get(name) if defaults is not None else None
+        numbers = list(table.get(name, field.default if field is not None and isinstance(field.default, tuple) else ()))
         if k >= len(numbers):
             raise SceneError.at(key, value, f"is not there: {name} has {len(numbers)} numbers")
         last, value = name, [*numbers[:k], value, *numbers[k + 1 :]]
     table[last] = value
     return result
-
-
-def _default(parents: list[str], name: str) -> Iterable[object]:
-    """Numbers of a key that the tables leave out; none where it has no default."""
-    table = TABLES.get(parents[0]) if len(parents) == 1 else None
-    field = attrs.fields_dict(table).get(name) if table is not None else None
-    return field.default if field is not None and isinstance(field.default, tuple) else ()
 
 
 def value_at(tables: ReadTables, key: str) -> Any:

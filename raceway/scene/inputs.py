@@ -10,6 +10,7 @@ import difflib
 import os
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
@@ -286,18 +287,6 @@ def _tomls_in(folder: Path) -> list[Path]:
     return sorted(folder.glob("*.toml")) if folder.is_dir() else []
 
 
-def _scenes_in(folder: Path) -> list[str]:
-    """Names of the TOML files in a folder that have a bearing in them."""
-    scenes = []
-    for path in _tomls_in(folder):
-        try:
-            if "bearing" in tomllib.loads(path.read_text(encoding="utf-8")):
-                scenes.append(path.name)
-        except (OSError, ValueError):  # no text, no TOML
-            continue
-    return scenes
-
-
 def read_toml(path: str | Path) -> Tables:
     """The tables of a TOML file.
 
@@ -313,7 +302,10 @@ def read_toml(path: str | Path) -> Tables:
         # By the name itself: what ends in .toml is alike to a third already.
         stems = {file.stem: file.name for file in _tomls_in(path.parent)}
         close = difflib.get_close_matches(path.stem, list(stems), n=1, cutoff=_NEAR)
-        scenes = [] if close else _scenes_in(path.parent)
+        scenes = []
+        for file in () if close else _tomls_in(path.parent):
+            with suppress(OSError, ValueError):  # no text, no TOML
+                scenes += [file.name] if "bearing" in tomllib.loads(file.read_text(encoding="utf-8")) else []
         hint = f" (did you mean '{stems[close[0]]}'?)" if close else ""
         hint += f"; scenes there: {', '.join(scenes[:5])}" if scenes else ""
         raise SceneError.at(str(path), None, f"no such file{hint}") from None

@@ -49,7 +49,11 @@ def load_ratings(bearing: Bearing) -> LoadRatings:
     Ceramic balls change no dynamic rating (ISO 20056-1).  Their contacts reach 4200 MPa under less load, where ISO 20056-2 permits
     a little more.
     """
-    row, modulus = _row(attrs.asdict(bearing, recurse=False)), _modulus(bearing)
+    row, modulus, parts = _row(attrs.asdict(bearing, recurse=False)), STEEL, (bearing.rings, bearing.balls)
+    if not all(np.all((STEEL_YOUNG[0] <= part.young) & (part.young <= STEEL_YOUNG[1])) for part in parts):
+        from raceway.core.contact.hertz import contact_modulus
+
+        modulus = contact_modulus(*(number for part in parts for number in (part.young, part.poisson)))
     static_rating = row.static_rating_of_grooves(modulus)
     static, static_from = _rating(bearing, "static_rating", static_rating, BallRow.static_rating_of_grooves)
     if bearing.dynamic_rating is None and np.any(row.angle > STEEPEST):
@@ -79,12 +83,3 @@ def _row(numbers: Mapping[str, Number]) -> BallRow:
 def _catalogue_row(name: str, maker: str | None) -> BallRow:
     entry = preset_of(name, maker)
     return _row({} if entry is None else entry.table)
-
-
-def _modulus(bearing: Bearing) -> Number:
-    rings, balls = bearing.rings, bearing.balls
-    if all(np.all((STEEL_YOUNG[0] <= part.young) & (part.young <= STEEL_YOUNG[1])) for part in (rings, balls)):
-        return STEEL
-    from raceway.core.contact.hertz import contact_modulus
-
-    return contact_modulus(rings.young, rings.poisson, balls.young, balls.poisson)

@@ -183,10 +183,6 @@ def check_set(bearing: Bearing) -> None:
             bearing.of_row(row)
         except ValueError as why:
             raise ValueError(f"`row[{k}]`: {why}") from None
-    _check_preload(bearing)
-
-
-def _check_preload(bearing: Bearing) -> None:
     ground = next((k for k, row in enumerate(bearing.row) if row.preload is not None), None)
     if ground is not None and bearing.preload_of != "row":
         raise ValueError(f"`row[{ground}].preload` says what that row was ground for: set preload_of = 'row'")

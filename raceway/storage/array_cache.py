@@ -72,7 +72,12 @@ def kept(
     if fault := refusal(folder()):
         _warn_refused(fault)
         return _contiguous(make())
-    path = folder() / f"{_key(kind, inputs, tuple(sources))}{_SUFFIX}"
+    names = tuple(sources)
+    digest = hashlib.sha256(f"{_FORMAT} {kind} {_source_key(names)}".encode())
+    for name in sorted(inputs):
+        digest.update(f"\n{name}=".encode())
+        _add(digest, inputs[name])
+    path = folder() / f"{digest.hexdigest()[:32]}{_SUFFIX}"
     arrays = _read(path)
     if arrays is not None:
         return arrays
@@ -129,14 +134,6 @@ def clear() -> None:
 
 def _files() -> list[Path]:
     return sorted(folder().glob(f"*{_SUFFIX}")) if folder().is_dir() else []
-
-
-def _key(kind: str, inputs: ReadTables, sources: tuple[str, ...]) -> str:
-    digest = hashlib.sha256(f"{_FORMAT} {kind} {_source_key(sources)}".encode())
-    for name in sorted(inputs):
-        digest.update(f"\n{name}=".encode())
-        _add(digest, inputs[name])
-    return digest.hexdigest()[:32]
 
 
 def _add(digest: hashlib._Hash, value: object) -> None:
