@@ -146,8 +146,8 @@ from .pipeline.equilibrium import largest_contacts as largest_contacts
 from .pipeline.equilibrium import pressures as pressures
 from .pipeline.equilibrium import solve_equilibrium as solve_equilibrium
 from .pipeline.front import radial_note as radial_note
-from .pipeline.gradient import definitions as definitions
-from .pipeline.gradient import resolved as resolved
+from .pipeline.first_order import definitions as definitions
+from .pipeline.first_order import resolved as resolved
 from .pipeline.run import run as run
 from .pipeline.run_parts import quantity_rows as quantity_rows
 from .pipeline.run_screen import screen as screen

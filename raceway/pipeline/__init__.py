@@ -8,7 +8,7 @@ error            relative errors of Z: time step, fit, total
 transient_error  relative errors of Z: what has not died out, and what the start decides
 plausible        warnings, and the spread of K over hypotheses that the scene leaves at their defaults
 uncertainty      intervals of headline quantities, from the errors and spreads of the others
-gradient         derivatives by the keys of the scene, and the band over tolerances to first order
+gradient         derivatives by the keys of the scene;  first_order: of its numbers, and their band over tolerances
 quantities       numbers of plug-ins at one solved point
 warm             steady temperatures of scenes with [heat]
 result           the result: result.json, formats of results;  run_screen, run_parts: its tables on a screen

@@ -206,7 +206,7 @@ class Result(Answer):
         """95 % band over the scene's [tolerances] to first order, by derivatives; None without that table."""
         if "tolerances" not in self.model.scene.source:
             return None
-        from raceway.pipeline.gradient import first_order_band
+        from raceway.pipeline.first_order import first_order_band
 
         return first_order_band(self.model, self.equilibrium)
 

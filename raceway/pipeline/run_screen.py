@@ -106,7 +106,7 @@ def screen(result: ReadTables) -> Screen:
     """Of one run, from the content of result.json."""
     rows = [*_answer_rows(result), *equilibrium_rows(result), *quantity_rows(result)]
     if result.get("tolerances"):
-        from raceway.pipeline.gradient import tolerance_rows
+        from raceway.pipeline.first_order import tolerance_rows
 
         rows += tolerance_rows(result["tolerances"])
     # The rows without the numbers that a part of the error of Z is as large as, or larger.

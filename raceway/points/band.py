@@ -21,7 +21,8 @@ from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, default_registry
 from raceway.framework.shown import Fact, number
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.gradient import Gradients, definitions, described, resolved, values
+from raceway.pipeline.first_order import definitions, described, resolved, values
+from raceway.pipeline.gradient import Gradients
 from raceway.pipeline.quantities import stated_quantities
 from raceway.pipeline.run import run, steady_plan
 from raceway.planning.plan import make_plan

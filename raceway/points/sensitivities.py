@@ -22,17 +22,8 @@ from raceway.errors import Mistake, SceneError
 from raceway.framework.doors import KEY_VALUES, PATHS, TEXTS, door, member
 from raceway.framework.shown import Fact, number
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.gradient import (
-    Gradient,
-    Gradients,
-    NoDerivative,
-    definitions,
-    derivatives,
-    described,
-    first_order_band,
-    tolerance_rows,
-    values,
-)
+from raceway.pipeline.first_order import definitions, derivatives, described, first_order_band, tolerance_rows, values
+from raceway.pipeline.gradient import Gradient, Gradients, NoDerivative
 from raceway.pipeline.run import steady_plan
 from raceway.scene.changes import Key, continuous_keys, key_of
 from raceway.scene.inputs import SceneSource, as_scene
