@@ -17,9 +17,9 @@ from raceway.extend import Store, read_toml, row_key, written
 from raceway.pipeline.equilibrium import peak
 from raceway.pipeline.transient_error import hann_line
 from raceway.points import precision as module
-from raceway.points.engine import measured
 from raceway.points.precision import THRESHOLDS
 from raceway.points.settings import find_reference, make_design
+from raceway.points.timing import measured
 from raceway.testing import b7206c, default_registry, run
 
 TABLES = read_toml(ARTICLE)

@@ -15,7 +15,8 @@ from checks.validation.command_line import invoke
 from checks.validation.stores import SPEEDS, as_list, made, stiffness
 from raceway import RacewayError, SceneError
 from raceway.extend import LIST, parse_at, select
-from raceway.points.plot import draw, layout, swept_keys
+from raceway.points.plot import draw, layout
+from raceway.points.selection import swept_keys
 
 SPEED, LOAD = "excitation.speed_rpm", "load.axial"
 MANY = np.linspace(200.0, 2000.0, 9)

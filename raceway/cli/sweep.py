@@ -152,13 +152,15 @@ class _Choice(NamedTuple):
 
     def foresee(self, design: Design, scene: ReadTables) -> None:
         """Refuse, before anything is computed, a picture that this sweep cannot give."""
-        from raceway.points.plot import layout, parse_at, select
+        from raceway.points.plot import layout
+        from raceway.points.selection import parse_at, select
 
         layout(select(blank(design, scene), parse_at(self.at)), self.value, self.kind, self.x, self.y)
 
     def draw(self, store: Path) -> Tables:
         """The picture, written; what it shows."""
-        from raceway.points.plot import layout, selection_of
+        from raceway.points.plot import layout
+        from raceway.points.selection import selection_of
 
         selection = selection_of(store, self.at)
         panel = layout(selection, self.value, self.kind, self.x, self.y)

@@ -1,9 +1,9 @@
 """One scene at many points, and one engine that computes them: in, rows out as they finish, kept and resumed, by any executor.
 
 axes        values along keys of a scene, lists and grids of points;  survey: mistakes, plug-ins and files in them
-engine      items of work, runs with their cost, versions and plug-ins that decide a row
+engine      items of work, versions and plug-ins that decide a row;  timing: runs with their cost
 store       rows and states on disk;  dataset: labelled results, NetCDF and CSV
-sweep       ``raceway.sweep``;  plot: its pictures
+sweep       ``raceway.sweep``;  selection: a part of it;  plot: its pictures
 compare     ``raceway.compare``;  effects: two-level factorial analysis and findings in words
 precision   ``raceway.precision``: error against run time;  settings: what is run, and the reference it is compared with
 band        ``raceway.band``;  sensitivities: derivatives by every number of a scene

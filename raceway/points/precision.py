@@ -24,7 +24,6 @@ from raceway.framework.shown import Fact
 from raceway.planning.resolve import resolve
 from raceway.plugins.formats.labelled import labelled_dataset
 from raceway.points.axes import Vary, shown
-from raceway.points.engine import measured_once
 from raceway.points.settings import (
     Design,
     Reference,
@@ -39,6 +38,7 @@ from raceway.points.settings import (
     setting_at,
 )
 from raceway.points.store import Store, written
+from raceway.points.timing import measured_once
 from raceway.scene.changes import parse_change
 from raceway.scene.inputs import SceneSource, plain_tables, tidy
 from raceway.storage.files import writable

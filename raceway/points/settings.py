@@ -25,8 +25,8 @@ from raceway.framework.contracts import Integrator
 from raceway.framework.registry import Registry
 from raceway.planning.plan import make_plan
 from raceway.points.axes import Vary, axes_of, points, refuse_mistakes, tables_at
-from raceway.points.engine import measured_once
 from raceway.points.store import Store
+from raceway.points.timing import measured_once
 from raceway.scene.reading import scene_from_dict
 from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
