@@ -1,16 +1,16 @@
 """Numerics only: arrays in, arrays out.
 
-jit            the one decorator for compiled kernels;  wheel_kernels: those that a wheel brings
+jit            the one decorator for compiled kernels;  wheel_kernels: those that a wheel brings;  deferred: those beside light classes
 columns        numbers that may be columns, one of each operating point
 elementary     exponential and logarithm that loops over them are vectorised with
 signatures     types of the kernels that are passed as function pointers
 thermal        steady temperatures of a network of six nodes, and its conductances
 threads        threads that share work, and how many there are
-contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping; kernels of built-in laws
+contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping
 ratings        load ratings of ISO 281 and ISO 76, and the contact loads that they stand for
 rolling_friction  losses of balls in contacts and mixture: inlet, hysteresis, slip, drag
 life           reference life of ISO/TS 16281 and modified life of ISO 281 from contact loads
-excitations    compiled kernels of the built-in excitations
+excitations    the compiled force of nothing
 record         duties of a system that is stepped from Python; schedule, start and record of a time integration
 ring           the compiled bearing: five coordinates of the inner ring, balls condensed out
 time           one-step, explicit and static methods: compiled loops and loops in Python
