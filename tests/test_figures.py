@@ -171,7 +171,7 @@ def of_stresses() -> list[Figure]:
 def of_the_catalogue() -> list[Figure]:
     """Large and small, light and heavy, with few and with many balls."""
     return [
-        drawing._section(name, scene_from_dict({"bearing": {"preset": name}}).bearing)
+        drawing.section_drawing(name, scene_from_dict({"bearing": {"preset": name}}).bearing)
         for name in ("7000C", "7014A", "7930A5")
     ]
 

@@ -49,7 +49,7 @@ some = _either(bool, "any")
 where = _either(lambda condition, value, other: value if condition else other, "where")
 
 
-def _values(part: attrs.AttrsInstance) -> dict[str, Any]:
+def _column_values(part: attrs.AttrsInstance) -> dict[str, Any]:
     """What stands in a table, by the names of its keys."""
     return {field.name: getattr(part, field.name) for field in attrs.fields(type(part))}
 
@@ -63,7 +63,7 @@ def with_values(part: T, **changes: object) -> T:
     """A copy of a table with other values, which no rule of the table looks at: columns obey them point by point."""
     kind: Any = type(part)
     copy = object.__new__(kind)
-    for name, value in (_values(part) | changes).items():
+    for name, value in (_column_values(part) | changes).items():
         object.__setattr__(copy, name, value)
     return copy
 
@@ -86,7 +86,7 @@ def at_rows(part: T, rows: np.ndarray) -> T:
 def _selected(part: T, choose: Callable[[np.ndarray], object]) -> T:
     if not has_columns(part):
         return part
-    values = _values(part)
+    values = _column_values(part)
     numbers = {name: choose(value) for name, value in values.items() if is_column(value)}
     tables = {name: _selected(value, choose) for name, value in values.items() if attrs.has(type(value))}
     return with_values(part, **numbers, **tables)
@@ -96,13 +96,13 @@ def distinct(part: T) -> tuple[list[T], np.ndarray]:
     """Tables with each distinct set of numbers of a table's columns, and the index (n,) of each point's; rules look at them."""
     import numpy as np
 
-    columns = {name: value for name, value in _values(part).items() if is_column(value)}
+    columns = {name: value for name, value in _column_values(part).items() if is_column(value)}
     numbers, index = np.unique(np.stack(list(columns.values()), axis=1), axis=0, return_inverse=True)
     return [attrs.evolve(part, **dict(zip(columns, row, strict=True))) for row in numbers.tolist()], index.ravel()  # type: ignore[misc]
 
 
 def length(part: attrs.AttrsInstance) -> int:
     """Points of a table that has columns, or tables with them; 0 of one that has none."""
-    values = _values(part).values()
+    values = _column_values(part).values()
     sizes = (len(value) if is_column(value) else length(value) if attrs.has(type(value)) else 0 for value in values)
     return next((size for size in sizes if size), 0)

@@ -158,8 +158,8 @@ def _resolved_once() -> Iterator[None]:
 
     def resolve(function: _Numba, context: _Numba, args: _Numba, kws: _Numba) -> Signature:
         flags = ConfigStack.top_or_none()
-        inherited = None if flags is None else (flags.nrt, flags.error_model, str(flags.fastmath))
-        key = function, args, tuple(kws.items()), inherited
+        options = None if flags is None else (flags.nrt, flags.error_model, str(flags.fastmath))
+        key = function, args, tuple(kws.items()), options
         if key not in _resolved:
             signature = _resolve(function, context, args, kws)
             _resolved[key] = signature, function._impl_keys[signature.args]
@@ -294,7 +294,7 @@ class Kernel(_Dispatcher):
     def _part(self) -> _Part:
         return _Part(self.py_func, self.signature, self.targetoptions)
 
-    def _compile_for_args(self, *_arguments: object, **_named: object) -> Kernel:
+    def _compile_for_args(self, *_arguments: object, **_keywords: object) -> Kernel:
         """What numba calls next with the arguments of a first call: this, which checks their types."""
         self.compile()
         return self
@@ -319,7 +319,7 @@ class Kernel(_Dispatcher):
         return kernel
 
     def _make(self) -> None:
-        function, billed = self.py_func, clock["compile_s"] + clock["load_s"]
+        function, time_before = self.py_func, clock["compile_s"] + clock["load_s"]
         start, processor, processor_billed = time.perf_counter(), time.thread_time(), clock["compile_processor_s"]
         try:
             if not self._from_wheel():
@@ -334,7 +334,7 @@ class Kernel(_Dispatcher):
         hit = self._of_wheel or sum(self.stats.cache_hits.values()) > 0
         # Kernels that this one calls were compiled meanwhile, and have told their own seconds.
         clock["load_s" if hit else "compile_s"] += (
-            time.perf_counter() - start - (clock["compile_s"] + clock["load_s"] - billed)
+            time.perf_counter() - start - (clock["compile_s"] + clock["load_s"] - time_before)
         )
         if not hit:
             clock["compile_processor_s"] = processor_billed + time.thread_time() - processor
@@ -585,8 +585,8 @@ def signature_words(signature: Signature) -> str:
 
     def word(kind: Any) -> str:
         if isinstance(kind, numba.types.BaseNamedTuple):
-            named: Any = kind  # numba types a part of it only
-            return str(named.instance_class.__name__)
+            numba_type: Any = kind  # numba types a part of it only
+            return str(numba_type.instance_class.__name__)
         if not isinstance(kind, numba.types.Array):
             return str(kind)
         last = "::1" if kind.layout == "C" else ":"

@@ -90,7 +90,7 @@ class BallRow:
         d, g = self.diameter, self.gamma
         size = np.where(d <= _LARGE, (1e3 * d) ** 1.8, 3.647 * (1e3 * d) ** 1.4)
         standard = np.asarray(_STANDARD)
-        factor = np.interp(g, _G, _F_C) * _closed(g, self.inner, self.outer) / _closed(g, standard, standard)
+        factor = np.interp(g, _G, _F_C) * _closed_form(g, self.inner, self.outer) / _closed_form(g, standard, standard)
         return np.asarray(_MATERIAL_FACTOR * factor * np.cos(self.angle) ** 0.7 * self.count ** (2.0 / 3.0) * size)
 
     def static_rating(self) -> np.ndarray:
@@ -174,7 +174,7 @@ class BallRow:
 
 
 @cache
-def _table() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _ellipse_table() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Curvature difference, (b/a)-scaled product a* b*, and delta* of growing ellipticity."""
     from scipy.special import ellipe, ellipkm1
 
@@ -197,18 +197,18 @@ def groove_curvatures(
 
 def _load_at_pressure(curvature: np.ndarray, difference: np.ndarray, modulus: float, pressure: float) -> np.ndarray:
     """Load [N] at a peak pressure [Pa]: p = 1.5 Q / (pi a b), a b = a* b* (3 Q / (2 S E*))^(2/3)."""
-    area = np.interp(difference, *_table()[:2])
+    area = np.interp(difference, *_ellipse_table()[:2])
     return (2.0 * np.pi * area * pressure / 3.0) ** 3 * (1.5 / (curvature * modulus)) ** 2
 
 
 def hertz_load_factor(curvature: np.ndarray, difference: np.ndarray, modulus: float) -> np.ndarray:
     """K [N/m^1.5] of Q = K delta^1.5."""
-    differences, _, delta = _table()
+    differences, _, delta = _ellipse_table()
     unit = 2.0 / (curvature * np.interp(difference, differences, delta))
     return 2.0 / 3.0 * curvature * modulus * unit**1.5
 
 
-def _closed(g: np.ndarray, fi: np.ndarray, fo: np.ndarray) -> np.ndarray:
+def _closed_form(g: np.ndarray, fi: np.ndarray, fo: np.ndarray) -> np.ndarray:
     """The part of f_c that depends on g and on the conformities."""
     wide = (2.0 * fi / (2.0 * fi - 1.0)) ** 0.41
     both = 1.04 * ((1.0 - g) / (1.0 + g)) ** 1.72 * (fi / fo * (2.0 * fo - 1.0) / (2.0 * fi - 1.0)) ** 0.41

@@ -115,16 +115,16 @@ class Record:
 
 
 @jit(void(int64, int64, float64, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR, VECTOR), releases=True)
-def predict(first, last, dt, u, v, a, half, moved, guess):  # type: ignore[no-untyped-def]
+def predict(first, last, dt, u, v, a, half, displacement, guess):  # type: ignore[no-untyped-def]
     """Entries ``first`` to ``last - 1`` of the velocity at half a step, the displacement and the guessed velocity at its end.
 
     Parameters
     ----------
-    u, v, a : (size,) of the step before;  half, moved, guess : (size,) out
+    u, v, a : (size,) of the step before;  half, displacement, guess : (size,) out
     """
     for i in range(first, last):
         half[i] = v[i] + 0.5 * dt * a[i]
-        moved[i] = u[i] + dt * half[i]
+        displacement[i] = u[i] + dt * half[i]
         guess[i] = v[i] + dt * a[i]
 
 
@@ -155,7 +155,7 @@ def work(first, last, outer_before, outer, u_before, u):  # type: ignore[no-unty
 
 
 @jit(boolean(int64, int64, float64, VECTOR), releases=True)
-def _bounded(first, last, bound, u):  # type: ignore[no-untyped-def]
+def _within_bound(first, last, bound, u):  # type: ignore[no-untyped-def]
     """Whether the entries ``first`` to ``last - 1`` are numbers below the bound in size."""
     beyond = 0
     for i in range(first, last):
@@ -196,8 +196,8 @@ def largest_share(energies: Mapping[str, np.ndarray], part: str, total: str) -> 
 
 def friction_lost(energies: Mapping[str, np.ndarray]) -> float:
     """What friction took between the first sample and the last [J]."""
-    lost = energies["friction"]
-    return float(lost[-1] - lost[0]) if len(lost) else 0.0
+    work = energies["friction"]
+    return float(work[-1] - work[0]) if len(work) else 0.0
 
 
 @attrs.define(eq=False)
@@ -397,7 +397,7 @@ class Recorder:
             A displacement or rotation that no bearing makes, or that is no number.
         """
         outer = self.load(self.time_of(self._done + 1)) if outer is None else outer
-        step_work = self._passed(state, outer)
+        step_work = self._outer_work(state, outer)
         system, schedule = self.system, self.schedule
         self._work += step_work
         self._outer = outer
@@ -461,13 +461,10 @@ class Recorder:
             },
         )
 
-    def _passed(self, state: State, outer: np.ndarray) -> float:
+    def _outer_work(self, state: State, outer: np.ndarray) -> float:
         """Work of the mean outer forces over a step [J].
 
-        Raises
-        ------
-        StabilityError
-            A displacement beyond ``BOUND``, or that is no number.
+        StabilityError: a displacement beyond ``BOUND``, or that is no number.
         """
         size = len(state.u)
         count = -(-size // _BLOCK)
@@ -476,7 +473,7 @@ class Recorder:
 
         def block_work(number: int) -> None:
             part = _BLOCK * number, min(_BLOCK * (number + 1), size)
-            fine[number] = _bounded(*part, BOUND, arrays[-1])
+            fine[number] = _within_bound(*part, BOUND, arrays[-1])
             works[number] = work(*part, *arrays)
 
         self.system.threads.do(count, block_work)

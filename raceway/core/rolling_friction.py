@@ -249,9 +249,7 @@ def losses(
 def spin_shape(k: np.ndarray) -> np.ndarray:
     """Complete elliptic integral of the second kind at 1 - 1/k^2, by which 3/8 mu Q a is the moment of spin, to 4e-5.
 
-    References
-    ----------
-    Abramowitz, Stegun, Handbook of Mathematical Functions, 17.3.36.
+    Source: Abramowitz, Stegun, Handbook of Mathematical Functions, 17.3.36.
     """
     m1 = np.minimum(1.0 / (k * k), 1.0)
     return np.asarray(1.0 + m1 * (0.46301506 + 0.10778124 * m1) - m1 * (0.24527272 + 0.04124960 * m1) * np.log(m1))

@@ -90,11 +90,11 @@ class Network:
                 k, conductance = group[names.index(end)], part * self.conductances[link]
                 balance[:, i, k] -= conductance
                 balance[:, j, k] += conductance
-        free, known = sorted({member for member in group if member < len(NODES)}), [len(NODES), len(NODES) + 1]
+        free, boundary = sorted({member for member in group if member < len(NODES)}), [len(NODES), len(NODES) + 1]
         level = np.zeros((n, len(names)))
-        level[:, known] = np.stack([np.broadcast_to(self.inlet, n), np.broadcast_to(self.ambient, n)], axis=1)
+        level[:, boundary] = np.stack([np.broadcast_to(self.inlet, n), np.broadcast_to(self.ambient, n)], axis=1)
         if free:
-            loads = arising[:, free] - np.einsum("nij,nj->ni", balance[:, free][:, :, known], level[:, known])
+            loads = arising[:, free] - np.einsum("nij,nj->ni", balance[:, free][:, :, boundary], level[:, boundary])
             level[:, free] = np.linalg.solve(balance[:, free][:, :, free], loads[..., None])[..., 0]
         return level[:, group[: len(NODES)]]
 
@@ -149,11 +149,11 @@ def rolling_contact(
     section 2.9 (two half-spaces); Muzychka, Yovanovich, J. Heat Transfer 123 (2001) 624 (limits of the Peclet number, joined);
     Greenwood, Wear 150 (1991) 153 (the sum of squares).  The first two formulas are derived anew; the sum of squares interpolates.
     """
-    closed = semi_minor > 0.0
-    a, b = np.where(closed, semi_major, 1.0), np.where(closed, semi_minor, 1.0)
+    contact = semi_minor > 0.0
+    a, b = np.where(contact, semi_major, 1.0), np.where(contact, semi_minor, 1.0)
     moving = _CHORDS * a * STEEL_EFFUSIVITY * np.sqrt(2.0 * b * np.abs(speed) / np.pi)
     at_rest = np.pi * STEEL_CONDUCTIVITY * a / ellipkm1((b / a) ** 2)
-    return np.where(closed, 1.0 / (1.0 / np.hypot(moving, at_rest) + film / (np.pi * a * b * oil_conductivity)), 0.0)
+    return np.where(contact, 1.0 / (1.0 / np.hypot(moving, at_rest) + film / (np.pi * a * b * oil_conductivity)), 0.0)
 
 
 def oil_convection(

@@ -62,8 +62,8 @@ def _field(path: str, schema: ReadTables) -> Tables:
 
 def texts(source: Given, scene: Scene | None) -> tuple[dict[str, str], dict[str, str]]:
     """What is said of each key, and what holds for it, as texts by path; the latter is empty while the scene is refused."""
-    typed = {path: told(value) for path, value in leaves(source.merged())}
-    return typed, {} if scene is None else {path: told(value) for path, value in leaves(scene.to_dict())}
+    input_texts = {path: told(value) for path, value in leaves(source.merged())}
+    return input_texts, {} if scene is None else {path: told(value) for path, value in leaves(scene.to_dict())}
 
 
 def value_of(text: str) -> object:

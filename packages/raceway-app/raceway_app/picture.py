@@ -8,7 +8,7 @@ from pathlib import Path
 import attrs
 import numpy as np
 from raceway_rotor.export import export_ross
-from raceway_view.bodies import Bearing, State
+from raceway_view.bodies import Bearing, Snapshot
 from raceway_view.page import BALL_COLUMNS, ball_cells, rings_data, state_data
 from raceway_view.view import at_rest as at_rest
 
@@ -76,7 +76,7 @@ def axes_of(scene: Scene, ranges: Mapping[str, tuple[float, float]]) -> dict[str
     return axes
 
 
-def result_picture(result: Result, state: State) -> Tables:
+def result_picture(result: Result, state: Snapshot) -> Tables:
     """The screen of a run, ball by ball, and the orbit; ``state``: of the bearing at rest.
 
     Returns
@@ -106,7 +106,7 @@ def _orbit(result: Result) -> list[list[float]] | None:
     return [[float(f"{x:.5g}") for x in point] for point in path[samples]]
 
 
-def bodies_picture(result: Result, state: State, rings: bool) -> Tables:
+def bodies_picture(result: Result, state: Snapshot, rings: bool) -> Tables:
     """The bearing in three dimensions, as ``view.js`` draws it; ``rings``: with the shapes that loads do not change.
 
     Raises
@@ -131,14 +131,14 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
         missing (points without answer), why (no curves at all)
     """
     scene, panels = result.model.scene, list[Tables]()
-    stated = {name: quantity for name, (_, quantity) in plugin_quantities(default_registry()).items()}
-    quantities = KNOWN | named(_MULTIPLIER) | stated
+    plugin_values = {name: quantity for name, (_, quantity) in plugin_quantities(default_registry()).items()}
+    quantities = KNOWN | named(_MULTIPLIER) | plugin_values
     for name, axis in axes.items():
         wait(name)
-        titles = {t: _chosen(result, t, names) for t, names in _PANELS.items() if name == "speed" or t in _OVER_LOAD}
+        titles = {t: _possible_names(result, t, names) for t, names in _PANELS.items() if name == "speed" or t in _OVER_LOAD}
         try:
             outputs = [curve for names in titles.values() for curve in names]
-            answer = _answer(scene, axis, [*outputs, *(["contact_angle"] if "ball_load" in outputs else [])])
+            answer = _curve_answer(scene, axis, [*outputs, *(["contact_angle"] if "ball_load" in outputs else [])])
         except RacewayError as why:
             if str(why) not in [panel["why"] for panel in panels]:
                 panels.append({"panel": "", "axis": name, "label": axis.label, "why": str(why), "lines": []})
@@ -147,7 +147,7 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
     return panels
 
 
-def _chosen(result: Result, title: str, names: Sequence[str]) -> list[str]:
+def _possible_names(result: Result, title: str, names: Sequence[str]) -> list[str]:
     """The curves of a panel that the result's scene has."""
     possible = [name for name in names if _has(result, name)]
     return possible if title in _TOGETHER else possible[:1]
@@ -167,13 +167,10 @@ def _has(result: Result, name: str) -> bool:
     return name in KNOWN or name in result.quantities
 
 
-def _answer(scene: Scene, axis: Axis, outputs: Iterable[str]) -> Tables:
+def _curve_answer(scene: Scene, axis: Axis, outputs: Iterable[str]) -> Tables:
     """Columns of the loop, its points, and reasons.
 
-    Raises
-    ------
-    RacewayError
-        A scene that the loop cannot do.
+    RacewayError: a scene that the loop cannot do.
     """
     compiled: Function = function(scene, [axis.key], list(outputs), tolerance=_TOLERANCE)
     if compiled.why_slow:
@@ -187,20 +184,20 @@ def _answer(scene: Scene, axis: Axis, outputs: Iterable[str]) -> Tables:
 def _panel(
     name: str, axis: Axis, title: str, names: list[str], answer: Tables, quantities: Mapping[str, Quantity]
 ) -> Tables:
-    solved = answer["status"] == PointStatus.COMPUTED
+    valid = answer["status"] == PointStatus.COMPUTED
     lines: list[Tables] = []
-    for curve, label, values in _columns(names, answer, quantities):
+    for curve, label, values in _curve_columns(names, answer, quantities):
         quantity = quantities[curve]
         zero = 273.15 if quantity.unit == "K" else 0.0
-        y = [float(quantity.read(v)) - zero if ok and np.isfinite(v) else None for v, ok in zip(values, solved, strict=True)]
+        y = [float(quantity.read(v)) - zero if ok and np.isfinite(v) else None for v, ok in zip(values, valid, strict=True)]
         lines.append({"name": curve, "label": label, "y": y})
     return {
         "panel": title, "axis": name, "label": axis.label, "x": answer["points"].tolist(), "unit": quantities[names[0]].read_unit.replace("K", "°C"),
-        "lines": lines, "present": axis.present, "missing": int(np.count_nonzero(~solved)), "why": next(filter(None, answer["reason"]), ""),
+        "lines": lines, "present": axis.present, "missing": int(np.count_nonzero(~valid)), "why": next(filter(None, answer["reason"]), ""),
     }  # fmt: skip
 
 
-def _columns(
+def _curve_columns(
     names: Iterable[str], answer: Tables, quantities: Mapping[str, Quantity]
 ) -> Iterator[tuple[str, str, np.ndarray]]:
     """Name, label and values (n,) of each curve; of ball loads the axial force of each row, sum of Q sin(alpha) at the outer races."""

@@ -128,9 +128,9 @@ class Page:
         panels: list[Tables] = []
         for k, tables in enumerate(session.scenes):
             scene, mistakes = session.checked(k)
-            typed, valid = texts(tables, scene)
+            input_texts, valid = texts(tables, scene)
             panels.append({
-                "name": _NAMES[k], "said": typed, "holds": valid, "mistakes": mistakes, "title": tables.merged().get("title", ""),
+                "name": _NAMES[k], "said": input_texts, "holds": valid, "mistakes": mistakes, "title": tables.merged().get("title", ""),
                 "command": session.command(k), "python": session.python(k) if scene is not None else "",
             })  # fmt: skip
             if k in changed:

@@ -48,13 +48,13 @@ class Session:
             A key that no scene can have.
         """
         value = value_of(text)
-        changed = {panel: self.scenes[panel].changed({key: value}) for panel in panels if 0 <= panel < len(self.scenes)}
+        new_scenes = {panel: self.scenes[panel].changed({key: value}) for panel in panels if 0 <= panel < len(self.scenes)}
         if key.endswith(".kind"):
-            changed = {panel: _fitting(scene, key.partition(".")[0]) for panel, scene in changed.items()}
-        changed = {panel: scene for panel, scene in changed.items() if scene.merged() != self.scenes[panel].merged()}
-        if changed:
-            self._become(tuple(_short(changed.get(k, scene)) for k, scene in enumerate(self.scenes)), merge)
-        return list(changed)
+            new_scenes = {panel: _fitting(scene, key.partition(".")[0]) for panel, scene in new_scenes.items()}
+        new_scenes = {panel: scene for panel, scene in new_scenes.items() if scene.merged() != self.scenes[panel].merged()}
+        if new_scenes:
+            self._set_scenes(tuple(_short(new_scenes.get(k, scene)) for k, scene in enumerate(self.scenes)), merge)
+        return list(new_scenes)
 
     def compare(self, on: bool) -> list[int]:
         """Put a second scene beside the first, the other excitation model under the same settings; or take it away."""
@@ -63,7 +63,7 @@ class Session:
         first = self.scenes[0]
         kind = (first.merged().get("excitation") or {}).get("kind")
         second = first.changed({"excitation.kind": _OTHER[kind]}) if kind in _OTHER else first
-        self._become((first, second) if on else (first,))
+        self._set_scenes((first, second) if on else (first,))
         return [1] if on else []
 
     def undo(self, back: bool = True) -> list[int]:
@@ -87,7 +87,7 @@ class Session:
         """Whether there is something to undo, and to redo."""
         return bool(self._past), bool(self._future)
 
-    def _become(self, scenes: tuple[Given, ...], merge: bool = False) -> None:
+    def _set_scenes(self, scenes: tuple[Given, ...], merge: bool = False) -> None:
         if not (merge and self._past):
             self._past = [*self._past, self.scenes][-_HISTORY:]
         self._future = []

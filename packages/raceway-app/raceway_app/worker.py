@@ -149,22 +149,22 @@ class Worker:
             except (EOFError, OSError):
                 break
             with self._lock:  # stopped for the sake of a job that has the scene, too
-                dropped = news.kind == "stopped" and any(news.panel in job.scenes for job in self._waiting)
-            if not dropped:
+                obsolete = news.kind == "stopped" and any(news.panel in job.scenes for job in self._waiting)
+            if not obsolete:
                 self._tell(attrs.evolve(news, kind="refused") if news.kind == "stopped" else news)
             if news.kind == "done":
                 self._next()
         with self._lock:
             if self._closed:
                 return
-            ended, self._running = self._running, None
+            last_job, self._running = self._running, None
             message = "stopped" if self._event.is_set() else "the process that computes has ended: was there memory enough?"
             connection.close()
             self._start()
-        if ended is not None:
-            for panel, (number, _) in ended.scenes.items():
-                self._tell(News(number, panel, "failed file" if ended.file else "refused", [("", message)]))
-            self._tell(News(ended.number, -1, "done"))
+        if last_job is not None:
+            for panel, (number, _) in last_job.scenes.items():
+                self._tell(News(number, panel, "failed file" if last_job.file else "refused", [("", message)]))
+            self._tell(News(last_job.number, -1, "done"))
         self._next()
 
     def _next(self) -> None:
@@ -180,15 +180,15 @@ def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
         registry_with(plugins)
         from raceway_app import picture  # noqa: F401  while nobody waits
 
-        pictures, collected = _Pictures(connection, stop), False
+        pictures, garbage_free = _Pictures(connection, stop), False
         while True:
             job: Job = connection.recv()
             for panel, (number, scene_input) in job.scenes.items():
                 pictures.answer(job, panel, number, scene_input)
             connection.send(News(job.number, -1, "done"))
-            if not collected:  # what was compiled has put Python's search for cycles off
+            if not garbage_free:  # what was compiled has put Python's search for cycles off
                 gc.collect()
-                collected = True
+                garbage_free = True
 
 
 class _Pictures:
@@ -201,17 +201,17 @@ class _Pictures:
     def answer(self, job: Job, panel: int, number: int, scene_input: Given) -> None:
         """One scene; a mistake or a failure is reported, never raised."""
 
-        reported, refusal = time.monotonic(), "failed file" if job.file else "refused"
+        last_report, refusal = time.monotonic(), "failed file" if job.file else "refused"
 
         def tell(kind: str, content: Any = None) -> None:
             self._connection.send(News(number, panel, kind, content))
 
         def progress(part: str, steps: int = 0, total: int = 0) -> None:
-            nonlocal reported
+            nonlocal last_report
             if self._stop.is_set():
                 raise Stopped
-            if time.monotonic() - reported > _SOON_S:
-                reported = time.monotonic()
+            if time.monotonic() - last_report > _SOON_S:
+                last_report = time.monotonic()
                 tell("progress", (part, steps, total))
 
         try:
@@ -238,9 +238,9 @@ class _Pictures:
         from raceway.extend import default_registry, duration
         from raceway_app import picture
 
-        scene, begun = scene_input.scene(default_registry()), time.monotonic()
-        if (planned := raceway.plan(scene).predicted_wall_s) > _SOON_S:
-            tell("progress", (f"planned: {duration(planned)}", 0, 0))
+        scene, start = scene_input.scene(default_registry()), time.monotonic()
+        if (prediction := raceway.plan(scene).predicted_wall_s) > _SOON_S:
+            tell("progress", (f"planned: {duration(prediction)}", 0, 0))
         result = raceway.run(scene, progress=progress)
         state = picture.at_rest(result)
         content: Tables = {"screen": picture.result_picture(result, state)}
@@ -252,7 +252,7 @@ class _Pictures:
             self._shapes[panel] = shape
         except RacewayError as error:
             content |= {"bodies": "", "why": str(error)}
-        if time.monotonic() - begun > _SOON_S:  # else one picture with its curves: a page draws itself anew for each
+        if time.monotonic() - start > _SOON_S:  # else one picture with its curves: a page draws itself anew for each
             tell("picture", content)
             content = {}
         axes = picture.axes_of(scene, job.ranges)

@@ -20,7 +20,7 @@ Seber, Wild, Nonlinear Regression (1989), section 5.4 (intervals from the sum of
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import attrs
@@ -51,14 +51,14 @@ _Row = tuple[str, str, str, str, list[Finding]]
 ABOUT = 0.25
 
 
-def _course(values: np.ndarray, errors: np.ndarray, failed: np.ndarray) -> str | None:
+def _course(values: np.ndarray, errors: np.ndarray, failures: np.ndarray) -> str | None:
     """ "rises" or "falls" at every step, "level", "not monotonic"; None with a failed run, without both ends, or with
     fewer than three numbers.
 
-    values : (n,);  errors : (n,) relative; a step within its ends' errors is no step;  failed : (n,) bool
+    values : (n,);  errors : (n,) relative; a step within its ends' errors is no step;  failures : (n,) bool
     """
     finite = np.isfinite(values)
-    if failed.any() or not (finite[0] and finite[-1] and finite.sum() >= 3):
+    if failures.any() or not (finite[0] and finite[-1] and finite.sum() >= 3):
         return None
     y = values[finite]
     if np.ptp(y) < LEVEL * abs(y[0]):
@@ -71,35 +71,35 @@ def _about(value: float, target: float) -> bool:
     return abs(value - target) <= ABOUT * target
 
 
-def _change_within(w: np.ndarray, values: np.ndarray, failed: np.ndarray, first: float, last: float) -> float | None:
+def _change_within(w: np.ndarray, values: np.ndarray, failures: np.ndarray, first: float, last: float) -> float | None:
     """k(last) / k(first) - 1 over the relative speed w (n,); None with a failed run or without numbers around both ends."""
-    ends = None if failed.any() else _between(w, values, np.array([first, last]))
+    ends = None if failures.any() else _values_at(w, values, np.array([first, last]))
     return None if ends is None else float(ends[1] / ends[0] - 1.0)
 
 
-def _spread(w: np.ndarray, surface: np.ndarray, failed: np.ndarray, first: float, last: float) -> float | None:
+def load_effect(w: np.ndarray, surface: np.ndarray, failures: np.ndarray, first: float, last: float) -> float | None:
     """Largest of max/min - 1 over the loads at the ends of a zone and the speeds in it; None as in ``_change_within``.
 
-    surface : (loads, speeds), positive;  failed : (loads, speeds) bool
+    surface : (loads, speeds), positive;  failures : (loads, speeds) bool
     """
     zone = np.array([first, *w[(w > first) & (w < last)], last])
-    rows = [None if failed.any() else _between(w, values, zone) for values in surface]
+    rows = [None if failures.any() else _values_at(w, values, zone) for values in surface]
     complete = [row for row in rows if row is not None]
     if len(complete) < len(rows):
         return None
     return float((np.max(complete, axis=0) / np.min(complete, axis=0) - 1.0).max())
 
 
-def _between(w: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray | None:
+def _values_at(w: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray | None:
     """Values at ascending points, between neighbours by straight lines; None where they do not reach both ends."""
     finite = np.isfinite(values)
     w, values = w[finite], values[finite]
     return None if len(w) < 2 or at[0] < w[0] or at[-1] > w[-1] else np.interp(at, w, values)
 
 
-def _rises_with_load(surface: np.ndarray, errors: np.ndarray, failed: np.ndarray) -> list[bool | None]:
+def _rises_with_load(surface: np.ndarray, errors: np.ndarray, failures: np.ndarray) -> list[bool | None]:
     """At each speed: whether k rises at every step of the axial load; (loads, speeds) each."""
-    courses = [_course(*column) for column in zip(surface.T, errors.T, failed.T, strict=True)]
+    courses = [_course(*column) for column in zip(surface.T, errors.T, failures.T, strict=True)]
     return [None if outcome is None else outcome == "rises" for outcome in courses]
 
 
@@ -108,10 +108,10 @@ def _influence(surface: np.ndarray) -> np.ndarray:
     return np.asarray(np.abs(surface[:, -1] / surface[:, 0] - 1.0))
 
 
-def _influence_grows(surface: np.ndarray, failed: np.ndarray) -> bool | None:
+def _influence_grows(surface: np.ndarray, failures: np.ndarray) -> bool | None:
     """Whether the size of the speed's influence rises at every step of the axial load; (loads, speeds) each."""
     size = _influence(surface)
-    if failed.any() or not np.isfinite(size).all():
+    if failures.any() or not np.isfinite(size).all():
         return None
     return bool((np.diff(size) > 0.0).all())
 
@@ -183,29 +183,25 @@ def _phrases(items: list[tuple[Tables, bool]], keys: list[str]) -> list[str] | N
     if not any(inside for _, inside in items) or not keys:
         return None
     key, *remaining = keys
-    values = list(dict.fromkeys(at.get(key) for at, _ in items))
+    values: list[Any] = list(dict.fromkeys(at.get(key) for at, _ in items))
     below = {value: _phrases([item for item in items if item[0].get(key) == value], remaining) for value in values}
     if len({str(part) for part in below.values()}) == 1:
         return below[values[0]]
     phrases: list[str] = []
     for text in dict.fromkeys(str(part) for part in below.values() if part is not None):
         same = [value for value in values if str(below[value]) == text]
-        name = _named(key, same, values)
+        if key == "tilt":
+            name = "tilt " + " or ".join(TILT_WORDS[value].removeprefix("tilt ") for value in same)
+        elif key == "friction":
+            name = " or ".join(FRICTION_WORDS[value] for value in same)
+        elif key == "inertia":
+            name = "with ball inertia" if same[0] else "weightless balls"
+        elif key == "bodies":
+            name = f"{' or '.join(same)} bodies"
+        else:
+            name = _ranges(same, values, "N" if key == "load" else "r/min")
         phrases += [f"{name}, {phrase}" if phrase else name for phrase in below[same[0]] or []]
     return phrases
-
-
-def _named(key: str, values: Sequence[Any], every: Sequence[Any]) -> str:
-    """Some of all values of a key, in words."""
-    if key == "tilt":
-        return "tilt " + " or ".join(TILT_WORDS[value].removeprefix("tilt ") for value in values)
-    if key == "friction":
-        return " or ".join(FRICTION_WORDS[value] for value in values)
-    if key == "inertia":
-        return "with ball inertia" if values[0] else "weightless balls"
-    if key == "bodies":
-        return f"{' or '.join(values)} bodies"
-    return _ranges(values, every, "N" if key == "load" else "r/min")
 
 
 def _ranges(values: Sequence[float], every: Sequence[float], unit: str) -> str:
@@ -241,20 +237,20 @@ def verdict_of(number: str, claim: str, rule: str, computed: str, findings: Sequ
 
     Failed places never count as holding: with one of them a claim that holds everywhere else holds only for the remaining ones.
     """
-    judged = [finding.holds for finding in findings if finding.holds is not None]
-    failed = region = ""
-    if len(judged) < len(findings):
+    outcomes = [finding.holds for finding in findings if finding.holds is not None]
+    failures = region = ""
+    if len(outcomes) < len(findings):
         reason = next(finding.why for finding in findings if finding.holds is None)
-        failed = f"{region_of(findings, None)} (the first reason: {reason or 'a run is missing'})"
-    if not judged:
+        failures = f"{region_of(findings, None)} (the first reason: {reason or 'a run is missing'})"
+    if not outcomes:
         kind = FAILED
-    elif not any(judged):
+    elif not any(outcomes):
         kind = NOT
     elif all(finding.holds for finding in findings):
         kind = HOLDS
     else:
         kind, region = PARTLY, region_of(findings, True)
-    return Verdict(number, claim, rule, computed, kind, region, failed, tuple(findings))
+    return Verdict(number, claim, rule, computed, kind, region, failures, tuple(findings))
 
 
 def verdicts(curves: Curves, static: Sequence[ReadTables]) -> list[Verdict]:
@@ -266,10 +262,10 @@ def verdicts(curves: Curves, static: Sequence[ReadTables]) -> list[Verdict]:
     """
     out = [*_not_testable(static), *(verdict_of(*row) for row in _unidirectional(curves))]
     for measure in MEASURES:
-        rows = [*_hardening(curves, measure), *_axial(curves, measure), *_combined(curves, measure)]
+        rows = [*_hardening(curves, measure), *_axial(curves, measure), *_joint_effect(curves, measure)]
         mark, ending = ("", "") if measure == "K" else (f" {measure}", f" k = {measure}.")
-        for number, claim, rule, computed, findings in rows:
-            out.append(verdict_of(f"{number}{mark}", f"{claim}{ending}", rule, computed, findings))
+        for number, claim, rule, finding, findings in rows:
+            out.append(verdict_of(f"{number}{mark}", f"{claim}{ending}", rule, finding, findings))
     # Each claim for K, and at once for |Z|.
     return sorted(out, key=lambda verdict: verdict.number[0])
 
@@ -287,12 +283,12 @@ def _not_testable(static: Sequence[ReadTables]) -> list[Verdict]:
          "deviation of the inner race's peak pressure at 2000 N axial, the heaviest of ours"),
     ):  # fmt: skip
         errors = [row["error"] for row in rows if row["error"] is not None]
-        computed = f"{deviation}: {max(errors):.2%}" if errors else "no number"
-        failed = next((row["note"] for row in rows if row["error"] is None), "")
-        out.append(Verdict(number, claim, rule, computed, UNTESTED if errors or not rows else FAILED, failed=failed))
+        finding = f"{deviation}: {max(errors):.2%}" if errors else "no number"
+        failures = next((row["note"] for row in rows if row["error"] is None), "")
+        out.append(Verdict(number, claim, rule, finding, UNTESTED if errors or not rows else FAILED, failed=failures))
     rule = "none: the table of measured stiffnesses is not in the text that is left of the article"
-    computed = "K at the rig's speeds and loads is reported in a table of its own"
-    return [*out, Verdict("2", "Stiffness is within 9.12 % of the rig's.", rule, computed, UNTESTED)]
+    finding = "K at the rig's speeds and loads is reported in a table of its own"
+    return [*out, Verdict("2", "Stiffness is within 9.12 % of the rig's.", rule, finding, UNTESTED)]
 
 
 def _unidirectional(curves: Curves) -> list[_Row]:
@@ -328,10 +324,6 @@ def _ratio(values: np.ndarray) -> float | None:
     return float(ratio) if np.isfinite(ratio) else None
 
 
-#: Exponent of K over the speed, from relative and absolute speeds, values and relative errors (n,).
-_Fit = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], _Exponent | None]
-
-
 def _in_speed(_w: np.ndarray, speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> _Exponent | None:
     return power_exponent(speeds / speeds[-1], values / values[0], errors * values / values[0], constant=True)
 
@@ -353,37 +345,33 @@ def _hardening(curves: Curves, measure: str) -> list[_Row]:
             f"rotating force m e w²: {measure} rises at every step of the speed, by at least {LEVEL:.1%}, and by least squares {law} "
             f"has p from {NEAREST[0]:g} to {NEAREST[1]:g} and a 95 % interval without 1, the straight line; {BRIDGED}"
         )
-        findings, powers = _powers(curves, measure, fit)
+        # Outcomes for every model and load, and the exponents where k rises
+        findings: list[Finding] = []
+        rising: dict[str, list[_Exponent]] = {}
+        for model, surface in curves.surfaces(ROTATING):
+            speeds, w = np.array(surface.speeds), np.array(curves.design.relative(surface.speeds))
+            for curve in surface.curves:
+                values, errors = curve.values(measure), curve.errors
+                rises = _is("rises", _course(values, errors, curve.failed))
+                power = fit(w, speeds, values, errors) if rises else None
+                quadratic = rises if not rises else None if power is None else power.roughly_quadratic
+                why = "" if quadratic is not None else curve.missing or "too few speeds for an exponent's interval"
+                findings.append(Finding({**model, "load": curve.load}, quadratic, _ratio(values), why))
+                if power is not None:
+                    region = f"{FRICTION_WORDS[model['friction']]}, {TILT_WORDS[model['tilt']]}"
+                    rising.setdefault(region, []).append(power)
+        exponents = [
+            f"{region} p = {min(p.value for p in powers):.2f} to {max(p.value for p in powers):.2f}, "
+            f"intervals from {min(p.low for p in powers):.2f} to {max(p.high for p in powers):.2f}"
+            for region, powers in rising.items()
+        ]
+        powers = f". Where it rises: {'; '.join(exponents)}" if exponents else ""
         rows.append((number, f"{claim}; read as {words}.", rule, f"k*(w* = 1): {_by_tilt(findings)}{powers}", findings))
     either = [
         Finding(a.at, None if a.holds is None and not b.holds else bool(a.holds or b.holds), a.value, a.why or b.why)
         for a, b in zip(rows[0][-1], rows[1][-1], strict=True)
     ]
     return [("4", f"{claim}.", "4a or 4b", "see 4a and 4b", either), *rows]
-
-
-def _powers(curves: Curves, measure: str, fit: _Fit) -> tuple[list[Finding], str]:
-    """Outcomes for every model and load, and the exponents where k rises, in words."""
-    findings: list[Finding] = []
-    rising: dict[str, list[_Exponent]] = {}
-    for model, surface in curves.surfaces(ROTATING):
-        speeds, w = np.array(surface.speeds), np.array(curves.design.relative(surface.speeds))
-        for curve in surface.curves:
-            values, errors = curve.values(measure), curve.errors
-            rises = _is("rises", _course(values, errors, curve.failed))
-            power = fit(w, speeds, values, errors) if rises else None
-            quadratic = rises if not rises else None if power is None else power.roughly_quadratic
-            why = "" if quadratic is not None else curve.missing or "too few speeds for an exponent's interval"
-            findings.append(Finding({**model, "load": curve.load}, quadratic, _ratio(values), why))
-            if power is not None:
-                region = f"{FRICTION_WORDS[model['friction']]}, {TILT_WORDS[model['tilt']]}"
-                rising.setdefault(region, []).append(power)
-    words = [
-        f"{region} p = {min(p.value for p in powers):.2f} to {max(p.value for p in powers):.2f}, "
-        f"intervals from {min(p.low for p in powers):.2f} to {max(p.high for p in powers):.2f}"
-        for region, powers in rising.items()
-    ]
-    return findings, f". Where it rises: {'; '.join(words)}" if words else ""
 
 
 class _Effect(NamedTuple):
@@ -395,48 +383,44 @@ class _Effect(NamedTuple):
     why: str
 
 
-def _effects(curves: Curves, measure: str) -> dict[str, list[_Effect]]:
-    """The two effects in every reading, wherever it can be taken."""
-    effects: dict[str, list[_Effect]] = {number: [] for number in _READINGS}
+def _axial(curves: Curves, measure: str) -> list[_Row]:
+    """Claim 5: about 8 % at low speeds and 34 % at high ones in every reading, and whether the effect grows."""
+    # The two effects in every reading
+    effects: dict[str, list[_Effect]] = {reading: [] for reading in _READINGS}
     for model, surface in curves.surfaces(ROTATING):
-        w, values, failed, why = (
+        w, values, failures, missing = (
             np.array(curves.design.relative(surface.speeds)),
             surface.values(measure),
             surface.failed,
             surface.missing,
         )
-        for load, k, lost in zip(surface.loads, values, failed, strict=True):
-            low = _change_within(w, k, lost, *_LOW_ZONE)
-            for number, begin in (("5a", _HIGH_ZONE[0]), ("5b", 0.0)):
-                high = _change_within(w, k, lost, begin, _HIGH_ZONE[1])
-                effects[number].append(_Effect({**model, "load": load}, low, high, why))
-        for number, k in (("5c", values), ("5d", values / values[:, :1])):
-            low, high = (_spread(w, k, failed, *zone) for zone in (_LOW_ZONE, _HIGH_ZONE))
-            effects[number].append(_Effect(model, low, high, why))
-    return effects
-
-
-def _axial(curves: Curves, measure: str) -> list[_Row]:
-    """Claim 5: about 8 % at low speeds and 34 % at high ones in every reading, and whether the effect grows."""
-    effects, rows = _effects(curves, measure), list[_Row]()
-    expected = f"about {_LOW_EFFECT:.0%} and about {_HIGH_EFFECT:.0%} (each within {ABOUT:.0%} of the number); {BRIDGED}"
+        for load, k, failure_of_load in zip(surface.loads, values, failures, strict=True):
+            low_change = _change_within(w, k, failure_of_load, *_LOW_ZONE)
+            for reading, begin in (("5a", _HIGH_ZONE[0]), ("5b", 0.0)):
+                high_change = _change_within(w, k, failure_of_load, begin, _HIGH_ZONE[1])
+                effects[reading].append(_Effect({**model, "load": load}, low_change, high_change, missing))
+        for reading, k in (("5c", values), ("5d", values / values[:, :1])):
+            low_change, high_change = (load_effect(w, k, failures, *zone) for zone in (_LOW_ZONE, _HIGH_ZONE))
+            effects[reading].append(_Effect(model, low_change, high_change, missing))
+    rows: list[_Row] = []
+    expectation = f"about {_LOW_EFFECT:.0%} and about {_HIGH_EFFECT:.0%} (each within {ABOUT:.0%} of the number); {BRIDGED}"
     claim = "Axial load: about 8 % effect for w* from 0 to 0.25, about 34 % from 0.75 to 1"
     for number, (effect, words) in _READINGS.items():
         zones = []
         for zone in ("low", "high"):
             zones.append([Finding(e.at, _as_claimed(e), getattr(e, zone), e.why) for e in effects[number]])
         low, high = (_by_tilt(findings, 100.0, " %", ".1f") for findings in zones)
-        computed = f"low zone: {low}. High zone: {high}"
-        rows.append((number, f"{claim}; read as {effect}.", f"{words}: {expected}", computed, zones[1]))
+        finding = f"low zone: {low}. High zone: {high}"
+        rows.append((number, f"{claim}; read as {effect}.", f"{words}: {expectation}", finding, zones[1]))
     grows = []
     for at, low_effect, high_effect, why in effects["5c"]:
         growth = None if low_effect is None or high_effect is None else high_effect - low_effect
         grows.append(Finding(at, None if growth is None else growth > 0.0, growth, why))
-    computed = (
+    finding = (
         f"change of that effect from the low to the high zone, in points of percent: {_by_tilt(grows, 100.0, '', '+.1f')}"
     )
     rule = f"the effect of 5c is larger in the high zone than in the low one; {BRIDGED}"
-    return [*rows, ("5e", "The influence of the axial load grows with speed.", rule, computed, grows)]
+    return [*rows, ("5e", "The influence of the axial load grows with speed.", rule, finding, grows)]
 
 
 def _as_claimed(effect: _Effect) -> bool | None:
@@ -445,22 +429,22 @@ def _as_claimed(effect: _Effect) -> bool | None:
     return _about(effect.low, _LOW_EFFECT) and _about(effect.high, _HIGH_EFFECT)
 
 
-def _combined(curves: Curves, measure: str) -> list[_Row]:
+def _joint_effect(curves: Curves, measure: str) -> list[_Row]:
     """Claim 6: k rises with axial load, with speed, the speed's influence with axial load, and all of this."""
     with_load, with_speed, grows, together = [], [], [], []
     for model, surface in curves.surfaces(ROTATING):
-        values, errors, failed, why = surface.values(measure), surface.errors, surface.failed, surface.missing
-        rising = _rises_with_load(values, errors, failed)
+        values, errors, failures, why = surface.values(measure), surface.errors, surface.failed, surface.missing
+        rising = _rises_with_load(values, errors, failures)
         with_load += [
             Finding({**model, "speed": speed}, rises, _ratio(column), why)
             for speed, rises, column in zip(surface.speeds, rising, values.T, strict=True)
         ]
-        courses = [_is("rises", _course(*curve)) for curve in zip(values, errors, failed, strict=True)]
+        courses = [_is("rises", _course(*curve)) for curve in zip(values, errors, failures, strict=True)]
         with_speed += [
             Finding({**model, "load": load}, rises, _ratio(k), why)
             for load, rises, k in zip(surface.loads, courses, values, strict=True)
         ]
-        more, change = _influence_grows(values, failed), _influence(values)
+        more, change = _influence_grows(values, failures), _influence(values)
         growth = float(change[-1] - change[0]) if np.isfinite(change[[0, -1]]).all() else None
         grows.append(Finding(model, more, growth, why))
         parts = [*rising, *courses, more]

@@ -99,13 +99,13 @@ class Design:
 
     def speeds_of(self, setting: Setting) -> tuple[float, ...]:
         """All of them, with friction every other one: those runs go through time."""
-        return self.speeds if setting.friction == "none" else _thinned(self.speeds)
+        return self.speeds if setting.friction == "none" else _every_other(self.speeds)
 
     def loads_of(self, setting: Setting) -> tuple[float, ...]:
         """With friction as the speeds; of the pairs that no claim is about the lightest, the scene's and the heaviest."""
         if not setting.claimed:
             return tuple(sorted({self.loads[0], self.scene_load, self.loads[-1]}))
-        return self.loads if setting.friction == "none" else _thinned(self.loads)
+        return self.loads if setting.friction == "none" else _every_other(self.loads)
 
     def relative(self, speeds: Sequence[float]) -> list[float]:
         """w* = (w - w_min) / (w_max - w_min)."""
@@ -230,7 +230,7 @@ def friction_of(tables: ReadTables, friction: float | None) -> float:
     return friction
 
 
-def _thinned(values: tuple[float, ...]) -> tuple[float, ...]:
+def _every_other(values: tuple[float, ...]) -> tuple[float, ...]:
     """Every other value with both ends, where at least five are left: an exponent with its interval needs them."""
     return values[::2] if len(values) % 2 and len(values) >= 9 else values
 

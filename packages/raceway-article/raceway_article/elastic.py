@@ -118,17 +118,13 @@ class ElasticDesign:
     turns: int
 
     @property
-    def load_cases(self) -> list[tuple[float, float]]:
-        """Axial and radial loads at rest [N]: those of the static verification."""
-        return [(float(axial), float(radial)) for axial, radial in reference_cases()[_CASES].inputs["loads_n"]]
-
-    @property
     def speed_rpm(self) -> float:
         return float(self.tables["excitation"]["speed_rpm"])
 
     def runs(self) -> list[ElasticRun]:
         """Those at rest first, motions last: they cost most."""
-        static = [ElasticRun(bodies, *loads) for loads in self.load_cases for bodies in BODIES]
+        loads = reference_cases()[_CASES].inputs["loads_n"]  # those of the static verification
+        static = [ElasticRun(bodies, float(axial), float(radial)) for axial, radial in loads for bodies in BODIES]
         axial = float(self.tables["load"]["axial"])
         return static + [ElasticRun(bodies, axial, excitation=pair) for pair in CLAIMED for bodies in BODIES]
 
@@ -207,9 +203,9 @@ def _row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, fo
     clocks, row = Clocks(), {"status": "completed", "reason": ""}
     try:
         result = run(scene, registry, tell)
-        numbers, cost = _numbers(result.to_dict()), _cost(clocks, result)
+        numbers, cost = _result_numbers(result.to_dict()), _cost(clocks, result)
         if folder is not None:
-            numbers |= _section(result, folder)
+            numbers |= _stress_section(result, folder)
         del result
     except RacewayError as why:
         row = failure(why)
@@ -240,22 +236,22 @@ def _cost(clocks: Clocks, result: Result | None) -> Tables:
     }
 
 
-def _numbers(result: ReadTables) -> Tables:
-    static, identified, model = result["equilibrium"], result["identification"], result["model"] or {}
+def _result_numbers(result: ReadTables) -> Tables:
+    static, identification, model = result["equilibrium"], result["identification"], result["model"] or {}
     return {
         "balls": [{key: ball[key] for key in _BALL if key in ball} for ball in static["balls"]],
         "displacement": static["displacement"],
         "kyy_n_per_m": static["stiffness"][1][1],
         "subsurface": model.get("subsurface") or [],
         "mesh": model.get("mesh"),
-        "identification": None if identified is None else {key: identified[key] for key in _IDENTIFIED},
+        "identification": None if identification is None else {key: identification[key] for key in _IDENTIFIED},
         "stability": {key: result["stability"][key] for key in _STABILITY},
         "error": {key: result["error"][key] for key in _ERROR},
         "warnings": result["warnings"],
     }
 
 
-def _section(result: Result, folder: Path) -> Tables:
+def _stress_section(result: Result, folder: Path) -> Tables:
     """The section below the most loaded contact of each race, where a picture can be made; why not, elsewhere."""
     from raceway_view.stress import contact_stress_files
 
@@ -278,31 +274,19 @@ def _from_hertz(row: ReadTables) -> Tables:
 def _pressures(balls: list[ReadTables], race: str) -> Tables | None:
     nodal, hertz, load = f"peak_pressure_nodal_{race}_pa", f"peak_pressure_{race}_pa", f"load_{race}_n"
     most = max(balls, key=lambda ball: ball[load])
-    loaded = [ball for ball in balls if ball[load] > _LOADED * most[load] and ball.get(nodal) is not None]
-    if not loaded:
+    loaded_balls = [ball for ball in balls if ball[load] > _LOADED * most[load] and ball.get(nodal) is not None]
+    if not loaded_balls:
         return None
-    deviations = [ball[nodal] / ball[hertz] - 1.0 for ball in loaded]
+    deviations = [ball[nodal] / ball[hertz] - 1.0 for ball in loaded_balls]
     return {
         "ball": balls.index(most),
         "load_n": most[load],
         "peak_pressure_pa": most[nodal],
         "hertz_peak_pressure_pa": most[hertz],
-        "most_loaded": deviations[loaded.index(most)],
+        "most_loaded": deviations[loaded_balls.index(most)],
         "largest": max(deviations, key=abs),
-        "loaded_balls": len(loaded),
+        "loaded_balls": len(loaded_balls),
     }
-
-
-def _below_contact(row: ReadTables) -> list[Tables]:
-    """Largest shear stress and its depth in ball and ring below the most loaded contact of each race, over Hertz's, less 1."""
-    return [
-        {
-            **side,
-            "shear_deviation": _over(side["largest_shear_pa"], side["hertz_largest_shear_pa"]),
-            "depth_deviation": _over(side["depth_m"], side["hertz_depth_m"]),
-        }
-        for side in row["subsurface"]
-    ]
 
 
 def _at_rest(row: ReadTables, reference: ReadTables) -> Tables:
@@ -310,25 +294,25 @@ def _at_rest(row: ReadTables, reference: ReadTables) -> Tables:
 
     y is None where the load is axial.
     """
-    moved, expected = row["displacement"], reference["displacement"]
-    sideways = abs(expected["y"]) > _NEGLIGIBLE * abs(expected["x"])
+    displacement, reference_values = row["displacement"], reference["displacement"]
+    sideways = abs(reference_values["y"]) > _NEGLIGIBLE * abs(reference_values["x"])
     return {
         "ball_loads": max(_loads(row["balls"], reference["balls"], f"load_{race}_n") for race in RACES),
-        "x": _over(moved["x"], expected["x"]),
-        "y": _over(moved["y"], expected["y"]) if sideways else None,
+        "x": _over(displacement["x"], reference_values["x"]),
+        "y": _over(displacement["y"], reference_values["y"]) if sideways else None,
         "kyy": _over(row["kyy_n_per_m"], reference["kyy_n_per_m"]),
     }
 
 
 def _in_motion(row: ReadTables, reference: ReadTables) -> Tables:
     """Relative differences of K, C and |Z| of two motions; ``wc``: that of w C over the reference's |Z|, where C is next to nothing."""
-    z, expected = _identified(row), _identified(reference)
+    z, reference_values = _stiffness_numbers(row), _stiffness_numbers(reference)
     speed = reference["identification"]["speed_rpm"] * math.pi / 30.0
-    differences: Tables = {name: _over(z[name], expected[name]) for name in z}
-    return differences | {"wc": speed * (z["c"] - expected["c"]) / expected["abs_z"]}
+    differences: Tables = {name: _over(z[name], reference_values[name]) for name in z}
+    return differences | {"wc": speed * (z["c"] - reference_values["c"]) / reference_values["abs_z"]}
 
 
-def _identified(row: ReadTables) -> dict[str, float]:
+def _stiffness_numbers(row: ReadTables) -> dict[str, float]:
     """K [N/m], C [N s/m] and |Z| [N/m] of a motion."""
     return {"k": K.of(row), "c": C.of(row), "abs_z": Z.of(row)}
 
@@ -419,13 +403,13 @@ class ElasticArticle(Answer):
         from raceway_article.page import write_tables
 
         folder, content = Path(folder), self.to_dict()
-        drawn = drawings(content) if pictures else []
-        files = write_tables(self.stem, content, {self.stem: columns(content["rows"])}, drawn, folder)
+        pictured = drawings(content) if pictures else []
+        files = write_tables(self.stem, content, {self.stem: columns(content["rows"])}, pictured, folder)
         if not pictures:
             return files
         stresses = [file for row in self.rows for name in row.get("pictures") or [] if (file := folder / name).is_file()]
         section = next((file.read_bytes() for file in stresses if file.suffix == ".png"), None)
-        return [page(content, drawn, section, self.command).write(folder / "article-elastic.html"), *files, *stresses]
+        return [page(content, pictured, section, self.command).write(folder / "article-elastic.html"), *files, *stresses]
 
     def failure(self) -> RacewayError | None:
         if self.fault is None and not self.of_run and all(row["status"] in ("failed", "refused") for row in self.rows):
@@ -461,10 +445,21 @@ class ElasticArticle(Answer):
             return table
         reference = None if run.bodies == _REFERENCE else self.row(run.phase, run.case, _REFERENCE)
         if run.excitation is None:
-            table |= {"from_hertz": _from_hertz(row), "below_contact": _below_contact(row)}
+            # Below the most loaded contacts: over Hertz's, less 1.
+            table |= {
+                "from_hertz": _from_hertz(row),
+                "below_contact": [
+                    {
+                        **side,
+                        "shear_deviation": _over(side["largest_shear_pa"], side["hertz_largest_shear_pa"]),
+                        "depth_deviation": _over(side["depth_m"], side["hertz_depth_m"]),
+                    }
+                    for side in row["subsurface"]
+                ],
+            }
             differences = _at_rest
         else:
-            table |= {"identified": _identified(row), "energy_balance": row["stability"]["energy_drift"]}
+            table |= {"identified": _stiffness_numbers(row), "energy_balance": row["stability"]["energy_drift"]}
             differences = _in_motion
         return table | {f"from_{_REFERENCE}": None if reference is None else differences(row, reference)}
 
@@ -485,27 +480,27 @@ def elastic_article(
     folder : where the section through the most loaded contact is drawn; None: it is not
     command : what makes the page again
     """
-    begun, cpu = time.monotonic(), time.process_time()
+    start, cpu = time.monotonic(), time.process_time()
     runs = design.runs()
     scenes, items = _scenes_and_items(design, registry)
     # The run at rest with elastic bodies under the heaviest load: its most loaded contact is drawn.
-    drawn = max(
+    pictured = max(
         (k for k, run in enumerate(runs) if run.excitation is None and run.bodies == "elastic"), key=lambda k: runs[k].axial
     )
     with written(kept) as store:
         store.wait([item.key for item in items if store.get(item.key).content.get("status") == "refused"])
         waiting = [k for k, item in enumerate(items) if store.get(item.key).state == "waiting"]
-        seconds = _predicted([scenes[k] for k in waiting], registry)
+        seconds = _predictions([scenes[k] for k in waiting], registry)
         kinds = {k: (runs[k].bodies, runs[k].phase) for k in waiting}
         progress = RemainingTime(dict(zip(waiting, seconds, strict=True)), kinds, on_progress)
 
         def compute(k: int, registry: Registry) -> Tables:
             progress.begin(k, f"{runs[k].bodies} {'at rest' if runs[k].excitation is None else 'in motion'}", runs[k].case)
-            return _row_of(scenes[k], registry, progress, folder if k == drawn else None)
+            return _row_of(scenes[k], registry, progress, folder if k == pictured else None)
 
         rows, reused = work_through(compute, items, store, local(registry, 0), registry, plugins)
-    spent = time.monotonic() - begun, time.process_time() - cpu
-    return ElasticArticle(scenes[0].title, design, rows, *spent, reused, store.fault, command)
+    costs = time.monotonic() - start, time.process_time() - cpu
+    return ElasticArticle(scenes[0].title, design, rows, *costs, reused, store.fault, command)
 
 
 def _scenes_and_items(design: ElasticDesign, registry: Registry) -> tuple[list[Scene], list[Item]]:
@@ -515,20 +510,20 @@ def _scenes_and_items(design: ElasticDesign, registry: Registry) -> tuple[list[S
     return scenes, [Item(key, run.name, k) for k, (key, run) in enumerate(zip(keys, runs, strict=True))]
 
 
-def elastic_workload(design: ElasticDesign, kept: Path | None, registry: Registry) -> Workload:
+def elastic_workload(design: ElasticDesign, store: Path | None, registry: Registry) -> Workload:
     """The runs that are not stored, one after another."""
     scenes, items = _scenes_and_items(design, registry)
-    left = [scene for scene, item in zip(scenes, items, strict=True) if not stored_rows(kept, [item.key])]
+    left = [scene for scene, item in zip(scenes, items, strict=True) if not stored_rows(store, [item.key])]
     memory = max((make_plan(scene).predicted_bytes for scene in left), default=0)
     return Workload(
-        scenes[0].title, len(items), sum(_predicted(left, registry)), runs=len(left), stored=len(items) - len(left),
+        scenes[0].title, len(items), sum(_predictions(left, registry)), runs=len(left), stored=len(items) - len(left),
         bytes=memory, why_runs="bodies of finite elements, one run at a time",
     )  # fmt: skip
 
 
-def _predicted(scenes: Sequence[Scene], registry: Registry) -> list[float]:
+def _predictions(scenes: Sequence[Scene], registry: Registry) -> list[float]:
     """Planned time of runs one after the other [s]: what is made once for bodies at rest, or in motion, counts in the first alone."""
-    seconds, prepared = [], set[tuple[str, bool]]()
+    seconds, models = [], set[tuple[str, bool]]()
     for scene in scenes:
         try:
             plan = make_plan(scene)
@@ -536,6 +531,6 @@ def _predicted(scenes: Sequence[Scene], registry: Registry) -> list[float]:
             seconds.append(0.0)
             continue
         bodies = scene.bodies.name, scene.excitation is not None
-        seconds.append(max(plan.predicted_wall_s - (plan.predicted_once_s if bodies in prepared else 0.0), 0.0))
-        prepared.add(bodies)
+        seconds.append(max(plan.predicted_wall_s - (plan.predicted_once_s if bodies in models else 0.0), 0.0))
+        models.add(bodies)
     return seconds

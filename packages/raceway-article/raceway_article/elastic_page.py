@@ -140,7 +140,7 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
     footer = f"Made by `{command}`, Raceway {__version__}; its runs took {cost['rows_cpu_s']:.0f} s of processor time. "
     footer += "All numbers: article-elastic.json and article-elastic.csv beside this page."
     out = Page("The article’s own model: elastic rings and balls", content["title"], footer)
-    drawn = {picture.name: picture for picture in pictures}
+    by_name = {picture.name: picture for picture in pictures}
     static = _of_phase(content, "static")
     elements = {row["cost"]["elements"] for row in content["rows"] if row["bodies"] == "elastic"} - {None}
     size = f"{max(elements):,}".replace(",", "\u202f") + " hexahedra" if elements else "no run that came to an end"
@@ -176,14 +176,14 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
                     "most off, any ball": Cell(percent(table["largest"]), tone, more),
                 })  # fmt: skip
     out.rows(lines, caption)
-    show_picture(out, drawn, "article-elastic-pressures")
+    show_picture(out, by_name, "article-elastic-pressures")
     out.section("Bodies against each other, at rest")
     at_rest, in_motion = tables(content).items()
     out.rows(at_rest[1], at_rest[0])
-    show_picture(out, drawn, "article-elastic-ball-loads")
-    _motion(out, content)
+    show_picture(out, by_name, "article-elastic-ball-loads")
+    _motion_section(out, content)
     out.rows(in_motion[1], in_motion[0])
-    show_picture(out, drawn, "article-elastic-stiffness")
+    show_picture(out, by_name, "article-elastic-stiffness")
     _stresses(out, static, section)
     out.section("Cost")
     out.rows([_cost_row(row) for row in content["rows"]], "Every run; elements of condensed bodies are none of the run")
@@ -234,8 +234,8 @@ def in_short(content: ReadTables) -> list[str]:
         ("static", ("ball_loads", "x", "y", "kyy"), "at rest (ball loads, x, y, kyy)"),
         ("motion", ("k", "abs_z"), "in motion (K, |Z|)"),
     ):
-        compared = [row[f"from_{reference}"] for row in elastic if row["phase"] == phase]
-        parts = [(name, table[name]) for table in compared if table for name in names if table[name] is not None]
+        differences = [row[f"from_{reference}"] for row in elastic if row["phase"] == phase]
+        parts = [(name, table[name]) for table in differences if table for name in names if table[name] is not None]
         if parts:
             name, value = max(parts, key=lambda part: abs(part[1]))
             points.append(f"Elastic from {reference} bodies {words}: at most {percent(value)}, in {_NAMES[name]}.")
@@ -270,7 +270,7 @@ def _rows_at_rest(rows: list[Tables], content: ReadTables) -> list[Tables]:
     return lines
 
 
-def _motion(out: Page, content: ReadTables) -> None:
+def _motion_section(out: Page, content: ReadTables) -> None:
     out.section("In motion")
     out.text(
         f"{content['speed_rpm']:g} r/min, {content['scene']['load']['axial']:g} N, tilt locked, balls with inertia, friction "

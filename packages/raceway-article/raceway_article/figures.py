@@ -98,9 +98,9 @@ class _Line:
     bridged: bool = False
 
     def plot(self, axes: Axes) -> None:
-        shown = np.isfinite(self.y) if self.bridged else slice(None)
+        visible = np.isfinite(self.y) if self.bridged else slice(None)
         marker: Tables = {"marker": "o", "markersize": 3} if self.marked else {}
-        axes.plot(self.x[shown], self.y[shown], self.style, color=self.colour, lw=self.width, label=self.label, **marker)
+        axes.plot(self.x[visible], self.y[visible], self.style, color=self.colour, lw=self.width, label=self.label, **marker)
 
 
 def _panel(
@@ -121,11 +121,11 @@ def _panel(
     return Panel(draw, words, caption)
 
 
-def _ends(named: Mapping[str, np.ndarray]) -> str:
+def _ends(curves_by_name: Mapping[str, np.ndarray]) -> str:
     """First and last value of each, in words."""
     return "; ".join(
         f"{name}: {f'{values[0]:.4g} to {values[-1]:.4g}' if np.isfinite(values[[0, -1]]).all() else 'not computed to the end'}"
-        for name, values in named.items()
+        for name, values in curves_by_name.items()
     )
 
 
@@ -174,7 +174,7 @@ def named(figure: str, bodies: Sequence[str], kind: str) -> str:
     return figure if kind == bodies[0] else f"{figure}-{kind}"
 
 
-def _spread(values: Sequence[float], count: int = 5) -> list[int]:
+def _few_of(values: Sequence[float], count: int = 5) -> list[int]:
     """Indices of at most ``count`` of the values, evenly spread, both ends among them."""
     return sorted({round(k) for k in np.linspace(0, len(values) - 1, min(count, len(values)))})
 
@@ -216,10 +216,10 @@ def _excitations(curves: Curves, kind: str, tilt: str, measure: str, star: bool,
 
 def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     """Figure 10: at several axial loads; dashed without ball inertia."""
-    w, shown = np.array(curves.design.relative(curves.design.speeds)), _spread(curves.design.loads)
+    w, rows = np.array(curves.design.relative(curves.design.speeds)), _few_of(curves.design.loads)
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
     label, lines, names = _STAR if star else _STIFFNESS, list[_Line](), {}
-    for row, colour in zip(shown, _colours(len(shown)), strict=True):
+    for row, colour in zip(rows, _colours(len(rows)), strict=True):
         lines += [_Line(w, k[row], "-", colour, 2.0, marked=False), _Line(w, light[row], "--", colour, 1.1, marked=False)]
         names[f"{curves.design.loads[row]:g} N"] = k[row]
 
@@ -249,10 +249,10 @@ def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
 
 def _over_load(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     """Figure 11: at several speeds; dashed without ball inertia."""
-    loads, shown = np.array(curves.design.loads), _spread(curves.design.speeds)
+    loads, columns = np.array(curves.design.loads), _few_of(curves.design.speeds)
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
     label, lines, names = _STAR if star else _STIFFNESS, list[_Line](), {}
-    for column, colour in zip(shown, _colours(len(shown)), strict=True):
+    for column, colour in zip(columns, _colours(len(columns)), strict=True):
         name = f"w* = {curves.design.relative(curves.design.speeds)[column]:.2g}"
         lines.append(_Line(loads, light[:, column], "--", colour, 1.1, marked=False))
         lines.append(_Line(loads, k[:, column], "-", colour, 1.9, name))
@@ -286,10 +286,10 @@ def _map(curves: Curves, setting: Setting) -> Panel:
             axes.text(0.5, 0.5, "no number", transform=axes.transAxes, ha="center")
             return
         size = max(float(np.abs(finite - 1.0).max()), 1e-6)
-        shown = np.ma.masked_invalid(star)
-        axes.contourf(w, loads, shown, levels=np.linspace(1.0 - size, 1.0 + size, 41), cmap="RdBu_r", alpha=0.9)
+        masked = np.ma.masked_invalid(star)
+        axes.contourf(w, loads, masked, levels=np.linspace(1.0 - size, 1.0 + size, 41), cmap="RdBu_r", alpha=0.9)
         if size > LEVEL:
-            lines = axes.contour(w, loads, shown, levels=6, colors="#1b2733", linewidths=0.7)
+            lines = axes.contour(w, loads, masked, levels=6, colors="#1b2733", linewidths=0.7)
             axes.clabel(lines, fontsize=8.5, fmt=lambda value: f"{value:.4g}")
 
     words = f"Map of k* over w* and axial load, {TILT_WORDS[setting.tilt]}: {_range(star)}; red rises, blue falls"
@@ -366,14 +366,14 @@ def _tilt_stiffness(study: Article) -> Picture:
 def _both_bodies(curves: Curves, tilt: str, star: bool) -> Panel:
     """Rigid and condensed bodies: the trend, or how much stiffer the former are than the latter."""
     design, names = curves.design, curves.design.bodies
-    w, shown = np.array(design.relative(design.speeds)), _spread(design.loads, 3)
+    w, rows = np.array(design.relative(design.speeds)), _few_of(design.loads, 3)
     first, second = (_surface(curves, Setting(**ROTATING, tilt=tilt, inertia=True, bodies=kind), star) for kind in names)
     surfaces = {f", {names[0]}": first, f", {names[1]}": second} if star else {"": second / first}
     label = _STAR if star else f"K {names[1]} / K {names[0]} [-]"
     lines = [
         _Line(w, values[row], style, colour, 1.7, f"{design.loads[row]:g} N{name}", marked=False)
         for (name, values), style in zip(surfaces.items(), ("--" if star else "-", "-"), strict=False)
-        for row, colour in zip(shown, _colours(len(shown)), strict=True)
+        for row, colour in zip(rows, _colours(len(rows)), strict=True)
     ]
     words = f"{label} over w*, {TILT_WORDS[tilt]}: {_ends({str(line.label): line.y for line in lines})}"
     return _panel(lines, (TILT_WORDS[tilt], _SPEED, label), 2 if star else 3, words)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 
 from raceway import Answer, Mistake, SceneError
@@ -69,44 +70,37 @@ def article(
         Finished curves are in ``kept``.
     """
     elastic = bodies == "elastic"
-    options = {
-        "speeds": speeds,
-        "axial": axial,
-        "shaft": shaft,
-        "friction": friction,
-        "turns": turns,
-        "processes": processes,
-    }
-    idle = {name: why for name, why in (_NOT_ELASTIC if elastic else _ELASTIC_ONLY).items() if options[name] is not None}
+    given = {"speeds": speeds, "axial": axial, "shaft": shaft, "friction": friction, "turns": turns, "processes": processes}
+    idle = {name: why for name, why in (_NOT_ELASTIC if elastic else _ELASTIC_ONLY).items() if given[name] is not None}
     if idle:
         words = "has no effect with --bodies {}: {}; leave it out"
-        raise SceneError([Mistake(f"--{name}", options[name], words.format(bodies, why)) for name, why in idle.items()])
+        raise SceneError([Mistake(f"--{name}", given[name], words.format(bodies, why)) for name, why in idle.items()])
     files = tuple(map(Path, plugins))
     registry = registry_with(files)
-    typed = _command(scene, {"bodies": None if bodies == "both" else bodies, **options, "processes": None}, changes, files)
+    command = _command(scene, {"bodies": None if bodies == "both" else bodies, **given, "processes": None}, changes, files)
+    compute: Callable[..., Answer]
     if elastic:
         from raceway_article.elastic import SCENE, TURNS, elastic_article, elastic_workload
         from raceway_article.elastic import design as elastic_design
 
         tables = plain_tables(SCENE if scene is None else scene, *changes, registry=registry)
         runs = elastic_design(tables, friction, TURNS if turns is None else turns)
-        if plan:
-            return elastic_workload(runs, kept, registry)
-        with telling(progress) as report:
-            return elastic_article(runs, pictures, kept, registry, files, report, typed)
-    from raceway_article.design import ARTICLE, LOADS, SPEEDS, design
+        foresee, compute = partial(elastic_workload, runs, kept), partial(elastic_article, runs, pictures, kept)
+    else:
+        from raceway_article.design import ARTICLE, LOADS, SPEEDS, design
 
-    tables = plain_tables(ARTICLE if scene is None else scene, *changes, registry=registry)
-    kinds = ("rigid", "condensed") if bodies == "both" else (bodies,)
-    curves = design(tables, speeds or SPEEDS, axial or LOADS, shaft, kinds, friction)
-    # Mistakes are refused before anything is loaded that computes.
-    from raceway_article.study import solve_curves, workload
+        tables = plain_tables(ARTICLE if scene is None else scene, *changes, registry=registry)
+        kinds = ("rigid", "condensed") if bodies == "both" else (bodies,)
+        curves = design(tables, speeds or SPEEDS, axial or LOADS, shaft, kinds, friction)
+        # Mistakes are refused before anything is loaded that computes.
+        from raceway_article.study import solve_curves, workload
 
-    workers = 2 if processes is None else processes
+        workers = 2 if processes is None else processes
+        foresee, compute = partial(workload, curves, workers, kept), partial(solve_curves, curves, workers, kept)
     if plan:
-        return workload(curves, workers, kept, registry)
+        return foresee(registry)
     with telling(progress) as report:
-        return solve_curves(curves, workers, kept, registry, files, report, typed)
+        return compute(registry, files, report, command)
 
 
 def _command(scene: object, options: dict[str, object], changes: Iterable[Change], plugins: Iterable[Path]) -> str:

@@ -35,7 +35,7 @@ def page(study: Article, pictures: Sequence[Picture]) -> Page:
     """The page."""
     from raceway import __version__
 
-    content, drawn = study.to_dict(), {picture.name: picture for picture in pictures}
+    content, by_name = study.to_dict(), {picture.name: picture for picture in pictures}
     footer = f"Made by `{study.command}`, Raceway {__version__}, in {study.cpu_s:.0f} s of processor time. "
     footer += "Numbers of all runs: article.json and curves.csv beside this page."
     out = Page("The article’s claims, computed again", study.title, footer)
@@ -64,7 +64,7 @@ def page(study: Article, pictures: Sequence[Picture]) -> Page:
         )
     out.listing(points)
     _swaps(out, content, load)
-    _friction(out, content, drawn)
+    _friction(out, content, by_name)
     _verdicts(out, content)
     scene, speeds, loads = content["scene"], content["speeds_rpm"], content["axial_n"]
     excitation = scene["excitation"]
@@ -90,7 +90,7 @@ def page(study: Article, pictures: Sequence[Picture]) -> Page:
         "not modelled, neither here nor in the article.",
         kind="note",
     )
-    _figures(out, content, drawn, study.curves.design.scene_load)
+    _figures(out, content, by_name, study.curves.design.scene_load)
     _static(out, content)
     _trends(out, content)
     _rig(out, content)
@@ -148,10 +148,10 @@ def _swaps(out: Page, content: ReadTables, load: float) -> None:
 def _verdicts(out: Page, content: ReadTables) -> None:
     out.section("Verdicts")
     badges = [Cell(verdict["kind"], KINDS[verdict["kind"]][0], verdict["region"]) for verdict in content["verdicts"]]
-    judged = list(zip(content["verdicts"], badges, strict=True))
-    rows = [[verdict["number"], verdict["claim"], badge] for verdict, badge in judged]
+    with_badges = list(zip(content["verdicts"], badges, strict=True))
+    rows = [[verdict["number"], verdict["claim"], badge] for verdict, badge in with_badges]
     out.table(["", "claim", "verdict"], rows, "The article’s claims; how each was decided stands below")
-    for verdict, badge in judged:
+    for verdict, badge in with_badges:
         parts = [("Rule", verdict["rule"]), ("Computed", verdict["computed"])]
         if verdict["failed"]:
             parts.append(("Failed", f"runs failed or have no stable motion: {verdict['failed']}"))
@@ -217,11 +217,11 @@ def _trends(out: Page, content: ReadTables) -> None:
     for trend in content["quasi_static"]:
         balls = "ball inertia" if trend["inertia"] else "weightless balls"
         first, *ratios = trend["expected"]
-        computed = trend["computed"] or (None,) * len(trend["expected"])
-        printed = [f"{first:.4g}", *(f"{ratio:.3f}" for ratio in ratios)]
-        rows.append([f"tilt {trend['tilt']}, {trend['load']:g} N, {balls}", "expected", *printed, "", ""])
+        answers = trend["computed"] or (None,) * len(trend["expected"])
+        digits = [f"{first:.4g}", *(f"{ratio:.3f}" for ratio in ratios)]
+        rows.append([f"tilt {trend['tilt']}, {trend['load']:g} N, {balls}", "expected", *digits, "", ""])
         off, outcome = shown(trend["off_in_last_digits"], ".2g"), _outcome(trend["holds"], trend["why"])
-        rows.append(["", "computed", *(shown(value, ".5g") for value in computed), off, outcome])
+        rows.append(["", "computed", *(shown(value, ".5g") for value in answers), off, outcome])
     out.table(columns, rows)
 
 

@@ -139,7 +139,7 @@ class _Trend:
             return None
         first = float(10.0 ** (math.floor(math.log10(abs(self.expected[0]))) - 3))
         units = (first, *(1e-3 for _ in self.expected[1:]))
-        return max(abs(k - printed) / unit for k, printed, unit in zip(self.computed, self.expected, units, strict=True))
+        return max(abs(k - reference) / unit for k, reference, unit in zip(self.computed, self.expected, units, strict=True))
 
     @property
     def holds(self) -> bool:
@@ -210,7 +210,7 @@ def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
 
     points : tables of scenes that differ in axial load, speed and tilt stiffness
     """
-    return [row or _row(tables, registry) for row, tables in zip(_looped(points, registry), points, strict=True)]
+    return [row or _point_row(tables, registry) for row, tables in zip(_looped(points, registry), points, strict=True)]
 
 
 def _looped(points: Sequence[Tables], registry: Registry) -> Sequence[Tables | None]:
@@ -237,7 +237,7 @@ def _looped(points: Sequence[Tables], registry: Registry) -> Sequence[Tables | N
     ]  # fmt: skip
 
 
-def _row(tables: Tables, registry: Registry) -> Tables:
+def _point_row(tables: Tables, registry: Registry) -> Tables:
     row: Tables = {"speed_rpm": tables["excitation"]["speed_rpm"], "axial_n": tables["load"]["axial"]}
     try:
         scene = scene_from_dict(tables, registry)
@@ -250,15 +250,15 @@ def _row(tables: Tables, registry: Registry) -> Tables:
             if motion.kind == FAILED:
                 raise
             reason = f"{' '.join(str(why).split()).partition(': ')[0]}; instead, from rest: {motion.words}"
-            return {**row, "status": Status.UNSTEADY, "reason": reason, "instead": _plain(motion)}
+            return {**row, "status": Status.UNSTEADY, "reason": reason, "instead": _plain_row(motion)}
     except RacewayError as why:
         return {**row, **failure(why)}
-    identified, error, floquet = result.identification, result.error, result.stability["floquet"]
-    assert identified is not None
+    identification, error, floquet = result.identification, result.error, result.stability["floquet"]
+    assert identification is not None
     status, reason = Status.COMPLETED, ""
     if floquet is not None and floquet["verdict"] == "unstable":
         motion = attractor_beside_run(result, row["speed_rpm"], TURNS)
-        row["instead"] = _plain(motion)
+        row["instead"] = _plain_row(motion)
         grows = f"the steady motion is unstable, disturbances grow {floquet['largest']:.4g} times per turn"
         status, reason = Status.UNSTABLE, f"{grows}; instead: {motion.words}"
     return {
@@ -267,14 +267,14 @@ def _row(tables: Tables, registry: Registry) -> Tables:
         "reason": reason,
         "found": None if floquet is None else floquet["found"],
         "k": K.of(result),
-        "abs_z": abs(identified.dynamic_stiffness),
-        "force_n": identified.force_amplitude,
+        "abs_z": abs(identification.dynamic_stiffness),
+        "force_n": identification.force_amplitude,
         "error": without_mesh(error),
         "mesh_error": error["mesh"],
     }
 
 
-def _plain(motion: Attractor) -> Tables:
+def _plain_row(motion: Attractor) -> Tables:
     """Without the section, which a page of hundreds of points has no use for."""
     return {name: value for name, value in motion.to_dict().items() if name != "section"}
 
@@ -286,27 +286,6 @@ def _static_pressures(case: str, registry: Registry) -> list[Tables]:
 
 #: Name of a task, the function that computes its rows here or in another process, and what that takes, plain values.
 _Task = tuple[str, Callable[[Any, Registry], list[Tables]], Any]
-
-
-def _tasks(design: Design, registry: Registry) -> list[_Task]:
-    """All that is run: static pressures, quasi-static trends, the scan of the tilt stiffness, the rig's points, the curves."""
-
-    def points(setting: Setting, loads: Sequence[float], speeds: Sequence[float]) -> list[Tables]:
-        return [design.point(setting, load, speed, registry) for load in loads for speed in speeds]
-
-    tasks: list[_Task] = [("static verification", _static_pressures, _STATIC)]
-    tasks += [("quasi-static trends", _secants, list(case)) for case in TRENDS]
-    for load in _scan_loads(design):
-        ends = points(_base("shaft", design.bodies), [load], [design.speeds[0], design.speeds[-1]])
-        scan = [with_value(tables, "supports.tilt", stiffness) for stiffness in STIFFNESSES for tables in ends]
-        tasks.append((f"tilt stiffness at {load:g} N", rows_of_curve, scan))
-    tasks += [
-        ("the rig's speeds", rows_of_curve, points(setting, RIG_LOADS, RIG_SPEEDS)) for setting in _rig_settings(design)
-    ]
-    for setting, load in design.tasks():
-        name = "curves over speed" if setting.friction == "none" else "curves over speed, friction"
-        tasks.append((name, rows_of_curve, points(setting, [load], design.speeds_of(setting))))
-    return tasks
 
 
 def _rig_settings(design: Design) -> list[Setting]:
@@ -467,7 +446,24 @@ class Article(Answer):
 
 def _items(design: Design, registry: Registry) -> list[Item]:
     items, program = list[Item](), program_key(registry)
-    for name, compute, inputs in _tasks(design, registry):
+
+    # All that is run
+    def points(setting: Setting, loads: Sequence[float], speeds: Sequence[float]) -> list[Tables]:
+        return [design.point(setting, load, speed, registry) for load in loads for speed in speeds]
+
+    tasks: list[_Task] = [("static verification", _static_pressures, _STATIC)]
+    tasks += [("quasi-static trends", _secants, list(case)) for case in TRENDS]
+    for load in _scan_loads(design):
+        ends = points(_base("shaft", design.bodies), [load], [design.speeds[0], design.speeds[-1]])
+        scan = [with_value(tables, "supports.tilt", stiffness) for stiffness in STIFFNESSES for tables in ends]
+        tasks.append((f"tilt stiffness at {load:g} N", rows_of_curve, scan))
+    tasks += [
+        ("the rig's speeds", rows_of_curve, points(setting, RIG_LOADS, RIG_SPEEDS)) for setting in _rig_settings(design)
+    ]
+    for setting, load in design.tasks():
+        curve = "curves over speed" if setting.friction == "none" else "curves over speed, friction"
+        tasks.append((curve, rows_of_curve, points(setting, [load], design.speeds_of(setting))))
+    for name, compute, inputs in tasks:
         key = tables_key({"function": compute.__qualname__, "inputs": inputs}, registry, program=program)
         items.append(Item(key, name, (name, compute, inputs)))
     return items
@@ -480,9 +476,9 @@ def workload(design: Design, processes: int, kept: Path | None, registry: Regist
     left = [curve for curve, item in zip(curves, items, strict=True) if not stored_rows(kept, [item.key])]
     points = [(setting, load, speed) for setting, load in left for speed in design.speeds_of(setting)]
     size = sum(len(design.speeds_of(setting)) for setting, _ in curves)
-    seconds, refused = run_times(len(points), lambda n: design.point(*points[n], registry), registry)
+    seconds, refusal = run_times(len(points), lambda n: design.point(*points[n], registry), registry)
     return Workload(
-        str(design.tables["title"]), size, seconds / max(processes, 1), runs=len(points) - refused, refused=refused,
+        str(design.tables["title"]), size, seconds / max(processes, 1), runs=len(points) - refusal, refused=refusal,
         stored=size - len(points), why_runs="steady orbits, each from its neighbour",
     )  # fmt: skip
 
@@ -504,18 +500,18 @@ def solve_curves(
     plugins : one-off plug-in files, which each process loads
     command : what makes the page again
     """
-    begun, cpu, own_cpu = time.monotonic(), processor_time(), time.process_time()
+    start, cpu, own_cpu = time.monotonic(), processor_time(), time.process_time()
     for setting in design.settings():  # mistakes are refused before anything is run
         title = scene_from_dict(design.point(setting, design.loads[0], design.speeds[0], registry), registry).title
     items = _items(design, registry)
     with written(kept) as store:
-        finished, reused = work_through(_rows, items, store, local(registry, processes), registry, plugins, on_progress)
-    results = iter([row["rows"] for row in finished])
+        answers, reused = work_through(_rows, items, store, local(registry, processes), registry, plugins, on_progress)
+    results = iter([row["rows"] for row in answers])
     static = next(results)
-    compared = [_trend(case, next(results)) for case in TRENDS]
+    trends = [_trend(case, next(results)) for case in TRENDS]
     scan = {load: next(results) for load in _scan_loads(design)}
     rig = [{"tilt": s.tilt, "bodies": s.bodies, **row} for s in _rig_settings(design) for row in next(results)]
     curves = Curves(design, dict(zip(design.tasks(), results, strict=True)))
-    spent = time.monotonic() - begun, processor_time() - cpu, time.process_time() - own_cpu
-    numbers = title, curves, tuple(rig), tuple(static), tuple(compared), scan
-    return Article(*numbers, *spent, len(items), reused, store.fault, command)
+    costs = time.monotonic() - start, processor_time() - cpu, time.process_time() - own_cpu
+    numbers = title, curves, tuple(rig), tuple(static), tuple(trends), scan
+    return Article(*numbers, *costs, len(items), reused, store.fault, command)

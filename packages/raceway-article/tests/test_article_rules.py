@@ -165,7 +165,7 @@ def test_an_unstable_motion_at_an_end_leaves_no_judgement_and_one_between_is_bri
     assert claims._course(between, SMALL, NONE) == "rises"
     assert claims._course(end, SMALL, NONE) is None
     assert claims._change_within(W, end, NONE, 0.75, 1.0) is None
-    assert claims._spread(W, np.stack([values, end]), np.stack([NONE, NONE]), 0.75, 1.0) is None
+    assert claims.load_effect(W, np.stack([values, end]), np.stack([NONE, NONE]), 0.75, 1.0) is None
 
 
 def test_nothing_is_judged_over_a_failed_run():
@@ -174,7 +174,8 @@ def test_nothing_is_judged_over_a_failed_run():
     surface, lost = np.stack([values, 2.0 * values]), np.stack([NONE, failed])
     assert claims._course(values, SMALL, failed) is None
     assert (
-        claims._change_within(W, values, failed, 0.0, 0.25) is None and claims._spread(W, surface, lost, 0.0, 0.25) is None
+        claims._change_within(W, values, failed, 0.0, 0.25) is None
+        and claims.load_effect(W, surface, lost, 0.0, 0.25) is None
     )
     assert claims._influence_grows(surface, lost) is None
     assert claims._rises_with_load(np.stack([surface[0], surface[1], 3.0 * values]), np.full((3, 9), 1e-9),

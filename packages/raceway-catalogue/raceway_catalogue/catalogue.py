@@ -26,7 +26,7 @@ _MM = 1e3
 _POINTS = 60
 
 
-def _section(name: str, bearing: Bearing) -> Figure:
+def section_drawing(name: str, bearing: Bearing) -> Figure:
     """The figure: left the whole bearing, right one ball."""
     try:
         rings = [ring_outline(bearing, inner) for inner in (True, False)]
@@ -245,7 +245,7 @@ def _entry(preset: Preset, picture: Path | None) -> _Listing:
         "printed": preset.printed,
         "geometry": geometry,
         "ball_pass": {"contact_angle_deg": b.contact_angle_deg, **passes},
-        "files": [] if picture is None else [str(save_figure(_section(preset.name, b), picture, 150))],
+        "files": [] if picture is None else [str(save_figure(section_drawing(preset.name, b), picture, 150))],
     }
     parts += [Words(f"{', '.join(names)}: {source}", "dim") for source, names in sources.items()]
     return _Listing(preset.title, content, [*parts, *file_lines(content["files"])])

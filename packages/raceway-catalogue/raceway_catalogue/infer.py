@@ -73,15 +73,15 @@ def infer(
     142.8
     """
     size = Printed(
-        bore=_number("bore", "m", bore),
-        outer_diameter=_number("outer diameter", "m", outer_diameter),
-        width=None if width is None else _number("width", "m", width),
+        bore=_value("bore", "m", bore),
+        outer_diameter=_value("outer diameter", "m", outer_diameter),
+        width=None if width is None else _value("width", "m", width),
         ratings=tuple(
-            Rating(angle, _number("dynamic rating", "N", c), _number("static rating", "N", c0), *map(float, factor))
+            Rating(angle, _value("dynamic rating", "N", c), _value("static rating", "N", c0), *map(float, factor))
             for angle, (c, c0, *factor) in ratings.items()
         ),
         pairs=tuple(
-            PairStiffness(float(angle), _number("preload", "N", load), *(_number("stiffness", "N/m", k) for k in stiff))
+            PairStiffness(float(angle), _value("preload", "N", load), *(_value("stiffness", "N/m", k) for k in stiff))
             for angle, load, *stiff in pairs
         ),
         names=(name,) if name else (),
@@ -89,7 +89,7 @@ def infer(
     return infer_printed(size, maker, conformity)
 
 
-def _number(name: str, unit: str, value: Quantity) -> float:
+def _value(name: str, unit: str, value: Quantity) -> float:
     """A number in the unit, from text with any of its dimension.
 
     SceneError: no number, or another dimension.
@@ -138,12 +138,12 @@ class _InferredTable(Answer):
             for word in QUANTITIES
         }
         stiff = errors["pair stiffness"]
-        printed = [(a.printed.internals, a.numbers) for a in self.inferred if a.printed.internals is not None]
+        pairs = [(a.printed.internals, a.numbers) for a in self.inferred if a.printed.internals is not None]
 
         def share(key: str, within: float) -> float | None:
-            known = [(getattr(balls, key), numbers[key].value) for balls, numbers in printed]
-            met = [abs(value / right - 1.0) <= within for right, value in known if right is not None]
-            return sum(met) / self.internals if met else None
+            values = [(getattr(balls, key), numbers[key].value) for balls, numbers in pairs]
+            hits = [abs(value / right - 1.0) <= within for right, value in values if right is not None]
+            return sum(hits) / self.internals if hits else None
 
         return {
             "sizes": self.sizes,
@@ -163,7 +163,7 @@ class _InferredTable(Answer):
     def to_dict(self) -> Tables:
         """A row a size, and the summary."""
         rows = [
-            _row(answer) if isinstance(answer, Inferred) else {"name": answer[0], "refused": answer[1]}
+            _fields(answer) if isinstance(answer, Inferred) else {"name": answer[0], "refused": answer[1]}
             for answer in self.answers
         ]
         return {"table": self.table, "maker": self.maker, "rows": rows, "summary": self.summary}
@@ -192,20 +192,20 @@ class _InferredTable(Answer):
         return f"Inferred from {self.table}", [(sentence, "", "") for sentence in self._sentences()]
 
     def report(self) -> list[Part]:
-        refused = [Words(f"refused: {answer[1]}", "yellow") for answer in self.answers if not isinstance(answer, Inferred)]
-        return [rows_table(list(map(_line, self.inferred)), f"Inferred from {self.table}"), *refused, *self._sentences()]
+        lines = [Words(f"refused: {answer[1]}", "yellow") for answer in self.answers if not isinstance(answer, Inferred)]
+        return [rows_table(list(map(_size_line, self.inferred)), f"Inferred from {self.table}"), *lines, *self._sentences()]
 
 
-def _row(answer: Inferred) -> Tables:
+def _fields(answer: Inferred) -> Tables:
     worst = {word.replace(" ", "_") + "_error": answer.worst(word) for word in QUANTITIES}
     numbers = {key: number.value for key, number in answer.numbers.items()}
     scatter = {f"{key}_scatter": number.scatter for key, number in answer.numbers.items()}
     internals = answer.printed.internals
-    printed = {} if internals is None else {f"printed_{key}": value for key, value in attrs.asdict(internals).items()}
-    return {"name": answer.printed.title, "practice": answer.practice, **numbers, **worst, **scatter, **printed}
+    print_values = {} if internals is None else {f"printed_{key}": value for key, value in attrs.asdict(internals).items()}
+    return {"name": answer.printed.title, "practice": answer.practice, **numbers, **worst, **scatter, **print_values}
 
 
-def _line(answer: Inferred) -> dict[str, str]:
+def _size_line(answer: Inferred) -> dict[str, str]:
     name, internals = answer.printed.title, answer.printed.internals
     line = {
         "name": name if len(name) < 20 else name.partition(",")[0] + " ...",
@@ -247,10 +247,10 @@ def _infer_table(table: str, maker: str | None = None, conformity: float | None 
     maker, conformity : as in ``infer_printed``; a table of the package names its maker
     SceneError: a table that cannot be read, or of which no size can be inferred.
     """
-    packaged = table.lower() in _TABLES and not Path(table).exists()
-    read = Table(printed_by(table.lower()), ()) if packaged else read_table(Path(table))
+    of_package = table.lower() in _TABLES and not Path(table).exists()
+    read = Table(printed_by(table.lower()), ()) if of_package else read_table(Path(table))
     sizes = lines_by_size(read.lines)
-    maker = maker or (_TABLES[table.lower()] if packaged else None)
+    maker = maker or (_TABLES[table.lower()] if of_package else None)
     answers: list[Inferred | tuple[str, str]] = [(fault.path, str(fault)) for fault in read.faults]
     faults: list[SceneError] = []
     for size in sizes:
@@ -304,16 +304,16 @@ def infer_texts(
     assert bore is not None and outer_diameter is not None
     by_angle: dict[float, tuple[Quantity, Quantity]] = {}
     for text in ratings:
-        angle, (dynamic, static) = _parts("ratings", text, "15:47 kN:43 kN")
+        angle, (dynamic, static) = _split("ratings", text, "15:47 kN:43 kN")
         if angle in by_angle:
             raise SceneError.at("ratings", text, f"{angle:g} deg is given twice")
         by_angle[angle] = dynamic, static
-    parts = [_parts("pairs", text, "15:145 N:51 N/µm", radial=1) for text in pairs]
+    parts = [_split("pairs", text, "15:145 N:51 N/µm", radial=1) for text in pairs]
     stiff: list[Sequence[Quantity]] = [(angle, *numbers) for angle, numbers in parts]
     return infer(bore, outer_diameter, by_angle, width=width, pairs=stiff, maker=maker, conformity=conformity)
 
 
-def _parts(name: str, text: str, example: str, radial: int = 0) -> tuple[float, list[str]]:
+def _split(name: str, text: str, example: str, radial: int = 0) -> tuple[float, list[str]]:
     """Angle [deg], and two numbers, or up to ``radial`` more."""
     angle, *numbers = text.split(":")
     try:

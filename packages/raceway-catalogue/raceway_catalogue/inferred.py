@@ -130,9 +130,9 @@ class Inferred(Answer):
             value = number(1e3 * inferred.value, "mm") if key.endswith("diameter") else f"{inferred.value:.5g}"
             scatter = "" if key == "ball_count" else f"+- {100.0 * inferred.scatter:.2g} %; "
             facts.append((key.replace("_", " "), value, scatter + inferred.reason))
-        for angle, found in self.contact_angles.items():
-            why = f"+- {100.0 * found.scatter:.2g} %; {found.reason}"
-            facts.append((f"contact angle {angle:g} deg", f"{found.value:.4g} deg", why))
+        for angle, angle_number in self.contact_angles.items():
+            why = f"+- {100.0 * angle_number.scatter:.2g} %; {angle_number.reason}"
+            facts.append((f"contact angle {angle:g} deg", f"{angle_number.value:.4g} deg", why))
         return facts
 
     def _facts(self) -> tuple[str, list[Fact]]:
@@ -197,7 +197,7 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
     _refuse_contradiction(size)
     candidates = _candidates(size, maker)
     if not candidates or not candidates[0].explains:
-        raise SceneError.at(size.title, None, _unexplained(candidates))
+        raise SceneError.at(size.title, None, _mismatch(candidates))
     best = candidates[0]
     odds = np.exp([min(x.weight - best.weight, 0.0) for x in candidates])
     odds /= odds.sum()
@@ -209,8 +209,8 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
         if x.ball_count != best.ball_count
     )
     angles = {} if conformity is not None else _contact_angles(size, best)
-    made = {angle: found.value for angle, found in angles.items()}
-    pairs = [attrs.evolve(x, contact_angle_deg=made.get(x.contact_angle_deg, x.contact_angle_deg)) for x in size.pairs]
+    angles_deg = {angle: number.value for angle, number in angles.items()}
+    pairs = [attrs.evolve(x, contact_angle_deg=angles_deg.get(x.contact_angle_deg, x.contact_angle_deg)) for x in size.pairs]
     inner, outer = _grooves(attrs.evolve(size, pairs=tuple(pairs)), best, conformity)
     how = {
         "tables": "meets C and C0 by the tables of ISO 281 and ISO 76",
@@ -219,10 +219,10 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
     doubt = "" if best.alike is None or best.alike >= _ALIKE else "; hardly any is like this one, so it is doubtful"
     checks = []
     for rating, c, c0 in zip(size.ratings, best.dynamic_errors, best.static_errors, strict=True):
-        for word, rated, off in (("dynamic", rating.dynamic, c), ("static", rating.static, c0)):
-            checks.append(_Check(rating.contact_angle_deg, f"{word} rating", rated, rated * (1.0 + off)))
-    for printed, pair in zip(size.pairs, pairs, strict=True):
-        angle = printed.contact_angle_deg
+        for word, force, off in (("dynamic", rating.dynamic, c), ("static", rating.static, c0)):
+            checks.append(_Check(rating.contact_angle_deg, f"{word} rating", force, force * (1.0 + off)))
+    for entry, pair in zip(size.pairs, pairs, strict=True):
+        angle = entry.contact_angle_deg
         axial, radial = both_stiffnesses(size, best, pair.preload, pair.contact_angle_deg, inner.value, outer.value)
         checks.append(_Check(angle, "pair stiffness", pair.stiffness, float(axial)))
         checks += [] if pair.radial is None else [_Check(angle, "radial stiffness", pair.radial, float(radial))]
@@ -297,7 +297,7 @@ def _refuse_contradiction(size: Printed) -> None:
                 raise SceneError.at(f"{size.title}: {word} rating at {rating.contact_angle_deg:g} deg", value, rule)
 
 
-def _unexplained(candidates: list[Candidate]) -> str:
+def _mismatch(candidates: list[Candidate]) -> str:
     say = "no whole number of balls of a usual size explains these ratings"
     tables = [x for x in candidates if x.practice == "tables"]
     if not tables:
@@ -321,36 +321,35 @@ def _grooves(size: Printed, best: Candidate, conformity: float | None) -> tuple[
         why = "gives C0 as Hertz contact at 4200 MPa"
         outer = why if best.conformity_outer == best.conformity_inner else "usual beside a wide inner groove"
         return _Number(best.conformity_inner, _CONFORMITY, why), _Number(best.conformity_outer, _CONFORMITY, outer)
-    fitted = _fitted_conformity(size, best)
-    if fitted is None:
+    # Median of the conformities that give each printed stiffness, and its relative scatter
+    if not size.pairs:
+        fit = None
+    else:
+        curves = stiffnesses(size, best.ball_count, best.ball_diameter, _TRIED, _TRIED)
+        stiffnesses_printed = np.array([pair.stiffness for pair in size.pairs])
+        # Stiffness falls as grooves widen.
+        each = [
+            float(np.interp(k, curve[::-1], _TRIED[::-1])) for k, curve in zip(stiffnesses_printed, curves.T, strict=True)
+        ]
+        middle = float(np.median(each))
+        if not _TRIED[0] < middle < _TRIED[-1]:
+            usual = stiffnesses(size, best.ball_count, best.ball_diameter, CONFORMITY, CONFORMITY)
+            rule = (
+                f"contradicts the ratings: these balls have {1e-6 * usual[0]:.3g} N/µm under {size.pairs[0].preload:g} N in grooves of "
+                f"{CONFORMITY:g} D, and no groove that is ground gives this. Is it the axial stiffness of a pair?"
+            )
+            raise SceneError.at(f"{size.title}: stiffness of a pair", f"{1e-6 * stiffnesses_printed[0]:.3g} N/µm", rule)
+        falls = np.abs(np.gradient(np.log(curves), np.log(_TRIED), axis=0))
+        by_one = _STIFFNESS / float(np.median([np.interp(middle, _TRIED, slope) for slope in falls.T]))
+        fit = round(middle, 4), max(float(np.median(np.abs(np.array(each) - middle))) / middle, by_one)
+    if fit is None:
         both = _Number(CONFORMITY, _CONFORMITY, "meets printed stiffnesses of the series 70, and is taken for all")
     else:
         several = (
             f"{len(size.pairs)} printed stiffnesses of pairs" if len(size.pairs) > 1 else "the printed stiffness of a pair"
         )
-        both = _Number(fitted[0], fitted[1], f"meets {several}")
+        both = _Number(fit[0], fit[1], f"meets {several}")
     return both, both
-
-
-def _fitted_conformity(size: Printed, best: Candidate) -> tuple[float, float] | None:
-    """Median of the conformities that give each printed stiffness, and its relative scatter: theirs, or what one stiffness leaves."""
-    if not size.pairs:
-        return None
-    curves = stiffnesses(size, best.ball_count, best.ball_diameter, _TRIED, _TRIED)
-    printed = np.array([pair.stiffness for pair in size.pairs])
-    # Stiffness falls as grooves widen.
-    each = [float(np.interp(k, curve[::-1], _TRIED[::-1])) for k, curve in zip(printed, curves.T, strict=True)]
-    middle = float(np.median(each))
-    if not _TRIED[0] < middle < _TRIED[-1]:
-        usual = stiffnesses(size, best.ball_count, best.ball_diameter, CONFORMITY, CONFORMITY)
-        rule = (
-            f"contradicts the ratings: these balls have {1e-6 * usual[0]:.3g} N/µm under {size.pairs[0].preload:g} N in grooves of "
-            f"{CONFORMITY:g} D, and no groove that is ground gives this. Is it the axial stiffness of a pair?"
-        )
-        raise SceneError.at(f"{size.title}: stiffness of a pair", f"{1e-6 * printed[0]:.3g} N/µm", rule)
-    falls = np.abs(np.gradient(np.log(curves), np.log(_TRIED), axis=0))
-    by_one = _STIFFNESS / float(np.median([np.interp(middle, _TRIED, slope) for slope in falls.T]))
-    return round(middle, 4), max(float(np.median(np.abs(np.array(each) - middle))) / middle, by_one)
 
 
 def _contact_angles(size: Printed, best: Candidate) -> dict[float, _Number]:
@@ -358,25 +357,25 @@ def _contact_angles(size: Printed, best: Candidate) -> dict[float, _Number]:
 
     SceneError: stiffnesses that no angle gives together.
     """
-    found: dict[float, list[tuple[float, float]]] = {}
+    by_nominal: dict[float, list[tuple[float, float]]] = {}
     for pair in size.pairs:
-        tried = pair.contact_angle_deg + _TURNS
-        axial, radial = both_stiffnesses(size, best, pair.preload, tried[:, None], _TRIED, _TRIED)
+        trial_angles = pair.contact_angle_deg + _TURNS
+        axial, radial = both_stiffnesses(size, best, pair.preload, trial_angles[:, None], _TRIED, _TRIED)
         grooves = [np.interp(pair.stiffness, k[::-1], _TRIED[::-1], left=np.nan, right=np.nan) for k in axial]
         beside = np.array([np.interp(f, _TRIED, k) for f, k in zip(grooves, radial, strict=True)])
-        tried, beside = tried[np.isfinite(beside)], beside[np.isfinite(beside)]
+        trial_angles, beside = trial_angles[np.isfinite(beside)], beside[np.isfinite(beside)]
         if pair.radial is None or len(beside) < 2:
             continue  # no groove gives the axial one, which is refused with the conformity
         if not beside[-1] <= pair.radial <= beside[0]:
             rule = (
                 f"contradicts the axial one, {1e-6 * pair.stiffness:.3g} N/µm under {pair.preload:g} N: grooves that give this at "
-                f"{tried[0]:.3g} to {tried[-1]:.3g} deg have {1e-6 * beside[-1]:.3g} to {1e-6 * beside[0]:.3g} N/µm. Is it the radial "
+                f"{trial_angles[0]:.3g} to {trial_angles[-1]:.3g} deg have {1e-6 * beside[-1]:.3g} to {1e-6 * beside[0]:.3g} N/µm. Is it the radial "
                 "stiffness of the pair, tilt locked?"
             )
             raise SceneError.at(f"{size.title}: radial stiffness of a pair", f"{1e-6 * pair.radial:.3g} N/µm", rule)
-        angle = np.interp(pair.radial, beside[::-1], tried[::-1])
-        slope = np.interp(angle, tried, np.abs(np.gradient(np.log(beside), np.log(tried))))
-        found.setdefault(pair.contact_angle_deg, []).append((angle, _STIFFNESS / slope))
-    means = {nominal: np.mean(each, axis=0) for nominal, each in found.items()}
+        angle = np.interp(pair.radial, beside[::-1], trial_angles[::-1])
+        slope = np.interp(angle, trial_angles, np.abs(np.gradient(np.log(beside), np.log(trial_angles))))
+        by_nominal.setdefault(pair.contact_angle_deg, []).append((angle, _STIFFNESS / slope))
+    means = {nominal: np.mean(each, axis=0) for nominal, each in by_nominal.items()}
     why = "gives axial and radial stiffness of a pair"
     return {nominal: _Number(round(float(mean), 3), float(scatter), why) for nominal, (mean, scatter) in means.items()}

@@ -191,7 +191,7 @@ def table_in_text(text: str, name: str) -> Table:
     designations = []
     for (number, _), cells in zip(lines[1:], rows[1:], strict=True):
         try:
-            designations.append(_line(dict(zip(head, cells, strict=True)), pairs))
+            designations.append(_printed_line(dict(zip(head, cells, strict=True)), pairs))
         except SceneError as error:
             faults += [Mistake(f"{name}, line {number}: {m.path}", m.value, m.message) for m in error.mistakes]
         except ValueError as why:
@@ -201,7 +201,7 @@ def table_in_text(text: str, name: str) -> Table:
     return Table(tuple(designations), tuple(faults))
 
 
-def _line(cells: dict[str, str], pairs: list[dict[str, str]]) -> Printed:
+def _printed_line(cells: dict[str, str], pairs: list[dict[str, str]]) -> Printed:
     def number(key: str) -> float:
         return float(cells[key]) * {**_NEEDED, **_OPTIONAL}.get(key, 1.0)
 

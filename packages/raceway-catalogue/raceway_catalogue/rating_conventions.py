@@ -160,9 +160,9 @@ def by_tables(size: Printed, metric: bool = False) -> list[Candidate]:
     for d, counts in _trials(size, metric):
         row = BallRow(counts[:, None], d, size.mean_diameter, size.angles)
         dynamic, static = row.dynamic_rating() / size.dynamic - 1.0, row.static_rating() / size.static - 1.0
-        met = np.maximum(np.abs(dynamic), np.abs(static)).max(axis=1) <= _NONE
-        stiffness = _misfits(size, counts[met], d, CONFORMITY, CONFORMITY)
-        for z, c, c0, stiff in zip(counts[met], dynamic[met], static[met], stiffness, strict=True):
+        agreement = np.maximum(np.abs(dynamic), np.abs(static)).max(axis=1) <= _NONE
+        stiffness = _misfits(size, counts[agreement], d, CONFORMITY, CONFORMITY)
+        for z, c, c0, stiff in zip(counts[agreement], dynamic[agreement], static[agreement], stiffness, strict=True):
             off = np.array([*(np.abs(x).max() for x in (c, c0)), stiff.mean() if stiff.size else 0.0]) / _BY_TABLES
             shape = (np.array(_shape(size, int(z), d)[:2]) - _TABLES_SHAPE) / _TABLES_SCATTER
             weight = -0.5 * (off @ off + shape @ shape) - np.log([*_BY_TABLES, *_TABLES_SCATTER]).sum()
@@ -170,7 +170,7 @@ def by_tables(size: Printed, metric: bool = False) -> list[Candidate]:
     return candidates
 
 
-def _fitted(size: Printed, d: float, counts: np.ndarray, wide: bool) -> tuple[np.ndarray, np.ndarray]:
+def _grooves(size: Printed, d: float, counts: np.ndarray, wide: bool) -> tuple[np.ndarray, np.ndarray]:
     """Inner conformity (n,) by C0 of the first angle, NaN where no groove gives it, and log-error of C with it, of counts (n,)."""
     angle, pitch, f = size.angles[0], size.mean_diameter, _CONFORMITIES
     rating = BallRow(1.0, d, pitch, angle, f, np.full_like(f, _USUAL_OUTER) if wide else f).static_rating_of_grooves()
@@ -191,7 +191,7 @@ def _printed_bearings() -> np.ndarray:
             continue
         z, d = size.internals.ball_count, size.internals.ball_diameter
         # Narrow grooves give C and C0 by one conformity; a wide inner groove is seen by C0, which it alone limits.
-        (narrow, narrow_error), (inner, wide_error) = (_fitted(size, d, np.array([z]), each) for each in (False, True))
+        (narrow, narrow_error), (inner, wide_error) = (_grooves(size, d, np.array([z]), each) for each in (False, True))
         wide = bool(np.isfinite(inner[0])) and abs(wide_error[0]) < abs(narrow_error[0])
         f, dynamic = (float(inner[0]), wide_error[0]) if wide else (float(narrow[0]), narrow_error[0])
         stiff = np.log1p(_misfits(size, z, d, f, _USUAL_OUTER if wide else f)).mean()
@@ -229,10 +229,10 @@ def by_grooves(size: Printed, without: str = "") -> list[Candidate]:
             alike = bearings["wide"] == wide
             angles = _bell((bearings["angle"] - size.ratings[0].contact_angle_deg) / 6.0) if wide else 1.0
             width = _GROOVE * (4.0 if wide else 1.0)
-            inner, dynamic = _fitted(size, d, counts, wide)
-            met = np.isfinite(inner) & (np.abs(dynamic) <= _NONE)
-            stiffness = _misfits(size, counts[met], d, inner[met], _USUAL_OUTER if wide else inner[met])
-            for z, f, c, stiff in zip(counts[met], inner[met], dynamic[met], stiffness, strict=True):
+            inner, dynamic = _grooves(size, d, counts, wide)
+            agreement = np.isfinite(inner) & (np.abs(dynamic) <= _NONE)
+            stiffness = _misfits(size, counts[agreement], d, inner[agreement], _USUAL_OUTER if wide else inner[agreement])
+            for z, f, c, stiff in zip(counts[agreement], inner[agreement], dynamic[agreement], stiffness, strict=True):
                 outer = _USUAL_OUTER if wide else float(f)
                 offs = [(f - bearings["conformity"]) / width, (c - bearings["dynamic"]) / _BY_GROOVES[0]]
                 offs += [(np.log1p(stiff).mean() - bearings["stiffness"]) / _BY_GROOVES[1]] if size.pairs else []

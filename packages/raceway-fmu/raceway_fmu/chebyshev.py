@@ -44,11 +44,6 @@ class Interval:
             return np.asarray(self.low * (self.high / self.low) ** share).clip(self.low, self.high)
         return np.asarray(self.low + share * (self.high - self.low)).clip(self.low, self.high)
 
-    def polynomials(self, values: np.ndarray, count: int) -> np.ndarray:
-        """T_0 ... at inputs (n,), as (n, count)."""
-        first, last, now = (np.log(x) if self.logarithmic else np.asarray(x) for x in (self.low, self.high, values))
-        return np.asarray(chebyshev.chebvander((2.0 * now - first - last) / (last - first), count - 1))
-
 
 @attrs.frozen(eq=False)
 class Series:
@@ -82,7 +77,9 @@ class Series:
         """(m, n) at inputs within the box."""
         values = np.broadcast_to(self.terms[..., np.newaxis], (*self.terms.shape, len(columns[0])))
         for axis, column, count in reversed(list(zip(self.axes, columns, self.terms.shape[1:], strict=True))):
-            values = np.einsum("...kn,nk->...n", values, axis.polynomials(column, count))
+            first, last, now = (np.log(x) if axis.logarithmic else np.asarray(x) for x in (axis.low, axis.high, column))
+            polynomials = chebyshev.chebvander((2.0 * now - first - last) / (last - first), count - 1)
+            values = np.einsum("...kn,nk->...n", values, polynomials)
         return np.asarray(values)
 
 
@@ -94,21 +91,21 @@ def fit(function: Quantities, axes: Sequence[Interval], tolerance: float, most: 
     axes : ``logarithmic`` of one says nothing yet
     tolerance : of the error, relative;  most : points of one fit
     """
-    counts, stalled = [_FIRST] * len(axes), np.zeros(len(axes), dtype=bool)
-    best = _interpolated(function, axes, counts)
+    counts, without_progress = [_FIRST] * len(axes), np.zeros(len(axes), dtype=bool)
+    best = _interpolant(function, axes, counts)
     for k, axis in enumerate(axes):
         if axis.low > 0.0:
-            changed = [*best.axes[:k], attrs.evolve(axis, logarithmic=True), *best.axes[k + 1 :]]
-            trial = _interpolated(function, changed, counts)
+            with_logarithm = [*best.axes[:k], attrs.evolve(axis, logarithmic=True), *best.axes[k + 1 :]]
+            trial = _interpolant(function, with_logarithm, counts)
             best = trial if trial.tails[k] < best.tails[k] else best
     while True:
-        missing = np.where(stalled | (best.tails < _ENOUGH * tolerance), 0.0, best.tails)
+        missing = np.where(without_progress | (best.tails < _ENOUGH * tolerance), 0.0, best.tails)
         k = int(np.argmax(missing))
         more = [math.ceil(_GROWTH * n) if j == k else n for j, n in enumerate(counts)]
         if not missing[k] or math.prod(more) > most:
             break
-        trial = _interpolated(function, best.axes, more)
-        stalled[k] = trial.tails[k] > 0.5 * best.tails[k]
+        trial = _interpolant(function, best.axes, more)
+        without_progress[k] = trial.tails[k] > 0.5 * best.tails[k]
         if trial.tails[k] < best.tails[k]:
             counts, best = more, trial
     from scipy.stats import qmc
@@ -122,14 +119,14 @@ def fit(function: Quantities, axes: Sequence[Interval], tolerance: float, most: 
         terms = best.terms.take(range(max(2, int(np.sum(left > _DROPPED * tolerance)))), axis=k + 1)
         best = attrs.evolve(best, terms=terms)
     difference = np.abs(best(columns) - values)
-    signed = np.abs(np.sign(values).sum(axis=1, keepdims=True)) == values.shape[1]
-    relative = np.max(difference / np.where(signed, np.abs(values), 1e-200), axis=1)
+    one_sign = np.abs(np.sign(values).sum(axis=1, keepdims=True)) == values.shape[1]
+    relative = np.max(difference / np.where(one_sign, np.abs(values), 1e-200), axis=1)
     return attrs.evolve(
         best, error=np.max(difference / size, axis=1), relative=relative, difference=np.max(difference, axis=1)
     )
 
 
-def _interpolated(function: Quantities, axes: Sequence[Interval], counts: Sequence[int]) -> Series:
+def _interpolant(function: Quantities, axes: Sequence[Interval], counts: Sequence[int]) -> Series:
     places = [np.cos(np.pi * (np.arange(n) + 0.5) / n) for n in counts]
     values, size = function(_grid(axes, places))
     terms = values.reshape(-1, *counts)

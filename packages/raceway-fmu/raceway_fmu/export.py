@@ -142,11 +142,11 @@ def export_fmu(
     read = as_scene(scene, plugins=plugins)
     title = "".join(filter(str.isprintable, read.title.partition("\n")[0]))
     name = re.sub(r"\W|^(?=\d)", "_", slug(title), flags=re.ASCII) + f"_{member('kind', kind, ('map', 'force'))}"
-    limits, asked = box(ranges), list(outputs)
+    limits, wanted_outputs = box(ranges), list(outputs)
     if kind == "map":
-        names = asked or (["K", "C"] if read.excitation is not None else ["stiffness"])
+        names = wanted_outputs or (["K", "C"] if read.excitation is not None else ["stiffness"])
         unit = map_unit(read, name, limits or default_ranges(read), names, tolerance)
-    elif asked or not limits.keys() <= {SPIN} or limits.get(SPIN, (0.0, 0.0))[0]:
+    elif wanted_outputs or not limits.keys() <= {SPIN} or limits.get(SPIN, (0.0, 0.0))[0]:
         raise SceneError.at("kind", kind, f"has inputs and outputs of its own: no --output, and --range {SPIN}=0:X only")
     else:
         unit = force_unit(read, name, limits[SPIN][1] if limits else None)

@@ -31,22 +31,6 @@ def force_unit(scene: Scene, name: str, highest_rpm: float | None = None) -> Uni
     (inner, outer), rpm = force.limits, force.highest * 30.0 / np.pi
     ranges = f"speed 0 to {rpm:g} r/min, ball loads to {inner:.4g} N inside and {outer:.4g} N outside"
     errors = {"force": max(force.error, _OF_FORCE), STIFFNESS.name: max(force.error, _OF_STIFFNESS)}
-    return Unit(
-        name,
-        f"force of the bearing on its shaft, rigid rings and balls; {ranges}; relative error {errors['force']:.1e}.",
-        "force.c",
-        force.numbers,
-        f"beyond what the model is made for ({ranges}): computed all the same",
-        (*_INPUTS[:5], attrs.evolve(_INPUTS[5], start=force.speed, low=0.0, high=force.highest), _INPUTS[6]),
-        _outputs(force.balls),
-        tuple(
-            Variable(f"relative_error.{kind}", "1", "of the largest, against Raceway's kernels", e)
-            for kind, e in errors.items()
-        ),
-    )
-
-
-def _outputs(balls: int) -> tuple[Variable, ...]:
     forces = [Variable(f"force_{name}", "N", "of the bearing on the shaft") for name in "xyz"]
     moments = [Variable(f"moment_{name}", "N m", "of the bearing on the shaft") for name in "yz"]
     further = [
@@ -56,7 +40,7 @@ def _outputs(balls: int) -> tuple[Variable, ...]:
     loads = [
         Variable(f"ball_load_{race}[{k + 1}]", "N", f"of each ball on the {race} race")
         for race in ("inner", "outer")
-        for k in range(balls)
+        for k in range(force.balls)
     ]
     entries = [
         Variable(
@@ -67,4 +51,16 @@ def _outputs(balls: int) -> tuple[Variable, ...]:
         for a in DIMENSIONS["dof"]
         for b in DIMENSIONS["dof"]
     ]
-    return (*forces, *moments, *further, *loads, *entries)
+    return Unit(
+        name,
+        f"force of the bearing on its shaft, rigid rings and balls; {ranges}; relative error {errors['force']:.1e}.",
+        "force.c",
+        force.numbers,
+        f"beyond what the model is made for ({ranges}): computed all the same",
+        (*_INPUTS[:5], attrs.evolve(_INPUTS[5], start=force.speed, low=0.0, high=force.highest), _INPUTS[6]),
+        (*forces, *moments, *further, *loads, *entries),
+        tuple(
+            Variable(f"relative_error.{kind}", "1", "of the largest, against Raceway's kernels", e)
+            for kind, e in errors.items()
+        ),
+    )

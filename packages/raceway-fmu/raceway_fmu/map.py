@@ -51,13 +51,13 @@ def default_ranges(scene: Scene) -> dict[str, tuple[float, float]]:
 
 
 def map_unit(
-    scene: Scene, name: str, ranges: Mapping[str, tuple[float, float]], asked: Sequence[str], tolerance: float
+    scene: Scene, name: str, ranges: Mapping[str, tuple[float, float]], outputs_wanted: Sequence[str], tolerance: float
 ) -> Unit:
     """The FMU of a scene's map.
 
     Parameters
     ----------
-    ranges : key -> low, high;  asked : outputs of ``raceway.function``, numbers or "stiffness", by names or symbols
+    ranges : key -> low, high;  outputs_wanted : outputs of ``raceway.function``, numbers or "stiffness", by names or symbols
     tolerance : relative error that terms are added for
 
     Raises
@@ -67,18 +67,18 @@ def map_unit(
     RacewayError
         A point within the ranges that has no answer, or runs for longer than two minutes.
     """
-    names = function(scene, ranges, asked).outputs
+    names = function(scene, ranges, outputs_wanted).outputs
     f = function(scene, ranges, dict.fromkeys([*names, *([K.name] if C.name in names else [])]))
     if f.why_slow:
         f.refuse_time(_LEAST_POINTS, "a map needs at least these. `raceway sweep` computes a table of fewer")
     corners = [column.ravel() for column in np.meshgrid(*(np.linspace(*ends, 3) for ends in ranges.values()))]
-    scales = _columns(f, names, corners).items()
+    scales = _samples(f, names, corners).items()
     outputs = [
         _variable(name) for name, (value, scale) in scales if name in names or np.any(np.abs(value) > _ROUNDING * scale)
     ]
 
     def quantities(columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        found = _columns(f, names, columns)
+        found = _samples(f, names, columns)
         values, sizes = (np.stack([found[output.name][k] for output in outputs]) for k in range(2))
         return values, np.maximum(np.abs(values), _SMALL * sizes)
 
@@ -89,12 +89,12 @@ def map_unit(
     relative, difference, excess = (_SAFETY * x for x in (series.relative, series.difference, series.error))
     bounds = list(zip(outputs, difference, relative, strict=True))
     largest, of = max(((r, v.name) for v, _, r in bounds if r < _RESOLVED), default=(0.0, ""))
-    stated = f"relative error at most {largest:.1e} ({of})" if of else "errors are those of each output"
+    error_words = f"relative error at most {largest:.1e} ({of})" if of else "errors are those of each output"
     if excess.max() > tolerance:
-        stated += f", above the tolerance {tolerance:g}. {_NARROW[:-1]}"
+        error_words += f", above the tolerance {tolerance:g}. {_NARROW[:-1]}"
     return Unit(
         name,
-        f"map over {words}; {stated}.",
+        f"map over {words}; {error_words}.",
         "map.c",
         {
             "TERMS": terms[0].size,
@@ -132,11 +132,9 @@ def _variable(name: str) -> Variable:
     return Variable(name, entry_unit(quantity.unit, entry), quantity.words) if quantity else Variable(name, "1", name)
 
 
-def _columns(f: Function, names: Iterable[str], columns: list[np.ndarray]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def _samples(f: Function, names: Iterable[str], columns: list[np.ndarray]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Values (n,) of numbers and of entries of the stiffness, by their names, and their scales (n,).
 
-    Notes
-    -----
     A scale is the largest value; of an entry of the stiffness the geometric mean of its diagonal entries; of C that of a loss factor.
     """
     inputs = dict(zip(f.inputs, columns, strict=True))
@@ -145,27 +143,27 @@ def _columns(f: Function, names: Iterable[str], columns: list[np.ndarray]) -> di
     def point(row: int) -> str:
         return ", ".join(f"{key} = {column[row]:g}" for key, column in inputs.items())
 
-    lost = np.flatnonzero(answer["status"] > PointStatus.RUN)
-    if lost.size:
-        raise RacewayError(f"the map has no answer at {point(lost[0])}: {answer['reason'][lost[0]]}. {_NARROW}")
+    failures = np.flatnonzero(answer["status"] > PointStatus.RUN)
+    if failures.size:
+        raise RacewayError(f"the map has no answer at {point(failures[0])}: {answer['reason'][failures[0]]}. {_NARROW}")
     irregular = np.flatnonzero(answer["status"] == PointStatus.RUN)
     if not f.why_slow and irregular.size > max(2.0, _IRREGULAR * len(answer["status"])):
         raise RacewayError(
             f"at {irregular.size} of {len(answer['status'])} points the compiled loop finds no regular solution, first at "
             f"{point(irregular[0])}: several motions exist there, over which no map is smooth. {_NARROW}"
         )
-    found = {}
+    columns_found = {}
     for name in names:
         value = answer[name]
         if name == STIFFNESS.name:
             diagonal = np.sqrt(np.abs(np.einsum("nii->in", value)))
             for i, j in product(range(5), repeat=2):
-                found[f"{name}.{_DOF[i]}.{_DOF[j]}"] = value[:, i, j], diagonal[i] * diagonal[j]
+                columns_found[f"{name}.{_DOF[i]}.{_DOF[j]}"] = value[:, i, j], diagonal[i] * diagonal[j]
         elif value.ndim > 1:
             raise SceneError.at("outputs", name, "is an array: a map has numbers, or stiffness")
         else:
-            found[name] = value, np.full_like(value, np.abs(value).max() or 1.0)
-    if C.name in found:
+            columns_found[name] = value, np.full_like(value, np.abs(value).max() or 1.0)
+    if C.name in columns_found:
         rpm = inputs.get(_SPEED, f.scene.excitation.speed_rpm if f.scene.excitation else 0.0)
-        found[C.name] = answer[C.name], _LOSS / _SMALL * np.abs(answer[K.name]) / (np.pi / 30.0 * np.asarray(rpm))
-    return found
+        columns_found[C.name] = answer[C.name], _LOSS / _SMALL * np.abs(answer[K.name]) / (np.pi / 30.0 * np.asarray(rpm))
+    return columns_found

@@ -118,10 +118,7 @@ def _system(model: Model) -> System:
 def _law(system: System, depth: float) -> tuple[Numbers, float, float]:
     """From forces at approaches up to ``depth`` [m]: a power law or a table in C, its largest force [N], its relative error.
 
-    Raises
-    ------
-    SceneError
-        A law whose table has too many terms.
+    SceneError: a law whose table has too many terms.
     """
     params, kinds = np.unique(system.law_params, axis=0, return_inverse=True)
 

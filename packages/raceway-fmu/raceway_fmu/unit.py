@@ -129,11 +129,11 @@ class Unit:
             library, why = _compiled(sources, f"fmi{version}.c")
         if library:
             content[f"binaries/{folder}/{self.name}{ending}"] = library
-        packed = io.BytesIO()
-        with zipfile.ZipFile(packed, "w") as archive:
+        buffer = io.BytesIO()
+        with zipfile.ZipFile(buffer, "w") as archive:
             for name in sorted(content):
                 archive.writestr(zipfile.ZipInfo(name, _DATE), content[name], zipfile.ZIP_DEFLATED)
-        return packed.getvalue(), why
+        return buffer.getvalue(), why
 
 
 def _in_c(name: str, number: np.ndarray) -> str:
@@ -192,11 +192,11 @@ def _description(unit: Unit, version: int) -> ET.Element:
         kind = _add(root, tag, modelIdentifier=unit.name, **dict.fromkeys((*can, *further), "true"))
         if second:
             _add(_add(kind, "SourceFiles"), "File", name="fmi2.c")
-    units, used = _add(root, "UnitDefinitions"), dict.fromkeys(variable.unit for variable, _ in unit.variables)
-    for name in filter(_UNITS.__contains__, used):
+    units, unit_names = _add(root, "UnitDefinitions"), dict.fromkeys(variable.unit for variable, _ in unit.variables)
+    for name in filter(_UNITS.__contains__, unit_names):
         _add(_add(units, "Unit", name=name), "BaseUnit", **_UNITS[name])
     _add(root, "DefaultExperiment", startTime="0.0", stopTime="1.0")
-    listed, flag = _add(root, "ModelVariables"), len(unit.variables)
+    variables, flag = _add(root, "ModelVariables"), len(unit.variables)
     for reference, (v, part) in enumerate(unit.variables):
         kinds = ("local", "constant") if part == "constant" else (part, "continuous")
         about = {
@@ -208,15 +208,15 @@ def _description(unit: Unit, version: int) -> ET.Element:
         }
         numbers = {"unit": v.unit if v.unit in _UNITS else None, "min": v.low, "max": v.high, "start": v.start}
         if second:
-            _add(_add(listed, "ScalarVariable", **about), "Real", **numbers)
+            _add(_add(variables, "ScalarVariable", **about), "Real", **numbers)
         else:
-            _add(listed, "Float64", **about, **numbers)
+            _add(variables, "Float64", **about, **numbers)
     about = {**_IN_RANGE, "valueReference": flag, "causality": "output", "variability": "discrete"}
     if second:
-        _add(_add(listed, "ScalarVariable", **about), "Boolean")
+        _add(_add(variables, "ScalarVariable", **about), "Boolean")
     else:
-        _add(listed, "Boolean", **about)
-        _add(listed, "Float64", name="time", valueReference=flag + 1, causality="independent", variability="continuous")
+        _add(variables, "Boolean", **about)
+        _add(variables, "Float64", name="time", valueReference=flag + 1, causality="independent", variability="continuous")
     structure, first = _add(root, "ModelStructure"), len(unit.inputs)
     for tag in ("Output", "InitialUnknown"):
         parent = _add(structure, f"{tag}s") if second else structure

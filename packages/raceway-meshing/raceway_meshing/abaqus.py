@@ -59,11 +59,11 @@ class Abaqus:
         members = {name.lower(): _members(blocks, first) for name, blocks in content.cell_sets.items()}
         surfaces = list(_surfaces(Path(path).read_text(encoding="utf-8")))
         facets = {name: _facets(path, name, lines, members) for name, lines in surfaces}
-        used = {line[0].lower() for _, lines in surfaces for line in lines}
-        unused = sorted(name for name, elements in members.items() if name not in used and len(elements) < len(cells))
-        if unused:
+        in_use = {line[0].lower() for _, lines in surfaces for line in lines}
+        others = sorted(name for name, elements in members.items() if name not in in_use and len(elements) < len(cells))
+        if others:
             warnings.warn(
-                f"'{path}': element sets {', '.join(unused)} are ignored: only sets of nodes (*NSET) and of faces (*SURFACE) are "
+                f"'{path}': element sets {', '.join(others)} are ignored: only sets of nodes (*NSET) and of faces (*SURFACE) are "
                 "read",
                 stacklevel=2,
             )

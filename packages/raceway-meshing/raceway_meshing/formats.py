@@ -128,14 +128,14 @@ def used_only(path: Path, points: np.ndarray, cells: np.ndarray, node_sets: Read
 
     points = np.asarray(points, dtype=float)
     if points.ndim == 2 and points.shape[1] == 3 and cells.min() >= 0 and cells.max() < len(points):
-        used = np.zeros(len(points), dtype=bool)
-        used[cells] = True
-        if not used.all():
-            number = np.cumsum(used) - 1
+        in_cells = np.zeros(len(points), dtype=bool)
+        in_cells[cells] = True
+        if not in_cells.all():
+            number = np.cumsum(in_cells) - 1
             node_sets = {
-                name: number[n[used[n]]] for name, nodes in node_sets.items() for n in [np.asarray(nodes, dtype=int)]
+                name: number[n[in_cells[n]]] for name, nodes in node_sets.items() for n in [np.asarray(nodes, dtype=int)]
             }
-            points, cells = points[used], number[cells]
+            points, cells = points[in_cells], number[cells]
     try:
         return HexMesh(points, cells, dict(node_sets), dict(facet_sets))
     except MeshError as why:

@@ -78,7 +78,7 @@ class Gmsh:
         self.predict(bearing)  # refuses what cannot work
 
         def body(name: str, path: str) -> HexMesh:
-            mesh = self._opened(path, self._meshed)
+            mesh = self._with_model(path, self._mesh_of)
             refuse_bad_cells(mesh, f"{name} ({Path(path).name})")
             return with_node_sets(mesh.renumbered())
 
@@ -106,14 +106,14 @@ class Gmsh:
             if path is None:
                 continue
             _refuse_file(path)
-            count = self._opened(path, self._cells)
+            count = self._with_model(path, self._cells)
             cells.update(dict.fromkeys(ball_names(bearing) if body == "ball" else [body], count))
             # Bodies are made one after the other: the largest sets what Gmsh holds beside the meshes.
             prediction = Prediction.of(cells, _BESIDE_BYTES + _BYTES_BESIDE * max(cells.values()))
             refuse_memory(prediction, "mesh.element_size", self.element_size, "take larger elements")
         return prediction
 
-    def _opened(self, path: str, work: Callable[[ModuleType, str, float], Found]) -> Found:
+    def _with_model(self, path: str, work: Callable[[ModuleType, str, float], Found]) -> Found:
         """What ``work(gmsh, path, scale)`` finds with the file open in Gmsh; all its failures are ``MeshError``."""
         _refuse_file(path)
         reader = _READERS[Path(path).suffix.lower()]
@@ -138,18 +138,31 @@ class Gmsh:
         finally:
             gmsh.finalize()
 
-    def _meshed(self, gmsh: ModuleType, path: str, scale: float) -> HexMesh:
+    def _mesh_of(self, gmsh: ModuleType, path: str, scale: float) -> HexMesh:
         from raceway.extend import HexMesh
         from raceway_meshing.formats import facets_of_quads
 
         self._set_sizes(gmsh, scale)
         gmsh.model.mesh.generate(3)
-        cells = self._hexahedra(gmsh, path)
+        # (m, 8) node tags of the hexahedra; ``MeshError`` where there is any other solid
+        types, elements, nodes = gmsh.model.mesh.getElements(3)
+        counts = {_SOLIDS.get(int(t), f"solids of type {t}"): len(e) for t, e in zip(types, elements, strict=True)}
+        foreign = {word: count for word, count in counts.items() if word != "hexahedra"}
+        if foreign or not counts:
+            solids = ", ".join(f"{count} {word}" for word, count in foreign.items()) or "no solid elements"
+            remedy = {
+                "transfinite": "use method = 'subdivision', or cut the solid into volumes with six four-sided faces",
+                "subdivision": "cut the solid into simpler volumes",
+            }[self.method]
+            raise MeshError(
+                f"'{path}' cannot be meshed with hexahedra by method = '{self.method}': {solids} came out; {remedy}"
+            )
+        cells = np.asarray(nodes[0].reshape(-1, 8).astype(np.int64))
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
         number = np.full(int(tags.max()) + 1, -1)
-        used = np.isin(tags, cells)
-        number[tags[used].astype(int)] = np.arange(used.sum())
-        points = scale * coordinates.reshape(-1, 3)[used]
+        in_cells = np.isin(tags, cells)
+        number[tags[in_cells].astype(int)] = np.arange(in_cells.sum())
+        points = scale * coordinates.reshape(-1, 3)[in_cells]
         quads = {}
         for name, surfaces in _surfaces(gmsh).items():
             parts = [gmsh.model.mesh.getElementsByType(3, surface)[1].reshape(-1, 4) for surface in surfaces]
@@ -183,22 +196,6 @@ class Gmsh:
         self._set_sizes(gmsh, scale)
         gmsh.model.mesh.generate(1)
         return float(sum(_cells_between_edges(gmsh, tag, volume / scale**3) for tag, volume in volumes.items()))
-
-    def _hexahedra(self, gmsh: ModuleType, path: str) -> np.ndarray:
-        """(m, 8) node tags of the hexahedra; ``MeshError`` where there is any other solid."""
-        types, elements, nodes = gmsh.model.mesh.getElements(3)
-        counts = {_SOLIDS.get(int(t), f"solids of type {t}"): len(e) for t, e in zip(types, elements, strict=True)}
-        foreign = {word: count for word, count in counts.items() if word != "hexahedra"}
-        if foreign or not counts:
-            solids = ", ".join(f"{count} {word}" for word, count in foreign.items()) or "no solid elements"
-            remedy = {
-                "transfinite": "use method = 'subdivision', or cut the solid into volumes with six four-sided faces",
-                "subdivision": "cut the solid into simpler volumes",
-            }[self.method]
-            raise MeshError(
-                f"'{path}' cannot be meshed with hexahedra by method = '{self.method}': {solids} came out; {remedy}"
-            )
-        return np.asarray(nodes[0].reshape(-1, 8).astype(np.int64))
 
 
 def _refuse_file(path: str) -> None:

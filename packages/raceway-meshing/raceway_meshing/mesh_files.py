@@ -97,8 +97,8 @@ class File:
         refuse_no_body(self)
         for body in self.sets or {}:
             if body not in BODIES or getattr(self, body) is None:
-                stated = [b for b in BODIES if getattr(self, b) is not None]
-                raise ValueError(f"`sets.{body}`: there is no such body{nearest(body, stated)}; given: {', '.join(stated)}")
+                bodies = [b for b in BODIES if getattr(self, b) is not None]
+                raise ValueError(f"`sets.{body}`: there is no such body{nearest(body, bodies)}; given: {', '.join(bodies)}")
 
     @classmethod
     def examples(cls) -> list[File]:
@@ -119,7 +119,17 @@ class File:
     def _body(self, body: str, path: str) -> HexMesh:
         from raceway.extend import refuse_bad_cells, refuse_doubled
 
-        mesh = _read(path)
+        # A file by the format that has its ending, of those that this process knows
+        from raceway.extend import HexMesh, default_registry
+
+        try:
+            form = default_registry().format_of(path)
+        except PluginError as why:
+            raise MeshError(str(why)) from None
+        with blamed(str(form), "read()"):
+            mesh = form.plugin().read(path)
+        if not isinstance(mesh, HexMesh):
+            raise MeshError(f"'{path}': {form} reads no mesh from it, but {type(mesh).__name__}")
         nodes, facets = dict(mesh.node_sets), dict(mesh.facet_sets)
         for name, file_name in (self.sets or {}).get(body, {}).items():
             try:
@@ -142,18 +152,3 @@ class File:
                 raise
             raise MeshError.at(f"mesh.{body}", path, f"{why}. It must be the {BALL}; copies are placed") from why
         return with_node_sets(mesh.renumbered())
-
-
-def _read(path: str) -> HexMesh:
-    """A file by the format that has its ending, of those that this process knows."""
-    from raceway.extend import HexMesh, default_registry
-
-    try:
-        form = default_registry().format_of(path)
-    except PluginError as why:
-        raise MeshError(str(why)) from None
-    with blamed(str(form), "read()"):
-        mesh = form.plugin().read(path)
-    if not isinstance(mesh, HexMesh):
-        raise MeshError(f"'{path}': {form} reads no mesh from it, but {type(mesh).__name__}")
-    return mesh

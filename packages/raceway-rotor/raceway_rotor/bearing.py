@@ -117,9 +117,9 @@ class RollingBearing(_Element):
     def frame(self) -> np.ndarray:
         """(n, m) our coordinates x, y, z, tilts by the element's degrees of freedom: X, Y, Z are y, z, x."""
         side = self.side
-        turned = np.zeros((5, 5))
-        turned[[0, 1, 2, 3, 4], [2, 0, 1, 3, 4]] = side, 1.0, side, 1.0, side
-        shaft = turned[: self.node_bearing.size, : self.node_bearing.size]
+        rotation = np.zeros((5, 5))
+        rotation[[0, 1, 2, 3, 4], [2, 0, 1, 3, 4]] = side, 1.0, side, 1.0, side
+        shaft = rotation[: self.node_bearing.size, : self.node_bearing.size]
         return shaft if self.n_link is None else np.hstack([shaft, -shaft])
 
     def across(self, matrix: np.ndarray) -> np.ndarray:

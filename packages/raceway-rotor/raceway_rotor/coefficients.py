@@ -142,52 +142,50 @@ def coefficients(
     _refuse_few(selection, least)
     if source != "tangent" and (selection.value("excitation.kind") is None or "z_real" not in selection.dataset):
         raise RacewayError("the swept scene is static and has a tangent only: choose --from tangent")
-    stiffness, damping, resolved, definition, notes = SOURCES[source](selection)
-    measured = resolved[..., 0, 0] & resolved[..., 1, 1]
-    damping, replaced = _without_noise(damping, resolved, unresolved)
+    stiffness, damping, certain, definition, notes = SOURCES[source](selection)
+    damping_at = certain[..., 0, 0] & certain[..., 1, 1]
+    damping, changes = _without_noise(damping, certain, unresolved)
     notes += [
         *radial_note(json.loads(selection.dataset.attrs.get("given", "{}"))),
-        *replaced,
+        *changes,
         *_band(selection),
         *tilt_note(selection),
-        *_dry(source, stiffness, damping, measured, unresolved),
+        *_dry(source, stiffness, damping, damping_at, unresolved),
     ]
     tangent, tangent_damping = _at_equilibrium(selection, "stiffness"), _at_equilibrium(selection, "damping")
-    axial = _undirected(selection, reduced(selection)) if "stiffness" in selection.dataset else tangent
+    axial = _without_direction(selection, reduced(selection)) if "stiffness" in selection.dataset else tangent
     data = selection.dataset
     names = [str(name) for name, column in data.items() if "units" in column.attrs and name not in (*COLUMNS, "warnings")]
-    numbers = (_undirected(selection, np.array(data[name].values, dtype=float)) for name in names)
-    speed, frequency, arrays = _table(selection, stiffness, damping, axial[..., 0, 0], tangent, tangent_damping, *numbers)
+    numbers = (_without_direction(selection, np.array(data[name].values, dtype=float)) for name in names)
+    speed, frequency, arrays = _axes(selection, stiffness, damping, axial[..., 0, 0], tangent, tangent_damping, *numbers)
     stiffness, damping, axial, tangent, tangent_damping, *columns = arrays
-    stated = {
-        f"{n} [{data[n].units}]": column for n, column in zip(names, columns, strict=True) if np.isfinite(column).all()
-    }
+    extra = {f"{n} [{data[n].units}]": column for n, column in zip(names, columns, strict=True) if np.isfinite(column).all()}
     tilt = selection.value("supports.tilt", "locked")
     return Coefficients(
-        speed, frequency, stiffness, damping, axial, source, definition, tuple(notes), tangent, tangent_damping, tilt, stated
+        speed, frequency, stiffness, damping, axial, source, definition, tuple(notes), tangent, tangent_damping, tilt, extra
     )
 
 
 def _at_equilibrium(selection: Selection, name: str) -> np.ndarray:
     """(..., 5, 5) of the equilibria; 0 in a sweep that does not hold it."""
     if name in selection.dataset:
-        return _undirected(selection, np.array(selection.dataset[name].values, dtype=float))
+        return _without_direction(selection, np.array(selection.dataset[name].values, dtype=float))
     return np.zeros((*(len(values) for key, values in selection.axes.items() if key != DIRECTION), 5, 5))
 
 
-def _undirected(selection: Selection, array: np.ndarray) -> np.ndarray:
+def _without_direction(selection: Selection, array: np.ndarray) -> np.ndarray:
     """Without the last axis where it is the direction of the force, on which an equilibrium does not depend."""
     return np.take(array, 0, axis=len(selection.axes) - 1) if DIRECTION in selection.axes else array
 
 
-def _without_noise(damping: np.ndarray, resolved: np.ndarray, substitute: float) -> tuple[np.ndarray, list[str]]:
+def _without_noise(damping: np.ndarray, certain: np.ndarray, substitute: float) -> tuple[np.ndarray, list[str]]:
     """Damping (..., 2, 2) with what is not resolved replaced, and what was done.
 
     Noise of either sign would be read as damping, and a negative one as instability.  A point whose cyy or czz is not resolved has
     no cross terms either: they alone would make the matrix indefinite.
     """
-    diagonal = (resolved[..., 0, 0] & resolved[..., 1, 1])[..., None, None]
-    clean = np.where(resolved & diagonal, damping, 0.0) + np.where(diagonal, 0.0, substitute * np.eye(2))
+    diagonal = (certain[..., 0, 0] & certain[..., 1, 1])[..., None, None]
+    clean = np.where(certain & diagonal, damping, 0.0) + np.where(diagonal, 0.0, substitute * np.eye(2))
     if diagonal.all():
         return clean, []
     value = f"cyy = czz = {substitute:g} N s/m stands there, as given" if substitute else "0 stands there"
@@ -206,11 +204,11 @@ def _band(selection: Selection) -> list[str]:
     ]
 
 
-def _dry(source: str, stiffness: np.ndarray, damping: np.ndarray, measured: np.ndarray, unresolved: float) -> list[str]:
+def _dry(source: str, stiffness: np.ndarray, damping: np.ndarray, with_damping: np.ndarray, substitute: float) -> list[str]:
     """That a dry bearing damps next to nothing; not where a damping is given for points without one."""
-    if unresolved:
+    if substitute:
         return []
-    largest = float(np.max(damping[..., 0, 0][measured])) if measured.any() else 0.0 if source == "tangent" else None
+    largest = float(np.max(damping[..., 0, 0][with_damping])) if with_damping.any() else 0.0 if source == "tangent" else None
     in_contacts = "give contact.damping (N s/m, each contact) accordingly, or, where C is not resolved, "
     remedy = f"{'' if source == 'tangent' else in_contacts}--damping C (in Python damping=C)"
     words = dry_damping_words(largest, float(np.max(stiffness[..., 0, 0])), remedy)
@@ -255,7 +253,7 @@ def _refuse_few(selection: Selection, least: int) -> None:
         )
 
 
-def _table(selection: Selection, *arrays: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None, tuple[np.ndarray, ...]]:
+def _axes(selection: Selection, *arrays: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None, tuple[np.ndarray, ...]]:
     """Axes [rad/s], None where there is none, and the arrays; both axes in the order (speed, frequency)."""
     spins, speeds = (np.array(selection.axes.get(key, []), dtype=float) * _RADIANS for key in (SPIN, SPEED))
     if len(spins) and len(speeds):

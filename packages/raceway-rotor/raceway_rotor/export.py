@@ -392,14 +392,14 @@ def point_rows(axes: Mapping[str, np.ndarray], columns: Mapping[str, np.ndarray]
     alike: dict[tuple[str, ...], list[str]] = {}
     for name, values in columns.items():
         if name not in zero:
-            alike.setdefault((name[0], *(_text(name, value) for value in values.flat)), []).append(name)
+            alike.setdefault((name[0], *(_file_text(name, value) for value in values.flat)), []).append(name)
     constant, varying = [], {}
     for name, *equal in alike.values():
         # What all names end with stands once.
         title = " = ".join(word[:3] for word in (name, *equal)) + name[3:].replace("_", " ")
         unit_shown = "N/µm" if name[0] == "k" else "N s/m"
         if np.ptp(columns[name]) <= bound[name[0]]:
-            constant.append(f"{title} = {_text(name, columns[name].flat[0])} {unit_shown} at all points")
+            constant.append(f"{title} = {_file_text(name, columns[name].flat[0])} {unit_shown} at all points")
         else:
             varying[f"{title}\n{unit_shown}"] = name
     shape = tuple(len(values) for values in axes.values())
@@ -407,11 +407,11 @@ def point_rows(axes: Mapping[str, np.ndarray], columns: Mapping[str, np.ndarray]
     for point in np.ndindex(shape):
         if len(shape) == 1 or all(k in (0, size - 1) for k, size in zip(point, shape, strict=True)):
             row = {title: f"{values[k]:.6g}" for (title, values), k in zip(axes.items(), point, strict=True)}
-            rows.append(row | {title: _text(name, float(columns[name][point])) for title, name in varying.items()})
+            rows.append(row | {title: _file_text(name, float(columns[name][point])) for title, name in varying.items()})
     return rows, [*constant, *([f"0 at all points: {', '.join(zero)}"] if zero else [])]
 
 
-def _text(name: str, value: float) -> str:
+def _file_text(name: str, value: float) -> str:
     return f"{value * (1e-6 if name[0] == 'k' else 1.0):.5g}"
 
 

@@ -72,7 +72,14 @@ def _nastran_text(table: Coefficients, head: Sequence[str], number: int, node: i
             f"(`{SPIN}`) as well: choose one with --at {SPIN}=..."
         )
     hertz = table.axis / (2.0 * np.pi)
-    stiffness, damping = _diagonals(table)
+    # Stiffness and damping (n, 6) along and about x, y, z
+    stiffness, damping = np.zeros((len(table.axial), 6)), np.zeros((len(table.axial), 6))
+    stiffness[:, 0] = table.axial
+    for diagonal, matrix in ((stiffness, table.stiffness), (damping, table.damping)):
+        diagonal[:, 1:3] = np.einsum("nii->ni", matrix)
+    if _holds_tilts(table):
+        stiffness[:, 4:] = np.einsum("nii->ni", table.tangent)[:, 3:]
+        damping[:, [0, 4, 5]] = np.einsum("nii->ni", table.tangent_damping)[:, [0, 3, 4]]
     tables = {("K", k): stiffness[:, k] for k in range(6)} | {("B", k): damping[:, k] for k in range(6)}
     numbers = {entry: number + 1 + k if values.any() else None for k, (entry, values) in enumerate(tables.items())}
     element = [_small("CBUSH", [number, number, node or "GA", None if node else "GB", None, None, None, 0])]
@@ -132,18 +139,6 @@ def _holds_tilts(table: Coefficients) -> bool:
     return table.source == "tangent" and table.tilt == "locked"
 
 
-def _diagonals(table: Coefficients) -> tuple[np.ndarray, np.ndarray]:
-    """Stiffness and damping (n, 6) along and about x, y, z."""
-    stiffness, damping = np.zeros((len(table.axial), 6)), np.zeros((len(table.axial), 6))
-    stiffness[:, 0] = table.axial
-    for diagonal, matrix in ((stiffness, table.stiffness), (damping, table.damping)):
-        diagonal[:, 1:3] = np.einsum("nii->ni", matrix)
-    if _holds_tilts(table):
-        stiffness[:, 4:] = np.einsum("nii->ni", table.tangent)[:, 3:]
-        damping[:, [0, 4, 5]] = np.einsum("nii->ni", table.tangent_damping)[:, [0, 3, 4]]
-    return stiffness, damping
-
-
 def _tilt_coupling(table: Coefficients) -> str:
     """Forces that a tilt makes, beside a diagonal with the tilt held; empty where there are none."""
     if not table.tangent.any():
@@ -161,19 +156,16 @@ def _small(name: str, fields: Sequence[object]) -> str:
 
 def _large(name: str, fields: Sequence[object]) -> list[str]:
     """Lines of four fields of 16 characters; an entry fills pairs of lines."""
-    texts = [_large_field(field) for field in fields]
+    texts = [
+        ("" if field is None else f"{float(field):.9E}" if isinstance(field, float | np.floating) else str(field))
+        for field in fields
+    ]
     rows = [texts[k : k + 4] for k in range(0, len(texts), 4)]
     rows += [[""]] if len(rows) % 2 else []
     return [
         "".join([f"{f'{name}*' if k == 0 else '*':8}", *(f"{text:>16}" for text in row)]).rstrip()
         for k, row in enumerate(rows)
     ]
-
-
-def _large_field(value: object) -> str:
-    if value is None:
-        return ""
-    return f"{float(value):.9E}" if isinstance(value, float | np.floating) else str(value)
 
 
 def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
@@ -203,8 +195,8 @@ def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
         lines += [
             f"{_APDL_COMMENT}{constant}, {entry}{table.ending} [{unit(entry)}] over rad/s",
             f"*DIM,{name},TABLE,{len(table.axis)},1,1,OMEGS",
-            *_assigned(name, 0, table.axis),
-            *_assigned(name, 1, values),
+            *_assignments(name, 0, table.axis),
+            *_assignments(name, 1, values),
         ]
     lines += [f"ET,{number},COMBI214", f"KEYOPT,{number},2,1"]
     if not all(map(_symmetric, (table.stiffness, table.damping))):
@@ -233,7 +225,7 @@ def _symmetric(matrix: np.ndarray) -> bool:
     return bool(np.allclose(matrix, np.swapaxes(matrix, -1, -2), rtol=0.0, atol=bound))
 
 
-def _assigned(name: str, column: int, values: np.ndarray) -> list[str]:
+def _assignments(name: str, column: int, values: np.ndarray) -> list[str]:
     """Rows 1 to n of a column; column 0 holds the speeds."""
     texts = [f"{float(value):.15g}" for value in values]
     return [f"{name}({k + 1},{column})={','.join(texts[k : k + _VALUES])}" for k in range(0, len(texts), _VALUES)]

@@ -88,10 +88,10 @@ class NodeBearing:
         full = contacts + system.stiffness + 1j * w * viscous
         full[:3, :3] += 1j * w * self.damping * np.eye(3)
         inside = self._inside(model)
-        at_node = _condensed(full, list(range(self.size)), [i for i in inside if i > 0])
+        at_node = _schur_complement(full, list(range(self.size)), [i for i in inside if i > 0])
         if 0 in inside:
             at_node[0, 1:] = at_node[1:, 0] = 0.0
-            at_node[1:, 1:] = _condensed(full, self.moving, inside)
+            at_node[1:, 1:] = _schur_complement(full, self.moving, inside)
         return at_node
 
     def motion(self, speed: float, load: np.ndarray) -> np.ndarray:
@@ -134,9 +134,9 @@ class NodeBearing:
         """
         model, equilibrium = self.at_rest(speed)
         system, inside = model.system, self._inside(model)
-        shared = self.moving if 0 in inside else [0, *self.moving]
+        outside = self.moving if 0 in inside else [0, *self.moving]
         q = equilibrium.displacement.copy()
-        q[shared] += displacement[shared]
+        q[outside] += displacement[outside]
         size = np.array([1.0, 1.0, 1.0, system.arm, system.arm])
         for _ in range(_MOST):
             contacts = evaluate_following(model.problem, system, q, equilibrium.ball)
@@ -148,12 +148,12 @@ class NodeBearing:
             where = np.array2string(displacement, precision=3)
             raise ConvergenceError(f"the ring has no equilibrium at the node's displacement {where} m")
         force, slope = np.zeros(self.size), np.zeros((self.size, self.size))
-        force[shared], slope[np.ix_(shared, shared)] = residual[shared], _condensed(tangent, shared, inside)
+        force[outside], slope[np.ix_(outside, outside)] = residual[outside], _schur_complement(tangent, outside, inside)
         if inside:  # the residual of the iteration
             correction = np.linalg.solve(tangent[np.ix_(inside, inside)], residual[inside])
-            force[shared] -= tangent[np.ix_(shared, inside)] @ correction
+            force[outside] -= tangent[np.ix_(outside, inside)] @ correction
         if 0 in inside:
-            beside = _condensed(
+            beside = _schur_complement(
                 equilibrium.stiffness + system.stiffness, list(range(self.size)), [i for i in inside if i > 0]
             )
             slope[0, 0] = beside[0, 0]
@@ -161,14 +161,14 @@ class NodeBearing:
         return force, slope
 
 
-def _condensed(matrix: np.ndarray, shared: list[int], inside: list[int]) -> np.ndarray:
+def _schur_complement(matrix: np.ndarray, outside: list[int], inside: list[int]) -> np.ndarray:
     """Part of a matrix over some coordinates, others free of load."""
-    part = matrix[np.ix_(shared, shared)]
+    part = matrix[np.ix_(outside, outside)]
     if not inside:
         return np.array(part)
     return np.asarray(
         part
-        - matrix[np.ix_(shared, inside)] @ np.linalg.solve(matrix[np.ix_(inside, inside)], matrix[np.ix_(inside, shared)])
+        - matrix[np.ix_(outside, inside)] @ np.linalg.solve(matrix[np.ix_(inside, inside)], matrix[np.ix_(inside, outside)])
     )
 
 
@@ -229,8 +229,6 @@ def secant_stiffness(tangent: np.ndarray, motion: np.ndarray, load: np.ndarray, 
     no work from the ring in a turn.  On a circle it is the same change of kyy and kzz, without cross terms; along a line it
     leaves the stiffness across as it was.
 
-    References
-    ----------
     Dennis & Schnabel, Numerical Methods for Unconstrained Optimization and Nonlinear Equations, 1983, section 9.1 and
     Schnabel, Quasi-Newton methods using multiple secant equations, 1983.
     """

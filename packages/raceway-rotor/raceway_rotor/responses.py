@@ -17,7 +17,7 @@ from raceway_rotor.shaft import find_root
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from pint import Quantity
-    from ross import BearingElement, Rotor
+    from ross import Rotor
     from ross.results import ForcedResponseResults, TimeResponseResults
 
 _HALVINGS = 6
@@ -86,7 +86,12 @@ def run_unbalance_response(
     balances = [_Balance.at(rotor, bearings, w, (node, unbalance_magnitude, unbalance_phase)).solved() for w in speeds]
     z = [np.array([matrices[k] for _, matrices, _ in balances]) for k in range(len(bearings))]
     at_motion = {id(b): b.holding(dict(zip(speeds, z_k, strict=True))) for b, z_k in zip(bearings, z, strict=True)}
-    twin = _with_bearings(rotor, [at_motion.get(id(element), element) for element in rotor.bearing_elements])
+    # A copy on other bearings, without the results that ROSS caches
+    elements = [at_motion.get(id(element), element) for element in rotor.bearing_elements]
+    twin = copy(rotor)
+    for name in [name for name in vars(twin) if name.startswith("__wire|")]:  # of the package methodtools
+        delattr(twin, name)
+    twin.bearing_elements = elements
     response = twin.run_unbalance_response(node, unbalance_magnitude, unbalance_phase, list(speeds))
     stiffness, damping, force = {}, {}, {}
     for k, bearing in enumerate(bearings):
@@ -102,15 +107,6 @@ def _rolling_bearings(rotor: Rotor, method: str) -> list[RollingBearing]:
     if not bearings:
         raise RacewayError(f"the rotor has no raceway.ross.RollingBearing: use rotor.{method}")
     return bearings
-
-
-def _with_bearings(rotor: Rotor, bearings: list[BearingElement]) -> Rotor:
-    """A copy of a rotor on other bearings at the same nodes, without the results that ROSS caches."""
-    twin = copy(rotor)
-    for name in [name for name in vars(twin) if name.startswith("__wire|")]:  # of the package methodtools
-        delattr(twin, name)
-    twin.bearing_elements = bearings
-    return twin
 
 
 def _blocks(sizes: list[int]) -> list[slice]:
@@ -143,7 +139,7 @@ class _Balance:
             rows[-1][:, bearing.dofs] = frame
         selection = np.vstack(rows)
         force = np.zeros(rotor.ndof, dtype=complex)
-        for node, magnitude, phase in zip(*(np.atleast_1d(_plain(value)) for value in unbalance), strict=True):
+        for node, magnitude, phase in zip(*(np.atleast_1d(_plain_force(value)) for value in unbalance), strict=True):
             turning = magnitude * w**2 * np.exp(1j * phase)
             force[rotor.number_dof * int(node) : rotor.number_dof * int(node) + 2] += turning, -1j * turning
         answers = np.linalg.solve(dynamic, np.column_stack([force, selection.T]))
@@ -186,7 +182,7 @@ class _Balance:
         return size
 
 
-def _plain(value: ArrayLike | Quantity) -> ArrayLike:
+def _plain_force(value: ArrayLike | Quantity) -> ArrayLike:
     return value.to_base_units().magnitude if hasattr(value, "to_base_units") else value
 
 
@@ -236,9 +232,9 @@ def run_time_response(
         raise RacewayError(
             f"`F` has the shape {forces.shape}; one row a time and one column a degree of freedom make {(len(times), rotor.ndof)}"
         )
-    added = _NonlinearForce(rotor, bearings, float(speed), forces, gamma, beta)
+    bearing_force = _NonlinearForce(rotor, bearings, float(speed), forces, gamma, beta)
     newmark = {"gamma": gamma, "beta": beta, **options}
-    return rotor.run_time_response(float(speed), forces, times, method="newmark", add_to_RHS=added, **newmark)
+    return rotor.run_time_response(float(speed), forces, times, method="newmark", add_to_RHS=bearing_force, **newmark)
 
 
 class _NonlinearForce:
@@ -268,9 +264,9 @@ class _NonlinearForce:
         y, v = y + dt * v + (0.5 - beta) * dt**2 * a, v + (1.0 - gamma) * dt * a
         residual = self.forces[step] - self.stiffness @ y - self.damping @ v
         linear = self.selection @ (y + beta * dt**2 * lu_solve(self.factors, residual))
-        return np.asarray(self.selection.T @ self._solved(linear))
+        return np.asarray(self.selection.T @ self._solution(linear))
 
-    def _solved(self, linear: np.ndarray) -> np.ndarray:
+    def _solution(self, linear: np.ndarray) -> np.ndarray:
         """K q - f(q) with q = q_linear + H (K q - f(q))."""
         q = linear.copy()
         slope = np.zeros_like(self.small)

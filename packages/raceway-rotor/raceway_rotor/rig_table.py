@@ -102,9 +102,6 @@ class Rig:
             raise ValueError(
                 f"`unbalance_radius` = {self.unbalance_radius:g} m exceeds the disc radius of {self.disc_radius:g} m"
             )
-        self._check_sensor()
-
-    def _check_sensor(self) -> None:
         if self.sensor_side == "outside":
             room = 0.5 * (self.shaft_length - self.span)
             end = "beyond the shaft's end"

@@ -18,7 +18,7 @@ import json
 import os
 import sys
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import ModuleType
@@ -83,7 +83,16 @@ def ross_notes(table: Coefficients, generation: int) -> tuple[str, ...]:
     )
     if generation >= 3:
         return (*notes, "ROSS 3 passes through every point; beyond the ends it extrapolates linearly")
-    changes = {name: f"{change:.1e}" if change < 1e-3 else f"{change:.1%}" for name, change in _smoothing(table).items()}
+    # Largest change at a point by ROSS 2's own interpolation, over the largest coefficient of its kind
+    columns = table.columns()
+    sizes = largest(columns)
+    smoothing = {
+        name: float(np.max(np.abs(ross_spline(table.axis, values) - values))) / (sizes[name[0]] or 1.0)
+        for name, values in columns.items()
+    }
+    changes = {
+        name: f"{change:.1e}" if change < 1e-3 else f"{change:.1%}" for name, change in smoothing.items() if change > 1e-12
+    }
     return (
         *notes,
         "ROSS 2 does not pass through the points: it smooths with a bound of 1 N/m, or 1 N s/m, a point, which is a lot for a "
@@ -96,17 +105,17 @@ def ross_notes(table: Coefficients, generation: int) -> tuple[str, ...]:
 
 def ross_toml(tag: str, content: Tables, notes: tuple[str, ...]) -> str:
     """The file as TOML; JSON's numbers, strings and lists of them are TOML's, and its shortest decimal gives every bit back."""
-    lines = [*(f"# {note}" for note in notes), "", f"[{json.dumps(_section(tag))}]"]
+    lines = [*(f"# {note}" for note in notes), "", f"[{json.dumps(_toml_section(tag))}]"]
     lines += [f"{name} = {json.dumps(value, allow_nan=False)}" for name, value in content.items()]
     return "\n".join(lines) + "\n"
 
 
 def ross_json(tag: str, content: Tables, notes: tuple[str, ...]) -> str:
     """The file as JSON."""
-    return json.dumps({_section(tag): {**content, "notes": list(notes)}}, indent=1, allow_nan=False) + "\n"
+    return json.dumps({_toml_section(tag): {**content, "notes": list(notes)}}, indent=1, allow_nan=False) + "\n"
 
 
-def _section(tag: str) -> str:
+def _toml_section(tag: str) -> str:
     """ROSS takes the class from the word before the underscore."""
     return f"BearingElement_{tag}"
 
@@ -121,17 +130,6 @@ def check_name(path: Path) -> None:
     """
     if path.suffix.lower() not in (".toml", ".json"):
         raise RacewayError(f"`{path}`: ROSS reads .toml and .json, by their suffix: choose one of them")
-
-
-def _smoothing(table: Coefficients) -> Mapping[str, float]:
-    """Largest change at a point by ROSS 2's own interpolation, over the largest coefficient of its kind; by our names, above 1e-12."""
-    columns = table.columns()
-    sizes = largest(columns)
-    changes = {
-        name: float(np.max(np.abs(ross_spline(table.axis, values) - values))) / (sizes[name[0]] or 1.0)
-        for name, values in columns.items()
-    }
-    return {name: change for name, change in changes.items() if change > 1e-12}
 
 
 def ross_spline(axis: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -180,9 +178,9 @@ class _Points:
 
     def __call__(self, frequency: ArrayLike) -> np.ndarray:
         x = np.asarray(frequency, dtype=float)
-        clipped = np.clip(x, *self.ends)
+        within = np.clip(x, *self.ends)
         slope = np.where(x < self.ends[0], *self.slopes)
-        return np.asarray(self.inside(clipped) + slope * (x - clipped))
+        return np.asarray(self.inside(within) + slope * (x - within))
 
 
 def ross(purpose: str, least: int = GENERATIONS[0]) -> ModuleType:
@@ -203,9 +201,9 @@ def ross(purpose: str, least: int = GENERATIONS[0]) -> ModuleType:
     except ImportError as why:
         raise RacewayError(f"{purpose} needs ROSS: {extra('raceway-rotor[ross]')} ({why})") from None
     if generation(package) < least:
-        installed = getattr(package, "__version__", "of no version")
+        version = getattr(package, "__version__", "of no version")
         raise RacewayError(
-            f"{purpose} needs ROSS {least}.0 or later, and {installed} is installed here: {extra('raceway-rotor[ross]')}"
+            f"{purpose} needs ROSS {least}.0 or later, and {version} is installed here: {extra('raceway-rotor[ross]')}"
         )
     return package
 

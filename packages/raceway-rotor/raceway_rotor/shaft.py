@@ -60,15 +60,6 @@ class Beam:
         """K - lambda^2 (M_t + M_r) + lambda Omega G for speeds [rad/s]."""
         return self.stiffness - whirl**2 * (self.mass + self.rotary) + whirl * spin * self.polar
 
-    def with_disc(self, position: float, mass: float, transverse: float, polar: float) -> Beam:
-        """A copy with a rigid disc at a node: mass [kg], inertias [kg m2]."""
-        k = 2 * self.node(position)
-        m, r, p = self.mass.copy(), self.rotary.copy(), self.polar.copy()
-        m[k, k] += mass
-        r[k + 1, k + 1] += transverse
-        p[k + 1, k + 1] += polar
-        return attrs.evolve(self, mass=m, rotary=r, polar=p)
-
     def with_spring(self, position: float, stiffness: float, tilt: float = 0.0) -> Beam:
         """A copy with a spring against the ground at a node [N/m, N m/rad]."""
         k = 2 * self.node(position)
@@ -205,7 +196,14 @@ def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
     inner, outer, width = 0.5 * rig.shaft_diameter, rig.disc_radius, rig.disc_thickness
     mass = rig.density * pi * (outer**2 - inner**2) * width
     polar = 0.5 * mass * (outer**2 + inner**2)
-    return bare.with_disc(middle, mass, 0.5 * polar + mass * width**2 / 12.0, polar)
+    # A copy with a rigid disc at a node: mass [kg], inertias [kg m2]
+    transverse = 0.5 * polar + mass * width**2 / 12.0
+    k = 2 * bare.node(middle)
+    m, r, p = bare.mass.copy(), bare.rotary.copy(), bare.polar.copy()
+    m[k, k] += mass
+    r[k + 1, k + 1] += transverse
+    p[k + 1, k + 1] += polar
+    return attrs.evolve(bare, mass=m, rotary=r, polar=p)
 
 
 @lru_cache(maxsize=32)  # a fit asks for one at all its numbers
@@ -384,7 +382,7 @@ class State:
         return z.real + self.mass * self.speed**2, z.imag / self.speed
 
 
-def balance(free: Rotor, tested: Bearing) -> State:
+def balance(free: Rotor, bearing: Bearing) -> State:
     """Force and moment at which the ring and the shaft in it move alike.
 
     Raises
@@ -393,16 +391,16 @@ def balance(free: Rotor, tested: Bearing) -> State:
         No such force and moment found.
     """
     speed = free.speed
-    gain = tested.compliance - free.ring[:, 1:]
+    gain = bearing.compliance - free.ring[:, 1:]
     start = np.linalg.solve(gain, free.ring[:, 0] * free.unbalance_force)
 
     def apart(load: np.ndarray) -> np.ndarray:
-        return tested.answer(speed, load[0], load[1]) - free.at_ring(load[0], load[1])
+        return bearing.answer(speed, load[0], load[1]) - free.at_ring(load[0], load[1])
 
-    size = np.abs(tested.compliance @ start)
+    size = np.abs(bearing.compliance @ start)
     load, runs = find_root(apart, start.astype(complex), gain, size)
     deflection, slope = free.at_ring(*load)
-    return State(speed, load[0], load[1], deflection, slope, free.at_sensor(*load), tested.mass, tested.coupling, runs)
+    return State(speed, load[0], load[1], deflection, slope, free.at_sensor(*load), bearing.mass, bearing.coupling, runs)
 
 
 def find_root(
@@ -443,16 +441,16 @@ def find_root(
             raise ConvergenceError(f"shaft and bearing find no common motion: they differ by {worst:.1e}") from None
         for half in range(_HALVINGS + 1):
             try:
-                tried = value(u + step)
+                trial = value(u + step)
             except ConvergenceError:  # a load that the bearing cannot carry: nearer ones are tried
                 if half == _HALVINGS:
                     raise
             else:
-                if half == _HALVINGS or np.abs(tried).max() <= 2.0 * worst:
+                if half == _HALVINGS or np.abs(trial).max() <= 2.0 * worst:
                     break
             step = 0.5 * step
-        jacobian += np.outer(tried - f - jacobian @ step, step) / (step @ step)
-        u, f = u + step, tried
+        jacobian += np.outer(trial - f - jacobian @ step, step) / (step @ step)
+        u, f = u + step, trial
     raise ConvergenceError(
         f"shaft and bearing find no common motion after {_MOST} tries: they differ by {np.abs(f).max():.1e}"
     )

@@ -52,15 +52,13 @@ def _rotating(selection: Selection) -> Matrices:
     identity = np.eye(2)
     stiffness = data[K.name].values[..., None, None] * identity
     damping = data[C.name].values[..., None, None] * identity
-    resolved = np.abs(data[Z_IMAG.name].values) > _errors(data) * np.hypot(
-        data[Z_REAL.name].values, data[Z_IMAG.name].values
-    )
+    certain = np.abs(data[Z_IMAG.name].values) > _errors(data) * np.hypot(data[Z_REAL.name].values, data[Z_IMAG.name].values)
     notes = [
         f"isotropic: kyy = kzz = K, cyy = czz = C, no cross terms; the counter-rotating part of the orbits is at most {share:.1e}",
         *_common(selection),
     ]
     words = f"{_kind_words(selection)} under a rotating force ({kind}), {_tilt_words(selection)}"
-    return stiffness, damping, np.broadcast_to(resolved[..., None, None], damping.shape), words, notes
+    return stiffness, damping, np.broadcast_to(certain[..., None, None], damping.shape), words, notes
 
 
 def _directions(selection: Selection) -> Matrices:
@@ -168,16 +166,16 @@ def _tangent(selection: Selection) -> Matrices:
     if "damping" in selection.dataset:
         full = np.array(selection.dataset["damping"].values, dtype=float)
         damping = np.swapaxes(transformation, -1, -2) @ full @ transformation
-    damped = bool(damping.any())
+    with_damping = bool(damping.any())
     notes.insert(
         0,
         "damping of the contacts at the equilibrium, of slow motions; at w their time constant tau changes K and C by about "
         "(w tau)^2 / 4: those of the running speed are a sweep's with identifier.kind = 'tangent' (source 'rotating')"
-        if damped
+        if with_damping
         else "the tangent of an equilibrium has no damping",
     )
     words = f"tangent of the equilibrium, {_tilt_words(selection)}"
-    return radial, damping, np.broadcast_to(damped, radial.shape), words, notes
+    return radial, damping, np.broadcast_to(with_damping, radial.shape), words, notes
 
 
 #: What coefficients are taken from.
@@ -214,11 +212,11 @@ def tilt_note(selection: Selection) -> list[str]:
     if "stiffness" not in selection.dataset:
         return []
     try:
-        locked, free = (reduced(selection, tilt)[..., 1, 1] for tilt in ("locked", "free"))
+        with_locked_tilt, free = (reduced(selection, tilt)[..., 1, 1] for tilt in ("locked", "free"))
     except np.linalg.LinAlgError:  # nothing resists a tilt: there is no free one
         return []
     return [
-        f"{_tilt_words(selection)} in these numbers; of the tangent, kyy, with the tilts held, is {_micro_range(locked)}, and kyy_tilts_follow, with "
+        f"{_tilt_words(selection)} in these numbers; of the tangent, kyy, with the tilts held, is {_micro_range(with_locked_tilt)}, and kyy_tilts_follow, with "
         f"them free, {_micro_range(free)}; supports.tilt = locked is for a stiff rotor, free for a compliant shaft"
     ]
 
@@ -247,7 +245,14 @@ def _common(selection: Selection) -> list[str]:
         )
     if selection.value("rotor.damping", 0.0):
         notes.append("rotor.damping is part of cyy and czz")
-    return [*_mass(selection), *notes, *_amplitude(selection)]
+    force = selection.dataset["force_amplitude"].values
+    low, high = float(np.min(force)), float(np.max(force))
+    size = f"{low:.4g} N" if high - low <= 1e-6 * high else f"{low:.4g} to {high:.4g} N"
+    return [
+        *_mass(selection),
+        *notes,
+        f"under forces of amplitude {size}; in a rotor model, iterate where the bearing force differs",
+    ]
 
 
 def _mass(selection: Selection) -> list[str]:
@@ -258,10 +263,3 @@ def _mass(selection: Selection) -> list[str]:
         f"K = Re Z + m w^2: the mass that the sweep moved, {float(np.max(mass)):.4g} kg, is removed; the rotor model includes it, with the "
         "inner ring where its shaft does not"
     ]
-
-
-def _amplitude(selection: Selection) -> list[str]:
-    force = selection.dataset["force_amplitude"].values
-    low, high = float(np.min(force)), float(np.max(force))
-    size = f"{low:.4g} N" if high - low <= 1e-6 * high else f"{low:.4g} to {high:.4g} N"
-    return [f"under forces of amplitude {size}; in a rotor model, iterate where the bearing force differs"]

@@ -54,23 +54,19 @@ def joined(parts: list[Surface]) -> Surface:
     )
 
 
-def _revolved(line: np.ndarray, azimuths: np.ndarray) -> Surface:
+def _surface_of_revolution(line: np.ndarray, azimuths: np.ndarray) -> Surface:
     """The surface that a closed line (k, 2) of x and radius sweeps, the body to the left of it.
 
     line : first and last point differ; corners are kept sharp
     azimuths : (n,) [rad], from +y towards +z
     """
-    return joined([_band(piece, azimuths) for piece in _smooth_pieces(line)])
-
-
-def _smooth_pieces(line: np.ndarray) -> list[np.ndarray]:
-    """The closed line, cut at its corners."""
-    closed = np.concatenate([line, line[:1]])
-    step = np.diff(closed, axis=0)
+    # The closed line, cut at its corners
+    outline = np.concatenate([line, line[:1]])
+    step = np.diff(outline, axis=0)
     angle = np.arctan2(step[:, 1], step[:, 0])
     turn = np.abs((np.diff(angle) + pi) % (2.0 * pi) - pi)
-    cuts = [0, *(np.flatnonzero(turn > _CORNER) + 1), len(closed) - 1]
-    return [closed[a : b + 1] for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
+    cuts = [0, *(np.flatnonzero(turn > _CORNER) + 1), len(outline) - 1]
+    return joined([_band(outline[a : b + 1], azimuths) for a, b in zip(cuts[:-1], cuts[1:], strict=True)])
 
 
 def _band(line: np.ndarray, azimuths: np.ndarray) -> Surface:
@@ -134,16 +130,7 @@ def _arrow_along_x(length: float, thickness: float) -> Surface:
     head = min(2.5 * thickness, 0.6 * length)
     thin, wide = 0.3 * thickness * head / (2.5 * thickness), 0.8 * thickness * head / (2.5 * thickness)
     line = np.array([[0.0, 0.0], [0.0, thin], [length - head, thin], [length - head, wide], [length, 0.0]])
-    return _revolved(line[::-1], np.linspace(0.0, 2.0 * pi, 17))
-
-
-def _arrow(start: np.ndarray, towards: np.ndarray, length: float, thickness: float) -> Surface:
-    """An arrow from ``start`` (3,) along a unit vector; its head is at most 2.5 thicknesses long [mm]."""
-    solid = _arrow_along_x(length, thickness)
-    side = np.cross(towards, [1.0, 0.0, 0.0] if abs(towards[0]) < 0.9 else [0.0, 1.0, 0.0])
-    side /= np.linalg.norm(side)
-    frame = np.stack([towards, side, np.cross(towards, side)])
-    return Surface(start + solid.points @ frame, solid.normals @ frame, solid.triangles)
+    return _surface_of_revolution(line[::-1], np.linspace(0.0, 2.0 * pi, 17))
 
 
 _MM = 1e3
@@ -157,7 +144,7 @@ INNER, OUTER, _FACE = "#6f93b5", "#b9a679", "#dfe3e7"
 
 
 @attrs.frozen(eq=False)
-class State:
+class Snapshot:
     """Balls and inner ring at one moment.
 
     Attributes
@@ -178,7 +165,7 @@ class State:
 
 
 @attrs.frozen(eq=False)
-class Part:
+class Solid:
     """One surface and how it looks.
 
     Attributes
@@ -242,21 +229,21 @@ class Bearing:
         """Of the outer ring [mm], as it is drawn."""
         return _MM * float(self.shape.outer_diameter or 0.0)
 
-    def centres(self, state: State) -> np.ndarray:
+    def centres(self, state: Snapshot) -> np.ndarray:
         """(Z, 3) places of the balls [mm]: each follows the inner ring by half, as contacts of nearly equal stiffness do."""
         radial = _radial(state.azimuth)
-        follow = 0.5 * (self.moved(_groove(self.shape) * radial, state) - _groove(self.shape) * radial)
+        follow = 0.5 * (self.moved(_groove_radius(self.shape) * radial, state) - _groove_radius(self.shape) * radial)
         places = np.repeat([axial for _, axial in self.shape.rows], self.shape.ball_count)
         axial = places[:, None] * [1.0, 0.0, 0.0]
         return np.asarray(_MM * (0.5 * self.shape.pitch_diameter * radial + axial + follow))
 
-    def moved(self, points: np.ndarray, state: State) -> np.ndarray:
+    def moved(self, points: np.ndarray, state: Snapshot) -> np.ndarray:
         """(n, 3) points of the inner ring [m] after its motion, tilts taken as small."""
         x, y, z, tilt_y, tilt_z = state.motion
         turn = np.cross([0.0, tilt_y, tilt_z], points)
         return np.asarray(points + turn + [x, y, z])
 
-    def rings(self, cut: tuple[float, float] | None = _CUT, glass: bool = True, facets: int = 120) -> list[Part]:
+    def rings(self, cut: tuple[float, float] | None = _CUT, glass: bool = True, facets: int = 120) -> list[Solid]:
         """Both rings of each row at rest, without the azimuths between ``cut``; ``glass``: one sees through the outer one; of ``facets``."""
         parts = []
         low, high = (0.0, 0.0) if cut is None else cut
@@ -267,10 +254,10 @@ class Bearing:
                 outline = np.concatenate([seat, race[::-1]] if inner else [race, seat[::-1]])
                 name = "inner ring" if inner else "outer ring"
                 opacity = 0.32 if glass and not inner else 1.0
-                parts.append(Part(name, _revolved(outline, azimuths), colour, opacity))
+                parts.append(Solid(name, _surface_of_revolution(outline, azimuths), colour, opacity))
                 if cut is not None:
                     faces = [_section(race, seat, at, sense) for at, sense in ((high, -1.0), (low, 1.0))]
-                    parts.append(Part(f"{name}, cut face", joined(faces), _FACE if glass else colour))
+                    parts.append(Solid(f"{name}, cut face", joined(faces), _FACE if glass else colour))
         return parts
 
     def lines(self, inner: bool, side: float, axial: float) -> tuple[np.ndarray, np.ndarray]:
@@ -285,27 +272,33 @@ class Bearing:
         lines = [_MM * (line * [side, 1.0] + [axial, 0.0]) for line in (race, seat)]
         return (lines[0][::-1], lines[1][::-1]) if side < 0.0 else (lines[0], lines[1])
 
-    def balls(self, state: State) -> list[Part]:
+    def balls(self, state: Snapshot) -> list[Solid]:
         """Each ball with the load of its inner contact."""
         solid = ball(self.diameter)
         z = len(state.azimuth)
         return [
-            Part(f"ball {k}", solid.moved(centre), load=float(state.load[k]), ball=k)
+            Solid(f"ball {k}", solid.moved(centre), load=float(state.load[k]), ball=k)
             for k, centre in zip(range(z), self.centres(state), strict=True)
         ]
 
-    def arrows(self, state: State, top: float) -> list[Part]:
+    def arrows(self, state: Snapshot, top: float) -> list[Solid]:
         """The force of each ball on the outer ring, outside of it; as long as the ball diameter at the load ``top`` [N]."""
         z, parts = len(state.azimuth), []
         towards = self.towards(state)[z:]
         for k, (start, tip) in enumerate(zip(*self.arrow_ends(state, top), strict=True)):
             length = float(f"{np.linalg.norm(tip - start):.6g}")
             if length > 0.01 * self.diameter:
-                solid = _arrow(start, towards[k], length, 0.22 * self.diameter)
-                parts.append(Part(f"load {k}", solid, load=float(state.load[k])))
+                # The head is at most 2.5 thicknesses long
+                direction = towards[k]
+                solid = _arrow_along_x(length, 0.22 * self.diameter)
+                side = np.cross(direction, [1.0, 0.0, 0.0] if abs(direction[0]) < 0.9 else [0.0, 1.0, 0.0])
+                side /= np.linalg.norm(side)
+                frame = np.stack([direction, side, np.cross(direction, side)])
+                solid = Surface(start + solid.points @ frame, solid.normals @ frame, solid.triangles)
+                parts.append(Solid(f"load {k}", solid, load=float(state.load[k])))
         return parts
 
-    def arrow_ends(self, state: State, top: float) -> tuple[np.ndarray, np.ndarray]:
+    def arrow_ends(self, state: Snapshot, top: float) -> tuple[np.ndarray, np.ndarray]:
         """(Z, 3) starts and tips of the arrows along the lines of contact, begun where these leave the outer ring [mm]."""
         z, centres = len(state.azimuth), self.centres(state)
         towards = self.towards(state)[z:]
@@ -315,7 +308,7 @@ class Bearing:
         length = _LONGEST * self.diameter * state.load[z:] / max(top, 1e-12)
         return start, start + towards * length[:, None]
 
-    def tips(self, state: State, top: float) -> np.ndarray:
+    def tips(self, state: Snapshot, top: float) -> np.ndarray:
         """(Z, 3) places beyond the arrows, for their labels [mm]."""
         z = len(state.azimuth)
         length = self.diameter * (0.12 + _LONGEST * state.load[z:] / max(top, 1e-12) + 0.45)
@@ -325,7 +318,7 @@ class Bearing:
         reach = 0.5 * self.outer_diameter + length
         return np.asarray(reach[:, None] * _radial(state.azimuth) + axial[:, None] * [1.0, 0.0, 0.0])
 
-    def patches(self, state: State, races: tuple[str, ...] = ("inner", "outer")) -> list[Part]:
+    def patches(self, state: Snapshot, races: tuple[str, ...] = ("inner", "outer")) -> list[Solid]:
         """The contact ellipses on the balls, ``widening`` times as large, coloured by Hertz's pressure [MPa]."""
         z, parts, factor = len(state.azimuth), [], self.widening(state)
         towards, centres = self.towards(state), self.centres(state)
@@ -335,15 +328,15 @@ class Bearing:
                 along = np.array([0.0, -np.sin(state.azimuth[k]), np.cos(state.azimuth[k])])
                 a, b = factor * _MM * state.half[i]
                 patch = contact_patch(centres[k], towards[i], along, self.diameter, (a, b), 1e-6 * state.peak[i])
-                parts.append(Part(f"{race} contact {k}", patch, scale="pressure", ball=k))
+                parts.append(Solid(f"{race} contact {k}", patch, scale="pressure", ball=k))
         return parts
 
-    def widening(self, state: State) -> int:
+    def widening(self, state: Snapshot) -> int:
         """How many times as large as they are contact ellipses are drawn: in truth they are specks on the balls."""
         widest = _MM * float(state.half[state.load > 0.0].max(initial=0.0))
         return max(int(_WIDEST * self.diameter / widest), 1) if widest > 0.0 else 1
 
-    def towards(self, state: State) -> np.ndarray:
+    def towards(self, state: Snapshot) -> np.ndarray:
         """(2 Z, 3) unit vectors from the balls' centres to their contacts."""
         z = len(state.azimuth)
         angle = np.where(np.isfinite(state.angle), state.angle, self.shape.contact_angle)
@@ -354,7 +347,7 @@ class Bearing:
         return np.asarray(outward * (axial + np.cos(angle)[:, None] * radial))
 
 
-def _groove(bearing: Dimensions) -> float:
+def _groove_radius(bearing: Dimensions) -> float:
     """Radius of the circle of inner groove centres [m]."""
     return float(
         0.5 * bearing.pitch_diameter

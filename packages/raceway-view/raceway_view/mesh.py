@@ -46,7 +46,7 @@ def mesh_picture(meshes: Mapping[str, HexMesh], title: str) -> bytes:
     def draw(pyvista: ModuleType, plotter: Plotter) -> None:
         outside: dict[int, np.ndarray] = {}  # balls share one array of cells
         for name, mesh in meshes.items():
-            quads = _shared(outside, mesh) if name.startswith("ball") else _cut(mesh)
+            quads = _outer_faces(outside, mesh) if name.startswith("ball") else _cut_open(mesh)
             if len(quads):
                 surface = pyvista.PolyData.from_regular_faces(mesh.points, quads)
                 colour = next((value for word, value in _COLOURS.items() if name.startswith(word)), _OTHER)
@@ -60,14 +60,14 @@ def mesh_picture(meshes: Mapping[str, HexMesh], title: str) -> bytes:
     return rendered(draw, otherwise=_OTHERWISE)
 
 
-def _shared(outside: dict[int, np.ndarray], mesh: HexMesh) -> np.ndarray:
+def _outer_faces(outside: dict[int, np.ndarray], mesh: HexMesh) -> np.ndarray:
     """(k, 4) outer faces, computed once for each array of cells."""
     if id(mesh.cells) not in outside:
         outside[id(mesh.cells)] = _outside(mesh.cells)
     return outside[id(mesh.cells)]
 
 
-def _cut(mesh: HexMesh) -> np.ndarray:
+def _cut_open(mesh: HexMesh) -> np.ndarray:
     """(k, 4) outer faces of the cells that stay."""
     middle = mesh.points[mesh.cells].mean(axis=1)
     azimuth = np.arctan2(middle[:, 2], middle[:, 1])
@@ -190,7 +190,7 @@ def mesh(
     from raceway.extend import mesh_bodies, resolve, summary
 
     registry = registry_with(plugins)
-    written = _format(registry, form)
+    entry = _format(registry, form)
     if picture and find_spec("pyvista"):
         refuse_pictures(_OTHERWISE)
     progress("meshing", 0, 0)
@@ -204,7 +204,7 @@ def mesh(
     seconds = time.perf_counter() - start
     progress("judging the cells", 0, 0)
     content: Tables = {"title": scene.title, "mesher": scene.mesh.name, "seconds": seconds, **summary(meshes), "files": []}
-    return _Meshes(content, meshes, written, picture)
+    return _Meshes(content, meshes, entry, picture)
 
 
 def _format(registry: Registry, word: str) -> Entry:

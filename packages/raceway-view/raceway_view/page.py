@@ -17,7 +17,7 @@ from string import Template
 import numpy as np
 
 from raceway.extend import Page, Tables, data_uri
-from raceway_view.bodies import Bearing, Part, State, Surface, ball, joined
+from raceway_view.bodies import Bearing, Solid, Snapshot, Surface, ball, joined
 from raceway_view.pictures import LOADS, PRESSURES
 
 #: Points of a shape: WebGL 1 counts them in 16 bits.  Contact ellipses that go into one.
@@ -32,7 +32,7 @@ BALL_COLUMNS = [
 ]  # fmt: skip
 
 
-def view_page(bearing: Bearing, state: State, words: Tables, pictures: Sequence[tuple[bytes, str, str]]) -> Page:
+def view_page(bearing: Bearing, state: Snapshot, words: Tables, pictures: Sequence[tuple[bytes, str, str]]) -> Page:
     """The page.
 
     Parameters
@@ -88,15 +88,15 @@ def rings_data(bearing: Bearing, facets: int = 120) -> Tables:
     from matplotlib.colors import to_rgb
 
     rings = bearing.rings(facets=facets)
-    shapes = {f"ring {k}": _packed(part.surface) for k, part in enumerate(rings)}
+    shapes = {f"ring {k}": _packing(part.surface) for k, part in enumerate(rings)}
     parts = [_part(part, f"ring {k}", np.zeros(3), list(to_rgb(part.colour or "white"))) for k, part in enumerate(rings)]
     return {
-        "fixed_shapes": {"ball": _packed(ball(bearing.diameter, facets // 6, facets // 4)), **shapes},
+        "fixed_shapes": {"ball": _packing(ball(bearing.diameter, facets // 6, facets // 4)), **shapes},
         "fixed_parts": parts,
     }
 
 
-def state_data(bearing: Bearing, state: State) -> Tables:
+def state_data(bearing: Bearing, state: Snapshot) -> Tables:
     """Balls by their loads, forces, contact ellipses by their pressures and labels, for ``view.js``."""
     # Largest load on an inner race [N], and largest pressure [MPa].
     top, peak = max(float(state.load[: len(state.azimuth)].max()), 1e-12), max(1e-6 * float(state.peak.max()), 1e-12)
@@ -113,13 +113,13 @@ def state_data(bearing: Bearing, state: State) -> Tables:
         for k, centre in enumerate(centres)
     ]
     for k, part in enumerate(bearing.arrows(state, top)):
-        shapes[f"arrow {k}"] = _packed(part.surface)
+        shapes[f"arrow {k}"] = _packing(part.surface)
         parts.append(_part(part, f"arrow {k}", np.zeros(3), _tone(LOADS, (part.load or 0.0) / top)))
     patches = bearing.patches(state)
     for k in range(0, len(patches), _TOGETHER):
         together = joined([part.surface for part in patches[k : k + _TOGETHER]])
-        shapes[f"patches {k}"] = _packed(together, _tone(PRESSURES, np.asarray(together.values) / peak))
-        parts.append(_part(Part("contacts", together), f"patches {k}", np.zeros(3), np.ones(3)))
+        shapes[f"patches {k}"] = _packing(together, _tone(PRESSURES, np.asarray(together.values) / peak))
+        parts.append(_part(Solid("contacts", together), f"patches {k}", np.zeros(3), np.ones(3)))
     balls = [
         {"at": _short(centre), "text": f"Ball {k} at {np.degrees(state.azimuth[k]) % 360.0:.4g}°: {_ball_words(state, k)}"}
         for k, centre in enumerate(centres)
@@ -132,11 +132,11 @@ def state_data(bearing: Bearing, state: State) -> Tables:
     }  # fmt: skip
 
 
-def _part(part: Part, shape: str, at: np.ndarray, colour: np.ndarray | list[float]) -> Tables:
+def _part(part: Solid, shape: str, at: np.ndarray, colour: np.ndarray | list[float]) -> Tables:
     return {"name": part.name, "shape": shape, "at": _short(at), "colour": _short(colour), "opacity": part.opacity}
 
 
-def _ball_words(state: State, k: int) -> str:
+def _ball_words(state: Snapshot, k: int) -> str:
     z, words = len(state.azimuth), []
     for i, race in ((k, "inner"), (z + k, "outer")):
         if state.load[i] > 0.0:
@@ -149,7 +149,7 @@ def _ball_words(state: State, k: int) -> str:
     return "; ".join(words)
 
 
-def ball_cells(state: State, inner: bool) -> list[list[object]]:
+def ball_cells(state: Snapshot, inner: bool) -> list[list[object]]:
     """A row for each ball, cells as ``BALL_COLUMNS`` says."""
     z, rows = len(state.azimuth), []
     for k in range(z):
@@ -160,24 +160,24 @@ def ball_cells(state: State, inner: bool) -> list[list[object]]:
     return rows
 
 
-def _packed(surface: Surface, tones: np.ndarray | None = None) -> dict[str, str]:
+def _packing(surface: Surface, tones: np.ndarray | None = None) -> dict[str, str]:
     """Arrays in base64: points as float32, normals as int8 and tones as uint8 in fours, triangles as uint16."""
     assert len(surface.points) <= _MOST
     normals = np.zeros((len(surface.points), 4), dtype=np.int8)
     normals[:, :3] = np.round(127.0 * surface.normals)
     out = {
-        "points": _text(surface.points.astype("<f4")),
-        "normals": _text(normals),
-        "triangles": _text(surface.triangles.astype("<u2")),
+        "points": _number_text(surface.points.astype("<f4")),
+        "normals": _number_text(normals),
+        "triangles": _number_text(surface.triangles.astype("<u2")),
     }
     if tones is not None:
         colours = np.full((len(tones), 4), 255, dtype=np.uint8)
         colours[:, :3] = np.round(255.0 * tones)
-        out["tones"] = _text(colours)
+        out["tones"] = _number_text(colours)
     return out
 
 
-def _text(array: np.ndarray) -> str:
+def _number_text(array: np.ndarray) -> str:
     return base64.b64encode(np.ascontiguousarray(array).tobytes()).decode()
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from raceway import RacewayError
 from raceway.extend import Tables, new_figure, refuse_pictures
-from raceway_view.bodies import INNER, OUTER, Bearing, State
+from raceway_view.bodies import INNER, OUTER, Bearing, Snapshot
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -32,7 +32,7 @@ _GAP = 9.0
 
 
 def ball_labels(
-    bearing: Bearing, state: State, top: float, project: Callable[[np.ndarray], np.ndarray]
+    bearing: Bearing, state: Snapshot, top: float, project: Callable[[np.ndarray], np.ndarray]
 ) -> list[tuple[str, tuple[float, float]]]:
     """Texts and their lower left corners [pixels].
 
@@ -50,10 +50,10 @@ def ball_labels(
     share = np.linspace(0.0, 1.0, 25)[:, None, None]
     arrows = ((1.0 - share) * tails + share * heads).reshape(-1, 2)
     return [(texts[k], (float(middle[k, 0] - half[k, 0]), float(middle[k, 1] - half[k, 1])))
-            for k in _labelled(middle, half, arrows, bearing.shape.ball_count)]  # fmt: skip
+            for k in _label_choice(middle, half, arrows, bearing.shape.ball_count)]  # fmt: skip
 
 
-def _labelled(middle: np.ndarray, half: np.ndarray, arrows: np.ndarray, per_row: int) -> list[int]:
+def _label_choice(middle: np.ndarray, half: np.ndarray, arrows: np.ndarray, per_row: int) -> list[int]:
     """Every nth ball of each row, n as small as leaves room; those that have room where no n does."""
     touching = (np.abs(middle[:, None] - middle) < half[:, None] + half + _GAP).all(axis=2)
     np.fill_diagonal(touching, False)
@@ -66,11 +66,11 @@ def _labelled(middle: np.ndarray, half: np.ndarray, arrows: np.ndarray, per_row:
         balls = [k for k in range(len(middle)) if k % per_row % every == 0]
         if clear(balls):
             return balls
-    labelled: list[int] = []
+    chosen_labels: list[int] = []
     for k in range(len(middle)):
-        if clear([*labelled, k]):
-            labelled.append(k)
-    return labelled
+        if clear([*chosen_labels, k]):
+            chosen_labels.append(k)
+    return chosen_labels
 
 
 LOADS, PRESSURES, INK = "viridis", "inferno", "#20262c"
@@ -144,34 +144,21 @@ def look_from(plotter: Plotter, camera: Sequence[Sequence[float]], zoom: float) 
     plotter.camera.zoom(zoom)
 
 
-def _screen_points(plotter: Plotter) -> Callable[[np.ndarray], np.ndarray]:
-    """Where points (n, 3) [mm] of the scene are seen: (n, 2) pixels from the lower left corner."""
-    width, height = plotter.window_size
-    matrix = plotter.camera.GetCompositeProjectionTransformMatrix(width / height, -1.0, 1.0)
-    project = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
-
-    def pixels(points: np.ndarray) -> np.ndarray:
-        at = np.column_stack([points, np.ones(len(points))]) @ project.T
-        return np.asarray(0.5 * (at[:, :2] / at[:, 3:] + 1.0) * [width, height])
-
-    return pixels
-
-
 def _colour_bar(
     pyvista: ModuleType, plotter: Plotter, title: str, colours: str, top: float, corner: tuple[float, float]
 ) -> None:
     """A colour bar of its own, from 0 to ``top``."""
     table = pyvista.LookupTable(colours, scalar_range=(0.0, top))
-    hidden = pyvista.PolyData(np.zeros((1, 3)))
-    hidden.point_data["bar"] = np.zeros(1)
-    actor = plotter.add_mesh(hidden, scalars="bar", cmap=table, show_scalar_bar=False, opacity=0.0, reset_camera=False)
+    carrier = pyvista.PolyData(np.zeros((1, 3)))
+    carrier.point_data["bar"] = np.zeros(1)
+    actor = plotter.add_mesh(carrier, scalars="bar", cmap=table, show_scalar_bar=False, opacity=0.0, reset_camera=False)
     small = plotter.window_size[0] / 1600.0  # letters are given in pixels
     sizes = {name: max(int(size * small), 12) for name, size in (("title_font_size", 28), ("label_font_size", 26))}
     bar = {**_BAR, **sizes, "position_x": corner[0], "position_y": corner[1], "height": 0.34, "width": 0.05}
     plotter.add_scalar_bar(title=title, mapper=actor.mapper, **bar)
 
 
-def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int] = (1600, 1200)) -> bytes:
+def overview(bearing: Bearing, state: Snapshot, heading: str, size: tuple[int, int] = (1600, 1200)) -> bytes:
     """The bearing cut open, seen from the gap, as PNG."""
     top = max(float(state.load[: len(state.azimuth)].max()), 1e-12)
 
@@ -207,7 +194,16 @@ def overview(bearing: Bearing, state: State, heading: str, size: tuple[int, int]
         plotter.add_axes(xlabel="x", ylabel="y", zlabel="z", line_width=3, color=INK, viewport=(0.85, 0.0, 1.0, 0.2))
         plotter.enable_anti_aliasing("ssaa")
         look_from(plotter, [(1.7, 0.75, 0.85), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)], 1.08)
-        for text, corner in ball_labels(bearing, state, top, _screen_points(plotter)):
+        # Where points (n, 3) [mm] of the scene are seen: (n, 2) pixels from the lower left corner
+        width, height = plotter.window_size
+        matrix = plotter.camera.GetCompositeProjectionTransformMatrix(width / height, -1.0, 1.0)
+        project = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
+
+        def pixels(points: np.ndarray) -> np.ndarray:
+            at = np.column_stack([points, np.ones(len(points))]) @ project.T
+            return np.asarray(0.5 * (at[:, :2] / at[:, 3:] + 1.0) * [width, height])
+
+        for text, corner in ball_labels(bearing, state, top, pixels):
             plotter.add_text(text, position=corner, font_size=LETTERS // 2, color=INK)
 
     return rendered(draw, size)
@@ -217,23 +213,23 @@ _MM = 1e3
 _RACES = ("inner", "outer")
 
 
-def contacts(bearing: Bearing, state: State, heading: str) -> Figure:
+def contacts(bearing: Bearing, state: Snapshot, heading: str) -> Figure:
     """Section and ellipses of the ball with the largest load of both races."""
     z = len(state.azimuth)
     ball = int(np.argmax(state.load)) % z
     figure = new_figure(9.6, 5.4)
     grid = figure.add_gridspec(2, 2, width_ratios=(1.0, 1.25))
-    _section(figure.add_subplot(grid[:, 0]), bearing, state, ball)
+    _groove_section(figure.add_subplot(grid[:, 0]), bearing, state, ball)
     top = 1e-6 * float(max(state.peak[ball], state.peak[z + ball]))
     reach = 1.15 * _MM * float(max(state.half[ball, 0], state.half[z + ball, 0], 1e-9))
     panels = [figure.add_subplot(grid[lane, 1]) for lane in range(2)]
-    shown = [_ellipse(panel, state, k * z + ball, _RACES[k], top, reach) for k, panel in enumerate(panels)]
-    figure.colorbar(shown[0], ax=panels, label="pressure [MPa], Hertz", shrink=0.9)
+    ellipses = [_draw_ellipse(panel, state, k * z + ball, _RACES[k], top, reach) for k, panel in enumerate(panels)]
+    figure.colorbar(ellipses[0], ax=panels, label="pressure [MPa], Hertz", shrink=0.9)
     figure.suptitle(f"{heading}\nmost loaded ball: {ball} at {np.degrees(state.azimuth[ball]) % 360.0:.4g} deg", fontsize=13)
     return figure
 
 
-def _section(axes: Axes, bearing: Bearing, state: State, ball: int) -> None:
+def _groove_section(axes: Axes, bearing: Bearing, state: Snapshot, ball: int) -> None:
     z = len(state.azimuth)
     side, axial = bearing.shape.rows[ball // bearing.shape.ball_count]
     for inner, colour in ((True, INNER), (False, OUTER)):
@@ -277,7 +273,7 @@ def _mesh(axes: Axes, bearing: Bearing, inner: bool, side: float, axial: float) 
     axes.add_collection(PolyCollection(corners[profile.quads], facecolor="none", edgecolor=INK, linewidth=0.25, alpha=0.7))
 
 
-def _ellipse(axes: Axes, state: State, i: int, race: str, top: float, reach: float) -> ScalarMappable:
+def _draw_ellipse(axes: Axes, state: Snapshot, i: int, race: str, top: float, reach: float) -> ScalarMappable:
     """One ellipse on a mesh of its own radii and angles, so that its edge is smooth."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from raceway import Result
-    from raceway.extend import ElasticBodies, ElasticPoints, HexOperator
+    from raceway.extend import ElasticBodies, ElasticPoints
 
 
 _HEXAHEDRON = 12  # VTK's number of the cell
@@ -59,14 +59,23 @@ class StressFields:
         bodies: ElasticBodies = result.model.bearing  # type: ignore[assignment]
         ring: Any = result.model.system
         assembly = bodies.bearing.system.assembly
-        moved = assembly.nodal(ring.equilibrium).reshape(-1, 3)
+        displacement = assembly.nodal(ring.equilibrium).reshape(-1, 3)
         parts, begin = [], 0
         for index, (body, first, last) in enumerate(
             zip(assembly.bodies, assembly.starts[:-1], assembly.starts[1:], strict=True)
         ):
             if near is not None and index not in near:
                 continue
-            part = _of_body(index, body.operator, moved[first:last], None if near is None else near[index])
+            u = displacement[first:last]
+            contacts = None if near is None else near[index]
+            points, cells = body.operator.points, body.operator.cells
+            if contacts is not None:
+                places, reach = contacts
+                cells = cells[np.unique(np.concatenate([cells_near(points, cells, centre, reach) for centre in places]))]
+                node_numbers, numbers = np.unique(cells, return_inverse=True)
+                points, u, cells = points[node_numbers], u[node_numbers], numbers.reshape(-1, 8).astype(np.uint32)
+            stress = centre_stress(points, cells, u, body.operator.moduli, body.operator.formulation)
+            part = StressFields(points, cells.astype(np.int64), np.full(len(cells), index), u, stress)
             parts.append(attrs.evolve(part, cells=part.cells + begin))
             begin += len(part.points)
         return cls(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in attrs.fields(cls)))
@@ -80,17 +89,6 @@ class StressFields:
     def largest_shear(self) -> np.ndarray:
         """(m,) half the difference of the outer principal stresses [Pa]."""
         return largest_shear(self.stress)
-
-
-def _of_body(index: int, body: HexOperator, u: np.ndarray, near: tuple[np.ndarray, float] | None) -> StressFields:
-    points, cells = body.points, body.cells
-    if near is not None:
-        places, reach = near
-        cells = cells[np.unique(np.concatenate([cells_near(points, cells, centre, reach) for centre in places]))]
-        used, numbers = np.unique(cells, return_inverse=True)
-        points, u, cells = points[used], u[used], numbers.reshape(-1, 8).astype(np.uint32)
-    stress = centre_stress(points, cells, u, body.moduli, body.formulation)
-    return StressFields(points, cells.astype(np.int64), np.full(len(cells), index), u, stress)
 
 
 def contacts_left_out(result: Result) -> str:
@@ -118,7 +116,36 @@ def field_files(result: Result) -> dict[str, bytes]:
     most = int(np.argmax(balls))
     title = f"{result.title}\nvon Mises stress at the elements' centres, section through ball {most}, {balls[most]:.4g} N, x to the right"
     title += f"\n{contacts_left_out(result)}".rstrip()
-    return {"fields.vtu": _vtu(grid), "stress.png": _section_image(grid, float(result.model.azimuth[most]), title)}
+    # PNG of the plane of the axis and a ball, seen along the orbit
+    azimuth = float(result.model.azimuth[most])
+    across = np.array([0.0, -np.sin(azimuth), np.cos(azimuth)])
+    outward = np.array([0.0, np.cos(azimuth), np.sin(azimuth)])
+
+    def draw(_pyvista: ModuleType, plotter: Plotter) -> None:
+        half = grid.extract_cells(np.flatnonzero(grid.cell_centers().points @ outward > 0.0))
+        section = half.slice(normal=across, origin=(0.0, 0.0, 0.0))
+        stress = section.cell_data["stress"] = 1e-6 * section.cell_data[_STRESSES[0]]
+        # The value that a share of the whole area stays below.
+        values = np.asarray(stress)
+        areas = section.compute_cell_sizes(length=False, volume=False).cell_data["Area"]
+        order = np.argsort(values)
+        area_below = np.cumsum(areas[order])
+        top = float(values[order][np.searchsorted(area_below, _SHOWN * area_below[-1])])
+        bar = {
+            "title": "MPa", "color": INK, "title_font_size": 28, "label_font_size": 26, "fmt": "%.0f", "vertical": True,
+            "position_x": 0.9, "position_y": 0.15, "height": 0.7, "width": 0.06,
+        }  # fmt: skip
+        plotter.add_mesh(
+            section, scalars="stress", cmap="inferno", clim=(0.0, top), show_edges=True, edge_opacity=0.25, line_width=0.5, lighting=False,
+            scalar_bar_args=bar,
+        )  # fmt: skip
+        words = f"{title}\ncolours end at {top:.3g} MPa; the largest of an element here is {stress.max():.4g} MPa"
+        plotter.add_text(words, position="upper_left", font_size=13, color=INK)
+        centre = np.asarray(section.center)
+        plotter.enable_parallel_projection()
+        look_from(plotter, [tuple(centre + across), tuple(centre), tuple(outward)], 1.1)
+
+    return {"fields.vtu": _vtu(grid), "stress.png": rendered(draw)}
 
 
 def _new_grid(pyvista: ModuleType, fields: StressFields) -> Grid:
@@ -138,38 +165,6 @@ def _vtu(grid: Grid) -> bytes:
         path = Path(folder) / "fields.vtu"
         grid.save(path)
         return path.read_bytes()
-
-
-def _section_image(grid: Grid, azimuth: float, title: str) -> bytes:
-    """PNG of the plane of the axis and a ball, seen along the orbit."""
-    across = np.array([0.0, -np.sin(azimuth), np.cos(azimuth)])
-    outward = np.array([0.0, np.cos(azimuth), np.sin(azimuth)])
-
-    def draw(_pyvista: ModuleType, plotter: Plotter) -> None:
-        half = grid.extract_cells(np.flatnonzero(grid.cell_centers().points @ outward > 0.0))
-        section = half.slice(normal=across, origin=(0.0, 0.0, 0.0))
-        stress = section.cell_data["stress"] = 1e-6 * section.cell_data[_STRESSES[0]]
-        # The value that a share of the whole area stays below.
-        values = np.asarray(stress)
-        areas = section.compute_cell_sizes(length=False, volume=False).cell_data["Area"]
-        order = np.argsort(values)
-        summed = np.cumsum(areas[order])
-        top = float(values[order][np.searchsorted(summed, _SHOWN * summed[-1])])
-        bar = {
-            "title": "MPa", "color": INK, "title_font_size": 28, "label_font_size": 26, "fmt": "%.0f", "vertical": True,
-            "position_x": 0.9, "position_y": 0.15, "height": 0.7, "width": 0.06,
-        }  # fmt: skip
-        plotter.add_mesh(
-            section, scalars="stress", cmap="inferno", clim=(0.0, top), show_edges=True, edge_opacity=0.25, line_width=0.5, lighting=False,
-            scalar_bar_args=bar,
-        )  # fmt: skip
-        words = f"{title}\ncolours end at {top:.3g} MPa; the largest of an element here is {stress.max():.4g} MPa"
-        plotter.add_text(words, position="upper_left", font_size=13, color=INK)
-        centre = np.asarray(section.center)
-        plotter.enable_parallel_projection()
-        look_from(plotter, [tuple(centre + across), tuple(centre), tuple(outward)], 1.1)
-
-    return rendered(draw)
 
 
 #: Half the picture's width and height in minor semi-axes; elements within so many major semi-axes of a contact are kept.
@@ -210,9 +205,42 @@ def _drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Grid]:
     for column, name in enumerate(("von Mises stress", "largest shear stress")):
         top = max(float(values[column].max(initial=0.0)) for _, values in cuts)
         for row, (pair, (polygons, values)) in enumerate(zip(races, cuts, strict=True)):
-            _draw(panels[row, column], pair, polygons, values[column], top, name)
+            _draw_section(panels[row, column], pair, polygons, values[column], top, name)
     for row, pair in enumerate(races):
-        _along_the_normal(panels[row, 2], pair, grid)
+        # Stresses on the contact's normal beside Hertz's at the same load
+        axes = panels[row, 2]
+        for side, sign in zip(pair, (1.0, -1.0), strict=False):
+            profile, in_ball = side.profile, sign > 0.0
+            depth = profile.depth
+            exact = axis_stresses(depth, side.semi_axes, side.peak_pressure, side.poisson)
+            full = np.concatenate([exact, np.zeros_like(exact)], axis=1)
+            shear = axis_shear(depth, side.semi_axes, side.peak_pressure, side.poisson)
+            # Above the first element's centre the fit extrapolates.
+            inside = depth >= (0.5 * profile.lengths[0, 2] if side.resolved else 0.0)
+            stresses = np.stack([profile.von_mises, profile.shear]) if side.resolved else _elements_on(side, grid)
+            for values, hertz, colour, word in (
+                (stresses[0], von_mises(full), "#b5651d", "von Mises"),
+                (stresses[1], shear, "#0b5fa5", "largest shear"),
+            ):
+                mesh, theory = (f"{word}, mesh", f"{word}, Hertz") if in_ball else (None, None)
+                axes.plot(_MPA * values[inside], sign * _UM * depth[inside], color=colour, linewidth=1.6, label=mesh)
+                axes.plot(_MPA * hertz, sign * _UM * depth, color=colour, linewidth=1.0, linestyle="--", label=theory)
+            words = f"Hertz {_MPA * side.hertz[0]:.4g} MPa at {_UM * side.hertz[1]:.3g} µm"
+            if side.resolved:
+                size, at = profile.largest()
+                words = f"{side.body}: {_MPA * size:.4g} MPa at {_UM * at:.3g} µm\n{words}"
+            else:
+                words = f"{side.body}: not resolved by this mesh;\nsteps are its elements\n{words}"
+            height, up = (0.98, "top") if in_ball else (0.02, "bottom")
+            axes.text(0.97, height, words, transform=axes.transAxes, ha="right", va=up, fontsize=8)
+        axes.axhline(0.0, color=INK, linewidth=0.8)
+        wide = _UM * _WIDE * pair[0].semi_axes[1]
+        axes.set_ylim(-wide, wide)
+        axes.set_xlim(0.0, 1.9 * axes.get_xlim()[1])  # room for words
+        axes.set_xlabel("MPa")
+        _depth_axis(axes)
+        axes.set_title("on the contact's normal", fontsize=11)
+        axes.legend(fontsize=8, loc="center right")
     subtitle = "plane of the rolling direction and the contact's normal; ball above, ring below"
     if any(side.resolved for side in sides):
         subtitle += "; + largest shear stress on the normal"
@@ -224,18 +252,18 @@ def _contact_section(grid: Grid, pair: list[BelowContact]) -> tuple[list[np.ndar
     """Polygons (k, 2) of the deformed elements, along the rolling direction and into the ball [m], and two stresses (2, n) [Pa]."""
     ball = pair[0]
     bodies = grid.extract_cells(np.isin(grid.cell_data["body"], [side.index for side in pair]))
-    moved = bodies.point_data["displacement [m]"]
+    displacement = bodies.point_data["displacement [m]"]
     # The contact's centre as the ball's nearest node has moved.
     nearest = int(np.linalg.norm(bodies.points - ball.axis.pole, axis=1).argmin())
-    pole = ball.axis.pole + moved[nearest]
-    bodies.points = bodies.points + moved
+    pole = ball.axis.pole + displacement[nearest]
+    bodies.points = bodies.points + displacement
     beside = pole + _BESIDE * ball.semi_axes[0] * ball.axis.axes[0]
     cut = bodies.slice(normal=ball.axis.axes[0], origin=beside)
     plane = ((cut.points - pole) @ ball.axis.axes.T)[:, 1:]
     polygons, visible, at = [], np.zeros(cut.n_cells, dtype=bool), 0
     for cell in range(cut.n_cells):
         count = int(cut.faces[at])
-        corners = _within(plane[cut.faces[at + 1 : at + 1 + count]], _WIDE * ball.semi_axes[1])
+        corners = _clip(plane[cut.faces[at + 1 : at + 1 + count]], _WIDE * ball.semi_axes[1])
         at += 1 + count
         visible[cell] = len(corners) > 0
         if visible[cell]:
@@ -243,7 +271,7 @@ def _contact_section(grid: Grid, pair: list[BelowContact]) -> tuple[list[np.ndar
     return polygons, np.stack([np.asarray(cut.cell_data[name])[visible] for name in _STRESSES])
 
 
-def _within(corners: np.ndarray, half: float) -> np.ndarray:
+def _clip(corners: np.ndarray, half: float) -> np.ndarray:
     """(k, 2) what of a convex polygon lies in the square of half width ``half``: cut by its four sides in turn (Sutherland, Hodgman)."""
     for axis in (0, 1):
         for sign in (1.0, -1.0):
@@ -259,16 +287,16 @@ def _within(corners: np.ndarray, half: float) -> np.ndarray:
     return corners
 
 
-def _draw(
+def _draw_section(
     axes: Axes, pair: list[BelowContact], polygons: list[np.ndarray], values: np.ndarray, top: float, name: str
 ) -> None:
     """One stress in the section, ball above, ring below."""
     from matplotlib.collections import PolyCollection
 
-    scaled = [_UM * polygon for polygon in polygons]
-    shown = PolyCollection(scaled, array=_MPA * values, cmap="inferno", edgecolor=INK, linewidth=0.15)
-    shown.set_clim(0.0, _MPA * top)
-    axes.add_collection(shown)
+    outlines = [_UM * polygon for polygon in polygons]
+    collection = PolyCollection(outlines, array=_MPA * values, cmap="inferno", edgecolor=INK, linewidth=0.15)
+    collection.set_clim(0.0, _MPA * top)
+    axes.add_collection(collection)
     wide = _UM * _WIDE * pair[0].semi_axes[1]
     for side, sign in zip(pair, (1.0, -1.0), strict=False):
         depth = sign * _UM * side.hertz[1]
@@ -277,7 +305,7 @@ def _draw(
         axes.text(-0.97 * wide, depth, f"Hertz {abs(depth):.3g} µm", color=_MARK, va=up, fontsize=9)
         if side.resolved:
             axes.plot(0.0, sign * _UM * side.profile.largest()[1], "+", color=_MARK, markersize=9)
-    axes.figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
+    axes.figure.colorbar(collection, ax=axes, label="MPa", shrink=0.85)
     axes.set_xlim(-wide, wide)
     axes.set_ylim(-wide, wide)
     axes.set_aspect("equal")
@@ -290,42 +318,6 @@ def _depth_axis(axes: Axes) -> None:
     """Depths below both surfaces, counted from where they touch."""
     axes.yaxis.set_major_formatter(lambda height, _: f"{abs(height):g}")
     axes.set_ylabel("depth, ring down [µm]")
-
-
-def _along_the_normal(axes: Axes, pair: list[BelowContact], grid: Grid) -> None:
-    """Stresses on the contact's normal beside Hertz's at the same load: fitted where the mesh resolves them, else of its elements."""
-    for side, sign in zip(pair, (1.0, -1.0), strict=False):
-        profile, in_ball = side.profile, sign > 0.0
-        depth = profile.depth
-        exact = axis_stresses(depth, side.semi_axes, side.peak_pressure, side.poisson)
-        full = np.concatenate([exact, np.zeros_like(exact)], axis=1)
-        shear = axis_shear(depth, side.semi_axes, side.peak_pressure, side.poisson)
-        # Above the first element's centre the fit extrapolates.
-        inside = depth >= (0.5 * profile.lengths[0, 2] if side.resolved else 0.0)
-        computed = np.stack([profile.von_mises, profile.shear]) if side.resolved else _elements_on(side, grid)
-        for values, hertz, colour, word in (
-            (computed[0], von_mises(full), "#b5651d", "von Mises"),
-            (computed[1], shear, "#0b5fa5", "largest shear"),
-        ):
-            mesh, theory = (f"{word}, mesh", f"{word}, Hertz") if in_ball else (None, None)
-            axes.plot(_MPA * values[inside], sign * _UM * depth[inside], color=colour, linewidth=1.6, label=mesh)
-            axes.plot(_MPA * hertz, sign * _UM * depth, color=colour, linewidth=1.0, linestyle="--", label=theory)
-        words = f"Hertz {_MPA * side.hertz[0]:.4g} MPa at {_UM * side.hertz[1]:.3g} µm"
-        if side.resolved:
-            size, at = profile.largest()
-            words = f"{side.body}: {_MPA * size:.4g} MPa at {_UM * at:.3g} µm\n{words}"
-        else:
-            words = f"{side.body}: not resolved by this mesh;\nsteps are its elements\n{words}"
-        height, up = (0.98, "top") if in_ball else (0.02, "bottom")
-        axes.text(0.97, height, words, transform=axes.transAxes, ha="right", va=up, fontsize=8)
-    axes.axhline(0.0, color=INK, linewidth=0.8)
-    wide = _UM * _WIDE * pair[0].semi_axes[1]
-    axes.set_ylim(-wide, wide)
-    axes.set_xlim(0.0, 1.9 * axes.get_xlim()[1])  # room for words
-    axes.set_xlabel("MPa")
-    _depth_axis(axes)
-    axes.set_title("on the contact's normal", fontsize=11)
-    axes.legend(fontsize=8, loc="center right")
 
 
 def _elements_on(side: BelowContact, grid: Grid) -> np.ndarray:

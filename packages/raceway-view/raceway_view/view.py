@@ -17,7 +17,7 @@ from raceway.extend import (
     given_axes, largest_contacts, largest_facts, mesh_bodies, picture, quantity_rows, race_words, refuse_pictures,
     registry_with, run, sections, stated, telling, wrapped, writable, write_whole,
 )  # fmt: skip
-from raceway_view.bodies import Bearing, State
+from raceway_view.bodies import Bearing, Snapshot
 from raceway_view.mesh import mesh_picture
 from raceway_view.page import view_page
 from raceway_view.pictures import contacts, overview
@@ -98,19 +98,19 @@ class View(Answer):
         return axes
 
     def _facts(self) -> tuple[str, list[Fact]]:
-        shown = self.content
-        facts = [*largest_facts(shown, shown["shown"]), ("pictures", "", ", ".join(self.pictures))]
+        content = self.content
+        facts = [*largest_facts(content, content["shown"]), ("pictures", "", ", ".join(self.pictures))]
         where = [("written", "", str(path)) for path in self.files] or [("in memory", "", "save(folder) writes them")]
-        return shown["title"], [*facts, *where, *(("warning", "", text) for text in shown["warnings"])]
+        return content["title"], [*facts, *where, *(("warning", "", text) for text in content["warnings"])]
 
     def report(self) -> Iterator[Part]:
-        shown = self.content
-        rows: list[Fact] = [(f"Pictures {shown['shown']}", "", ""), *largest_facts(shown, shown["shown"])]
-        if shown["assumed"]:
-            rows.append(("rings drawn with usual", "", f"{', '.join(shown['assumed'])}: the scene does not say"))
-        yield Words(shown["title"], "bold")
+        content = self.content
+        rows: list[Fact] = [(f"Pictures {content['shown']}", "", ""), *largest_facts(content, content["shown"])]
+        if content["assumed"]:
+            rows.append(("rings drawn with usual", "", f"{', '.join(content['assumed'])}: the scene does not say"))
+        yield Words(content["title"], "bold")
         yield sections(rows)
-        yield from (Words(f"note: {text}", "yellow") for text in shown["warnings"])
+        yield from (Words(f"note: {text}", "yellow") for text in content["warnings"])
 
     def _repr_html_(self) -> str:
         image = base64.b64encode(self.pictures["bearing.png"]).decode()
@@ -124,7 +124,7 @@ _DOTS_PER_INCH = 110
 _EVERY = 360
 
 
-def at_rest(result: Result) -> State:
+def at_rest(result: Result) -> Snapshot:
     """The static state, with the numbers of result.json."""
     equilibrium, model = result.equilibrium, result.model
     balls = equilibrium_table(model, equilibrium)["balls"]
@@ -134,10 +134,10 @@ def at_rest(result: Result) -> State:
 
     half = np.column_stack([column("semi_major_{}_m"), column("semi_minor_{}_m")])
     angle = np.r_[equilibrium.angle_inner, equilibrium.angle_outer]
-    return State(model.azimuth, column("load_{}_n"), angle, half, column("peak_pressure_{}_pa"), np.zeros(5))
+    return Snapshot(model.azimuth, column("load_{}_n"), angle, half, column("peak_pressure_{}_pa"), np.zeros(5))
 
 
-def at_peak(result: Result) -> tuple[State, float]:
+def at_peak(result: Result) -> tuple[Snapshot, float]:
     """The moment of the last turn when a ball carries most on either race, and how far the turn is by then [deg].
 
     SceneError: a result without motion.
@@ -153,14 +153,14 @@ def at_peak(result: Result) -> tuple[State, float]:
     z, load, t = model.system.ball_count, record.contact_force[k], float(record.time[k])
     now = attrs.evolve(model, system=model.system.at_speed(t))
     angle = np.concatenate(now.bearing.contact_angles(now, record.displacement[k], record.ball[k], load, t))
-    halves, peaks = zip(*(_ellipse(now, race, part) for race, part in enumerate((load[:z], load[z:]))), strict=True)
+    halves, peaks = zip(*(_contact_ellipse(now, race, part) for race, part in enumerate((load[:z], load[z:]))), strict=True)
     direction = now.system.centre_vectors(record.displacement[k], t)[1]
     azimuth = np.arctan2(direction[:, 1], direction[:, 0])
-    state = State(azimuth, load, angle, np.concatenate(halves), np.concatenate(peaks), np.zeros(5))
+    state = Snapshot(azimuth, load, angle, np.concatenate(halves), np.concatenate(peaks), np.zeros(5))
     return state, 360.0 * (k - first) / per_turn
 
 
-def _ellipse(model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _contact_ellipse(model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Semi-axes (n, 2) [m] and largest pressure (n,) [Pa]."""
     pressure, major, minor = model.bearing.contact_ellipse(model, race, load)
     return np.column_stack([major, minor]), pressure
@@ -199,9 +199,21 @@ def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, 
             f"{f'{b.preset}: ' if b.preset else ''}{b.ball_count} balls of {1e3 * b.ball_diameter:.4g} mm on {1e3 * b.pitch_diameter:.4g} mm, "
             f"contact angle {b.contact_angle * 57.29577951308232:.4g} deg; {problem.bodies.name} bodies, tilt {problem.supports.tilt}"
         )
+        load, identification = result.model.problem.load, result.identification
+        lead = [f"Axial load {load.axial:.4g} N"]
+        if any(load.radial):
+            lead.append(f"radial load {load.radial[0]:.4g}, {load.radial[1]:.4g} N along y, z")
+        if identification is not None:
+            _, value, interval = stated(K, {"uncertainty": result.uncertainty})
+            lead.append(
+                f"{result.model.excitation.name} force of {identification.force_amplitude:.4g} N at {60.0 * identification.frequency_hz:.6g} r/min, "
+                f"K = {value} {interval.partition(':')[0]}".rstrip()
+            )
+        lead.append(f"axial displacement {X.text(X.of(result), 4)}")
+        lead.append(_loads(state))
         words = {
-            "title": result.title, "subtitle": subtitle, "when": when, "lead": _lead(result, state),
-            "notes": [*_notes(bearing), f"In the drawing {_widened(bearing, state)}."], "quantities": quantity_rows(result.to_dict()),
+            "title": result.title, "subtitle": subtitle, "when": when, "lead": f"{'; '.join(lead)}.",
+            "notes": [*_notes(bearing), f"In the drawing {_scale_words(bearing, state)}."], "quantities": quantity_rows(result.to_dict()),
         }  # fmt: skip
         pictures = [(image.content, image.alternative, image.caption) for image in images.values()]
         files["view.html"] = view_page(bearing, state, words, pictures).html().encode()
@@ -217,16 +229,16 @@ def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, 
 
 
 def _images(
-    result: Result, bearing: Bearing, moments: dict[str, tuple[State, str]], on_progress: OnProgress
+    result: Result, bearing: Bearing, moments: dict[str, tuple[Snapshot, str]], on_progress: OnProgress
 ) -> Iterator[tuple[str, _Image]]:
     """The bearing at rest and when a ball carries most, the contacts then, and what the whole record draws."""
     title = wrapped(result.title, 70)
     for name, (state, when) in moments.items():
         on_progress(f"drawing {name}", 0, 0)
-        loads, widened = _loads(state), _widened(bearing, state)
-        content = overview(bearing, state, wrapped(f"{result.title}\n{when}: {loads}\n{widened}", 72))
+        loads, scale_words = _loads(state), _scale_words(bearing, state)
+        content = overview(bearing, state, wrapped(f"{result.title}\n{when}: {loads}\n{scale_words}", 72))
         alternative = f"the bearing cut open, balls coloured by their load, {when}"
-        yield name, _Image(content, alternative, f"Loads {when}: {loads}; {widened}")
+        yield name, _Image(content, alternative, f"Loads {when}: {loads}; {scale_words}")
     on_progress("drawing contacts.png", 0, 0)
     state, when = list(moments.values())[-1]
     content = figure_png(contacts(bearing, state, f"{title}, {when}"), _DOTS_PER_INCH)
@@ -259,32 +271,16 @@ def _stresses(result: Result, images: dict[str, _Image], on_progress: OnProgress
     return files
 
 
-def _loads(state: State) -> str:
+def _loads(state: Snapshot) -> str:
     loads = [f"{race.min():.4g} to {race.max():.4g} N" for race in np.split(state.load, 2)]
     most = largest_contacts(state.load, state.peak, "largest")
     where = race_words(most["largest_pressure_race"])
     return f"inner race {loads[0]}, outer race {loads[1]}, pressure up to {1e-6 * most['largest_pressure_pa']:.4g} MPa ({where})"
 
 
-def _widened(bearing: Bearing, state: State) -> str:
+def _scale_words(bearing: Bearing, state: Snapshot) -> str:
     factor = bearing.widening(state)
     return "contact ellipses are to scale" if factor == 1 else f"contact ellipses are enlarged {factor} times"
-
-
-def _lead(result: Result, state: State) -> str:
-    load, identified = result.model.problem.load, result.identification
-    words = [f"Axial load {load.axial:.4g} N"]
-    if any(load.radial):
-        words.append(f"radial load {load.radial[0]:.4g}, {load.radial[1]:.4g} N along y, z")
-    if identified is not None:
-        _, value, interval = stated(K, {"uncertainty": result.uncertainty})
-        words.append(
-            f"{result.model.excitation.name} force of {identified.force_amplitude:.4g} N at {60.0 * identified.frequency_hz:.6g} r/min, "
-            f"K = {value} {interval.partition(':')[0]}".rstrip()
-        )
-    words.append(f"axial displacement {X.text(X.of(result), 4)}")
-    words.append(_loads(state))
-    return f"{'; '.join(words)}."
 
 
 def _notes(bearing: Bearing) -> list[str]:

@@ -71,7 +71,25 @@ def film(
     """
     speed, heavy = viscous / (modulus * along), load / (modulus * along**2)
     material = alpha * modulus
-    central, minimum = _by_regime(np.maximum(speed, 1e-300), material, heavy, k, across / along)
+    # H_c and H_min (4, n) of all regimes
+    u = np.maximum(speed, 1e-300)
+    ratio = across / along
+    phi = 1.0 / (1.0 + 2.0 / (3.0 * ratio))
+    scale = (u / heavy) ** 2
+    isoviscous = 141.0 * (material * heavy) ** 0.375 * (heavy / u) ** 0.75 * -np.expm1(-0.0387 * ratio) * scale
+    rigid = 128.0 * ratio * phi**2 * (0.131 * np.arctan(0.5 * ratio) + 1.683) ** 2 * scale
+    central = np.array([
+        2.69 * u**0.67 * material**0.53 * heavy**-0.067 * (1.0 - 0.61 * np.exp(-0.73 * k)),
+        7.32 * (1.0 - 0.72 * np.exp(-0.28 * k)) * u**0.64 * heavy**-0.22,
+        isoviscous,
+        rigid,
+    ])  # fmt: skip
+    minimum = np.array([
+        3.63 * u**0.68 * material**0.49 * heavy**-0.073 * -np.expm1(-0.68 * k),
+        7.43 * u**0.65 * heavy**-0.21 * (1.0 - 0.85 * np.exp(-0.31 * k)),
+        isoviscous,
+        rigid,
+    ])  # fmt: skip
     regime = np.argmax(minimum, axis=0)
     moves = viscous > 0.0
     contact = np.arange(len(regime))
@@ -95,29 +113,6 @@ def thermal_reduction(loading: np.ndarray) -> np.ndarray:
     to Grubin's inlet, which does not depend on the load.
     """
     return np.asarray(1.0 / (1.0 + 0.254 * loading**0.62))
-
-
-def _by_regime(
-    u: np.ndarray, g: np.ndarray, w: np.ndarray, k: np.ndarray, ratio: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """H_c and H_min (4, n) of all regimes."""
-    phi = 1.0 / (1.0 + 2.0 / (3.0 * ratio))
-    thinned = (u / w) ** 2
-    viscous = 141.0 * (g * w) ** 0.375 * (w / u) ** 0.75 * -np.expm1(-0.0387 * ratio) * thinned
-    rigid = 128.0 * ratio * phi**2 * (0.131 * np.arctan(0.5 * ratio) + 1.683) ** 2 * thinned
-    central = np.array([
-        2.69 * u**0.67 * g**0.53 * w**-0.067 * (1.0 - 0.61 * np.exp(-0.73 * k)),
-        7.32 * (1.0 - 0.72 * np.exp(-0.28 * k)) * u**0.64 * w**-0.22,
-        viscous,
-        rigid,
-    ])  # fmt: skip
-    minimum = np.array([
-        3.63 * u**0.68 * g**0.49 * w**-0.073 * -np.expm1(-0.68 * k),
-        7.43 * u**0.65 * w**-0.21 * (1.0 - 0.85 * np.exp(-0.31 * k)),
-        viscous,
-        rigid,
-    ])  # fmt: skip
-    return central, minimum
 
 
 def entraining_speed(

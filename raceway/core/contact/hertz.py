@@ -155,7 +155,7 @@ def every(contacts: Sequence[Ellipse], indices: np.ndarray) -> Ellipse:
 
 def ellipse(curvature_sum: Number, curvature_difference: Number, modulus: Number) -> Ellipse:
     """Hertz contact from curvature sum [1/m], curvature difference and E* [Pa]; of columns all numbers are columns."""
-    chi, a_star, delta_star = (_ellipses if is_column(curvature_difference) else _ellipse)(curvature_difference)
+    chi, a_star, delta_star = (_ellipses if is_column(curvature_difference) else _ellipticity)(curvature_difference)
     return Ellipse(curvature_sum, curvature_difference, modulus, a_star, a_star / chi, delta_star)
 
 
@@ -168,7 +168,7 @@ def _shape(chi: Number) -> tuple[Number, Number, Number]:
 
 
 @lru_cache(maxsize=256)
-def _ellipse(curvature_difference: float) -> tuple[float, float, float]:
+def _ellipticity(curvature_difference: float) -> tuple[float, float, float]:
     chi, a_star, delta_star = _shape(ellipticity(curvature_difference))
     return chi, float(a_star), float(delta_star)
 
@@ -176,13 +176,11 @@ def _ellipse(curvature_difference: float) -> tuple[float, float, float]:
 def _ellipses(curvature_difference: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The same of a column: Newton's method in log chi, from the formula of Hamrock and Brewe; nan where there is no ellipse.
 
-    Notes
-    -----
     With K and E of m = 1 - 1/chi^2, dK/dm = (E/(1-m) - K) / (2 m) and dE/dm = (E - K) / (2 m).
     """
     inside = (curvature_difference > 1e-12) & (curvature_difference < 1.0)
-    wanted = np.where(inside, curvature_difference, 0.5)
-    log_chi = 0.636 * np.log((1.0 + wanted) / (1.0 - wanted))
+    difference = np.where(inside, curvature_difference, 0.5)
+    log_chi = 0.636 * np.log((1.0 + difference) / (1.0 - difference))
     for _ in range(_NEWTON):
         excess, m1 = np.expm1(2.0 * log_chi), np.exp(-2.0 * log_chi)
         m, first, second = -np.expm1(-2.0 * log_chi), ellipkm1(m1), ellipe(-np.expm1(-2.0 * log_chi))
@@ -190,7 +188,7 @@ def _ellipses(curvature_difference: np.ndarray) -> tuple[np.ndarray, np.ndarray,
         slope = ((second / m1 - first) * second - first * (second - first)) / (2.0 * m * second**2) * 2.0 * m1
         value = 1.0 - 2.0 / excess * (ratio - 1.0)
         by_log = 4.0 * (excess + 1.0) / excess**2 * (ratio - 1.0) - 2.0 / excess * slope
-        step = (value - wanted) / by_log
+        step = (value - difference) / by_log
         log_chi = np.maximum(log_chi - step, 0.1 * log_chi)
         if np.abs(step).max() < 1e-15 * log_chi.max():
             break
@@ -239,7 +237,7 @@ def ball_compliance(
     ----------
     Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., sections 172-173 (solutions of degree n in a sphere).
     """
-    c0, c1, coefficients = _series(poisson)
+    c0, c1, coefficients = _stress_series(poisson)
     radial, weight = np.polynomial.legendre.leggauss(_POINTS)
     radial = 0.5 * (radial + 1.0)
     around = 2.0 * np.pi * (np.arange(_POINTS) + 0.5) / _POINTS
@@ -260,7 +258,7 @@ def ball_compliance(
 
 
 @cache
-def _series(nu: float) -> tuple[float, float, np.ndarray]:
+def _stress_series(nu: float) -> tuple[float, float, np.ndarray]:
     """c0, c1 and the remaining coefficients (_TERMS,) of the inward displacement under a unit inward force, radius and E 1."""
     n = np.arange(_TERMS, dtype=float)
     mu = 0.5 / (1.0 + nu)

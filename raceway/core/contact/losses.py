@@ -138,12 +138,12 @@ def _ball_rates(at, film, speed, outer_race, balls):
         balls.roll[i], balls.roll[o] = roll_i, roll_o
         balls.width[i], balls.width[o] = width_i, width_o
         diameter, cage = ratio * pitch, ratio * roll_o
-        held = 0.5 * diameter * film.traction_limit * (load_o if outer_race else load_i + load_o)
-        sideways = at.inertia[i] * abs(ball * radial) * cage * speed * speed / max(held, 1e-300)
-        bounded = min(sideways, _GYROSCOPIC_LIMIT)
-        across = 1.0 / np.sqrt(1.0 - bounded * bounded)
+        traction_moment = 0.5 * diameter * film.traction_limit * (load_o if outer_race else load_i + load_o)
+        sideways = at.inertia[i] * abs(ball * radial) * cage * speed * speed / max(traction_moment, 1e-300)
+        sideways_moment = min(sideways, _GYROSCOPIC_LIMIT)
+        across = 1.0 / np.sqrt(1.0 - sideways_moment * sideways_moment)
         balls.across[i], balls.across[o] = 1.0 if outer_race else across, across
-        balls.gyroscopic[i] = sideways if held > 0.0 else 0.0
+        balls.gyroscopic[i] = sideways if traction_moment > 0.0 else 0.0
         turning = 0.5 * pitch * cage
         balls.drag[i] = at.drag[i] * turning * turning * turning * speed * speed
 
@@ -158,12 +158,8 @@ def _slip_below(t, h, spin, c):
 def mean_slip(spin, curvature):
     """Mean of the slip's size over a contact, weighted by the pressure: v = spin t + curvature (t^2 - c), t from -1 to 1 across.
 
-    Parameters
-    ----------
     spin, curvature : speeds at the end of the ellipse, of one unit, 0 or more
 
-    Notes
-    -----
     The load per width falls as 1 - t^2.  Where friction is the same in all directions, c is such that tractions balance, which is the
     least dissipation: 0 where spin is the larger, 0.1206 without spin, between them 0.1206 (1 - (spin / curvature)^2)^(3/2) to 2 %, which
     the mean hardly minds.  The slip is integrated exactly.  Limits: 3/8 spin, and 0.1611 curvature: Houpert's 0.0806 mu Q a^2 / R of
@@ -215,13 +211,13 @@ def _contact_losses(at, film, speed, balls):
         slope = at.slope[c] * exponential(0.75 * log_drag - 0.5 * log_along)
         rigid = at.rigid[c] * exponential(2.0 / 3.0 * log_drag - 1.0 / 3.0 * log_along)
         regime = at.regime[c] * q
-        heated = 1.0 + 0.29 * exponential(0.78 * log_loading)
+        inlet_heating = 1.0 + 0.29 * exponential(0.78 * log_loading)
         force = at.front[c] * root * along * slope * (rigid * along * along + 1.8 * regime)
-        force = force / ((slope * along * along + regime) * heated)
+        force = force / ((slope * along * along + regime) * inlet_heating)
         slip = mean_slip(balls.spin[c] * root * at.spin[c], rolling * root * root * at.curvature[c])
         pressure = at.pressure[c] * root
-        thinned = 1.0 + 0.254 * exponential(0.62 * log_loading)
-        y = steep + logarithm(at.strain[c] * slip * speed * thinned) + film.pressure_viscosity * pressure
+        thermal_thinning = 1.0 + 0.254 * exponential(0.62 * log_loading)
+        y = steep + logarithm(at.strain[c] * slip * speed * thermal_thinning) + film.pressure_viscosity * pressure
         y = max(y - 0.464 * log_along + 0.067 * log_q - 0.67 * log_drag, -300.0)
         # asinh(exp(y)) = y + log(1 + sqrt(1 + exp(-2 y)))
         stress = film.eyring_stress * (y + logarithm(1.0 + np.sqrt(1.0 + exponential(-2.0 * y))))
@@ -248,9 +244,9 @@ def ball_losses(contacts, films, speed, outer_race, row, by_contacts, by_balls):
     balls = _Balls(
         np.empty(k), np.empty(k), np.empty(k), np.empty(k), np.empty(k), np.empty(k), np.empty(k), np.empty(z), np.empty(z),
     )  # fmt: skip
-    shared = c.ratio.shape[0] == 1
+    one_geometry = c.ratio.shape[0] == 1
     for p in range(speed.size):
-        oil, k = films[min(p, films.shape[0] - 1)], 0 if shared else p
+        oil, k = films[min(p, films.shape[0] - 1)], 0 if one_geometry else p
         film = _Film(oil[0], oil[1], oil[2], oil[3], oil[4])
         at = Contacts(
             c.load[p], c.half_tangent[p], c.root[p], c.ratio[k], c.pitch[k], c.inertia[k], c.drag[k], c.major[k], c.spin[k], c.curvature[k],

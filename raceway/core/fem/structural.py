@@ -49,17 +49,11 @@ def density(points: int) -> tuple[np.ndarray, np.ndarray]:
 def line_load_weights(places: np.ndarray, centre: float, half: float) -> np.ndarray:
     """Consistent nodal forces of a unit line load on piecewise linear shape functions.
 
-    Parameters
-    ----------
     places : (n,) float, ascending [m or rad]
     centre, half : middle and half length of the load, in the same unit; what lies beyond the ends acts on the last nodes
 
-    Returns
-    -------
-    weights : (n,) float, sum 1
+    Returns weights : (n,) float, sum 1
 
-    Notes
-    -----
     The minor axis is left out: at the depths that are looked at it is far smaller than the distance.
     """
     x, w = density(64)
@@ -97,8 +91,6 @@ ANGLES = 13
 class RingCompliance:
     """Structural compliance of one ring.
 
-    Attributes
-    ----------
     angles : (n,) float, contact angles [rad], equidistant;  direct : (n,) float, a contact on itself [m/N]
     across : (n, n, Z) float, displacement along the normal at one angle by a force along that at another, k balls further
         round; entry 0 is not used [m/N]
@@ -166,7 +158,7 @@ def ring_compliance(
 
     def make() -> dict[str, np.ndarray]:
         body = Revolution(profile, divisions, young, poisson, seat=seat)
-        raw = _columns(body, shape, table, half, depths, divisions // balls * np.arange(balls))
+        raw = _load_columns(body, shape, table, half, depths, divisions // balls * np.arange(balls))
         return {"compliance": raw, "half_space": half_space(depths, half, young, poisson).mean(keepdims=True)}
 
     name = "inner" if shape.inner else "outer"
@@ -183,7 +175,7 @@ def ring_section(shape: RingShape, ball_diameter: float, bulk: float | None = No
     return coarse_profile(shape, bulk or BULK * length, surface or min(SURFACE * length, bulk or np.inf))
 
 
-def _columns(
+def _load_columns(
     body: Revolution, shape: RingShape, table: np.ndarray, half: float, depths: np.ndarray, offsets: np.ndarray
 ) -> np.ndarray:
     """(angles, angles, offsets) mean normal displacement over the depths below each angle, under a unit line load at another [m/N]."""
@@ -191,46 +183,40 @@ def _columns(
 
     profile, sign = body.profile, shape.sign
     size = 3 * len(profile.points)
-    loads, observed = np.zeros((size, len(table))), np.zeros((size, len(table)))
+    loads, responses = np.zeros((size, len(table))), np.zeros((size, len(table)))
     for a, angle in enumerate(table):
         weights = line_load_weights(profile.angles, angle, half / shape.groove)
         loads[3 * profile.race, a] = weights * sign * np.cos(profile.angles)
         loads[3 * profile.race + 2, a] = weights * sign * np.sin(profile.angles)
         normal = sign * np.array([np.cos(angle), np.sin(angle)])
         centre = np.array([shape.centre_r, shape.centre_x])
-        nodes, shares = _interpolation(profile, centre + (shape.groove + depths)[:, None] * normal)
+        # Triangles that hold the points: a point outside is extrapolated from the nearest
+        places = centre + (shape.groove + depths)[:, None] * normal
+        q = profile.quads
+        triangles = np.concatenate([q[:, [0, 1, 2]], q[:, [0, 2, 3]]])
+        p = profile.points[triangles]
+        base = p[:, 0]
+        edge_1, edge_2 = p[:, 1] - base, p[:, 2] - base
+        det = edge_1[:, 0] * edge_2[:, 1] - edge_1[:, 1] * edge_2[:, 0]
+        delta = places[:, None] - base
+        second = (delta[..., 0] * edge_2[:, 1] - delta[..., 1] * edge_2[:, 0]) / det
+        third = (edge_1[:, 0] * delta[..., 1] - edge_1[:, 1] * delta[..., 0]) / det
+        shares = np.stack([1.0 - second - third, second, third], axis=2)
+        best = shares.min(axis=2).argmax(axis=1)
+        nodes, shares = triangles[best], shares[np.arange(len(places)), best]
         for component, part in ((0, normal[0]), (2, normal[1])):
-            np.add.at(observed[:, a], (3 * nodes + component).ravel(), (shares * part / len(depths)).ravel())
+            np.add.at(responses[:, a], (3 * nodes + component).ravel(), (shares * part / len(depths)).ravel())
     unknowns = body.unknowns
-    loads, observed = loads[unknowns], observed[unknowns]
-    solved = solved_harmonics(body.divisions, "sampled")
-    even, _ = offset_weights(body.divisions, solved, offsets)
-    harmonic = np.empty((len(solved), len(table), len(table)))
-    for i, n in enumerate(solved):
+    loads, responses = loads[unknowns], responses[unknowns]
+    harmonics = solved_harmonics(body.divisions, "sampled")
+    even, _ = offset_weights(body.divisions, harmonics, offsets)
+    harmonic = np.empty((len(harmonics), len(table), len(table)))
+    for i, n in enumerate(harmonics):
         factor = splu(
             body.harmonic(int(n)), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0
         )
-        harmonic[i] = observed.T @ factor.solve(loads)
+        harmonic[i] = responses.T @ factor.solve(loads)
     return np.ascontiguousarray(np.moveaxis(np.tensordot(even, harmonic, axes=1), 0, 2))
-
-
-def _interpolation(profile: Profile, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes (n, 3) and shares (n, 3) of the triangles (halves of the quadrilaterals) that hold points (n, 2) of a section.
-
-    A point outside is put into the nearest triangle and extrapolated.
-    """
-    q = profile.quads
-    triangles = np.concatenate([q[:, [0, 1, 2]], q[:, [0, 2, 3]]])
-    p = profile.points[triangles]
-    base = p[:, 0]
-    edge_1, edge_2 = p[:, 1] - base, p[:, 2] - base
-    det = edge_1[:, 0] * edge_2[:, 1] - edge_1[:, 1] * edge_2[:, 0]
-    delta = places[:, None] - base
-    second = (delta[..., 0] * edge_2[:, 1] - delta[..., 1] * edge_2[:, 0]) / det
-    third = (edge_1[:, 0] * delta[..., 1] - edge_1[:, 1] * delta[..., 0]) / det
-    shares = np.stack([1.0 - second - third, second, third], axis=2)
-    best = shares.min(axis=2).argmax(axis=1)
-    return triangles[best], shares[np.arange(len(places)), best]
 
 
 #: Points along a semi-axis of the coarser and the finer patch.
@@ -251,8 +237,6 @@ _ITERATIONS = 30
 class _Calibration:
     """Of contacts on one race.
 
-    Attributes
-    ----------
     angles : (n,) contact angles [rad], ascending
     compliance : (n,) of ring and ball together, beyond Hertz: tangent, d(approach - Hertz's) / dQ [m/N]
     uncertainty : how well it is known: what was still to come beyond the finer patch, and the scatter of its mean [m/N]
@@ -360,11 +344,11 @@ def _compliance(contact: Contact, patch: Patch, ellipse: Ellipse, load: float, a
     offset, hertz = patch.race.groove - patch.ball.radius, float(ellipse.approach(load))
     centre = (offset + hertz) * normal
     for _ in range(_ITERATIONS):
-        pressed = contact.press(centre, np.zeros(2))
-        change = np.linalg.solve(pressed.stiffness, load * normal + pressed.force)
+        state = contact.press(centre, np.zeros(2))
+        change = np.linalg.solve(state.stiffness, load * normal + state.force)
         centre = centre + change
         if np.abs(change).max() < 1e-9 * hertz:
-            if pressed.truncated:
+            if state.truncated:
                 raise ConvergenceError("the groove's edge truncates the contact", {})
             return (float(normal @ centre) - offset - hertz) / load + float(normal @ patch.race.crossing[0] @ normal)
     raise ConvergenceError("the approach of a single contact did not converge", {"place": centre})
@@ -422,17 +406,17 @@ class ElasticBodies:
         -----
         The rings' tables give its change over the groove, calibrations its size.
         """
-        return self._matched(race, angles) + self.beyond(race, angles)
+        return self._at_angles(race, angles) + self.beyond(race, angles)
 
     def beyond(self, race: int, angles: np.ndarray) -> np.ndarray:
         """Compliance of contacts at surface points beyond that of depth matching, at contact angles [rad], in m/N."""
         calibration = self.calibrations[race]
         if calibration is None:
             return np.zeros(len(angles))
-        excess = calibration.compliance - self._matched(race, calibration.angles)
+        excess = calibration.compliance - self._at_angles(race, calibration.angles)
         return np.asarray(np.interp(np.abs(angles), calibration.angles, excess))
 
-    def _matched(self, race: int, angles: np.ndarray) -> np.ndarray:
+    def _at_angles(self, race: int, angles: np.ndarray) -> np.ndarray:
         ring = (self.inner, self.outer)[race]
         return np.asarray(ring.smooth(np.clip(angles, ring.angles[0], ring.angles[-1])) + self.ball_direct)
 
@@ -493,16 +477,10 @@ def elastic_scalars(rigid: np.ndarray, bodies: ElasticBodies, angles: np.ndarray
 def between_grooves(ring: RingCompliance, angles: np.ndarray) -> np.ndarray:
     """Compliance of one ring between groove centres, from loads and displacements along the normals of contacts.
 
-    Parameters
-    ----------
     angles : (n,) contact angles of the balls [rad], about which the compliance is to hold
 
-    Returns
-    -------
-    compliance : (Z, 3) axial by axial, axial by radial, radial by radial force of a ball so many balls further round [m/N]
+    Returns (Z, 3) axial by axial, axial by radial, radial by radial force of a ball so many balls further round [m/N]
 
-    Notes
-    -----
     Angles of the table have the weight of a normal distribution about those of the balls.
     """
     middle, width = float(angles.mean()), float(np.hypot(_WIDTH, angles.std()))

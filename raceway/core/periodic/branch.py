@@ -89,12 +89,12 @@ class Branch:
     fastest: Callable[[float], float] = lambda _: 0.0
     aim: float | None = None
 
-    def start(self, solved: Solved, parameter: float, sense: float = 1.0) -> Point:
+    def start(self, solution: Solved, parameter: float, sense: float = 1.0) -> Point:
         """The first point, from a motion that is known; ``sense``: the side to which the parameter goes."""
-        n2 = 2 * len(solved.problem.free)
+        n2 = 2 * len(solution.problem.free)
         across = np.zeros(n2 + 1)
         across[-1] = sense
-        _, _, tangent, linear = self._correct(solved.path, parameter, across, None)
+        _, _, tangent, linear = self._correct(solution.path, parameter, across, None)
         error = self._estimate(linear, tangent).error
         return Point(parameter, linear, error, tangent, False, highest=self._order(linear, parameter))
 
@@ -107,11 +107,11 @@ class Branch:
             The path is none of forces that have values.
         """
         problem = self.problem_at(parameter)
-        linearised = self._linearise(problem, path, parameter)
-        if linearised is None:
+        linearisation = self._linearise(problem, path, parameter)
+        if linearisation is None:
             raise ConvergenceError("the balls have no equilibrium between the races")
-        solved = Solved(problem, path, linearised[0], float(np.abs(path.v / problem.weight).max()), True, 0, 0.0)
-        return Point(parameter, solved, 0.0, tangent, False, highest=self._order(solved, parameter))
+        solution = Solved(problem, path, linearisation[0], float(np.abs(path.v / problem.weight).max()), True, 0, 0.0)
+        return Point(parameter, solution, 0.0, tangent, False, highest=self._order(solution, parameter))
 
     def follow(self, first: Point, step: float, longest: float | None = None) -> Iterator[Point]:
         """Points from ``first`` on, one by one, for as long as they are asked for.
@@ -154,54 +154,52 @@ class Branch:
         ConvergenceError
             The corrector finds none, or turned round.
         """
-        solved = here.solved
-        path, dp = solved.path, size * here.tangent[-1] * self.unit
+        solution = here.solved
+        path, dp = solution.path, size * here.tangent[-1] * self.unit
         # Predictor: the last linearised problem carries the tangent at the start through the span; the last correction, which it
         # adds once more, is far below the tolerance.
-        moved, _ = _moved(path, solved.problem.free, solved.eliminated, size * self.displacement(here), dp)
-        moved = attrs.evolve(moved, ball=path.ball.copy(), rate=path.rate.copy())
+        trial, _ = _shifted_path(path, solution.problem.free, solution.eliminated, size * self.displacement(here), dp)
+        trial = attrs.evolve(trial, ball=path.ball.copy(), rate=path.rate.copy())
         at = here.parameter + dp
-        path, parameter, tangent, last = self._correct(moved, at, here.tangent, (moved, at))
-        estimated = self._estimate(last, tangent)
+        path, parameter, tangent, last = self._correct(trial, at, here.tangent, (trial, at))
+        error = self._estimate(last, tangent)
         for _ in range(4):
-            if estimated.error <= self.tolerance or 2 * path.intervals > self.most_intervals:
+            if error.error <= self.tolerance or 2 * path.intervals > self.most_intervals:
                 break
-            parts = np.where(
-                (estimated.defect > 0.1 * estimated.defect.max()) | (estimated.between > 0.1 * estimated.between.max()), 2, 1
-            )
+            parts = np.where((error.defect > 0.1 * error.defect.max()) | (error.between > 0.1 * error.between.max()), 2, 1)
             nodes, parent = divided(path.nodes, parts)
             finer = resampled(last.problem, path, nodes, parent)
             path, parameter, tangent, last = self._correct(finer, parameter, here.tangent, (finer, parameter))
-            estimated = self._estimate(last, tangent)
+            error = self._estimate(last, tangent)
         # Back where it came from: a corrector that turned round.
         if float(tangent @ here.tangent) < 0.5:
             raise ConvergenceError("the branch bends too much for the step")
-        folded = tangent[-1] * here.tangent[-1] < 0.0
-        off = np.abs([path.q[0] - moved.q[0], path.v[0] - moved.v[0]]) / last.problem.weight
+        fold = tangent[-1] * here.tangent[-1] < 0.0
+        off = np.abs([path.q[0] - trial.q[0], path.v[0] - trial.v[0]]) / last.problem.weight
         deviation = float(off.max()) / max(last.size, 1e-300)
-        state = (path.state(0, last.problem.free) - moved.state(0, last.problem.free)) / self.length
+        state = (path.state(0, last.problem.free) - trial.state(0, last.problem.free)) / self.length
         strayed = float(np.hypot(np.linalg.norm(state), (parameter - at) / self.unit))
-        return Point(parameter, last, estimated.error, tangent, folded, deviation, strayed, self._order(last, parameter))
+        return Point(parameter, last, error.error, tangent, fold, deviation, strayed, self._order(last, parameter))
 
     def crossing(self, point: Point) -> float:
         """Determinant of the bordered problem, which changes its sign where another branch crosses, and not at a fold."""
         return float(
-            np.linalg.det(self._bordered(point.solved.problem, point.solved.eliminated.span_transfer, point.tangent))
+            np.linalg.det(self._bordered_matrix(point.solved.problem, point.solved.eliminated.span_transfer, point.tangent))
         )
 
     def displacement(self, point: Point) -> np.ndarray:
         """(2 n,) of the unknown state at the start of the span, by a unit of length along the branch."""
         return self.length * point.tangent[:-1]
 
-    def _order(self, solved: Solved, parameter: float) -> float:
-        return self.fastest(parameter) / solved.problem.speed
+    def _order(self, solution: Solved, parameter: float) -> float:
+        return self.fastest(parameter) / solution.problem.speed
 
-    def _estimate(self, solved: Solved, tangent: np.ndarray) -> Estimate:
+    def _estimate(self, solution: Solved, tangent: np.ndarray) -> Estimate:
         """The error across the branch, which has a value at folds too."""
-        bordered = self._bordered(solved.problem, solved.eliminated.span_transfer, tangent)
-        return estimate(solved, lambda end: np.linalg.solve(bordered, np.append(end, 0.0))[:-1])
+        border = self._bordered_matrix(solution.problem, solution.eliminated.span_transfer, tangent)
+        return estimate(solution, lambda end: np.linalg.solve(border, np.append(end, 0.0))[:-1])
 
-    def _bordered(self, problem: Problem, span_transfer: np.ndarray, across: np.ndarray) -> np.ndarray:
+    def _bordered_matrix(self, problem: Problem, span_transfer: np.ndarray, across: np.ndarray) -> np.ndarray:
         """(2 n + 1, 2 n + 1) of the closing condition in scaled state and parameter, ``across`` as its last row."""
         n2 = 2 * len(problem.free)
         out = np.empty((n2 + 1, n2 + 1))
@@ -218,8 +216,8 @@ class Branch:
         else:
             by = self._difference(problem, path, parameter)
         out, report = problem.eliminated(path.nodes), np.zeros(3)
-        condensed = condense(problem.equations, problem.mesh(path.nodes), path.samples(push, by), out, report)
-        return (out, report) if condensed == path.intervals and np.isfinite(report).all() else None
+        success = condense(problem.equations, problem.mesh(path.nodes), path.samples(push, by), out, report)
+        return (out, report) if success == path.intervals and np.isfinite(report).all() else None
 
     def _difference(self, problem: Problem, path: Path, parameter: float) -> np.ndarray:
         """By the parameter: central, at the end of what it may be to one side."""
@@ -242,7 +240,7 @@ class Branch:
         return out
 
     def _correct(
-        self, path: Path, parameter: float, across: np.ndarray, predicted: tuple[Path, float] | None
+        self, path: Path, parameter: float, across: np.ndarray, prediction: tuple[Path, float] | None
     ) -> tuple[Path, float, np.ndarray, Solved]:
         """Newton across the predictor; without one, the parameter stays.  Path, parameter, tangent, last linearisation."""
         worst = np.inf
@@ -251,25 +249,25 @@ class Branch:
             problem = self.problem_at(parameter)
             free = problem.free
             n = len(free)
-            linearised = self._linearise(problem, path, parameter)
-            if linearised is None:
+            linearisation = self._linearise(problem, path, parameter)
+            if linearisation is None:
                 raise ConvergenceError("the balls have no equilibrium between the races")
-            linear, report = linearised
+            linear, report = linearisation
             span_transfer = linear.span_transfer
-            bordered = self._bordered(problem, span_transfer, across)
+            border = self._bordered_matrix(problem, span_transfer, across)
             right = np.zeros((2 * n + 1, 2))
             right[: 2 * n, 0] = (span_transfer[:, 2 * n] + gap(problem, path)) / self.length
             right[2 * n, 1] = 1.0
-            if predicted is not None:
-                off = path.state(0, free) - predicted[0].state(0, free)
+            if prediction is not None:
+                off = path.state(0, free) - prediction[0].state(0, free)
                 right[2 * n, 0] = -across[: 2 * n] @ off / self.length
-                right[2 * n, 0] -= across[-1] * (parameter - predicted[1]) / self.unit
+                right[2 * n, 0] -= across[-1] * (parameter - prediction[1]) / self.unit
             try:
-                solution = np.linalg.solve(bordered, right)
+                solution = np.linalg.solve(border, right)
             except np.linalg.LinAlgError as why:
                 raise ConvergenceError("the branch has no single direction here") from why
             first, dp = self.length * solution[: 2 * n, 0], self.unit * solution[2 * n, 0]
-            corrected, change = _moved(path, free, linear, first, dp)
+            corrected, change = _shifted_path(path, free, linear, first, dp)
             correction = float(np.abs(change.q / problem.weight).max())
             if not np.isfinite(correction) or (
                 sweeps > 2 and report[IMBALANCE] > 10.0 * worst and report[IMBALANCE] > 1e-9 * report[FORCE]
@@ -288,24 +286,18 @@ class Branch:
         raise ConvergenceError("the corrector does not converge")
 
 
-def _moved(path: Path, free: np.ndarray, linear: Eliminated, first: np.ndarray, dp: float) -> tuple[Path, Change]:
+def _shifted_path(path: Path, free: np.ndarray, linear: Eliminated, first: np.ndarray, dp: float) -> tuple[Path, Change]:
     """A path after changes of its first state (2 n,) and of the parameter, and its change."""
     change = Change(np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a))
     spread(free, linear, first, dp, change)
     return attrs.evolve(path, q=path.q + change.q, v=path.v + change.v, a=path.a + change.a), change
 
 
-def _twice(symmetry: Symmetry) -> Symmetry:
-    """The symmetry of two spans."""
-    turned = symmetry.rotation @ symmetry.rotation
-    return Symmetry(2.0 * symmetry.span, turned, 2.0 * symmetry.angle, symmetry.order[symmetry.order], symmetry.pitch)
-
-
 def _two_spans(problem: Problem) -> Problem:
     """The same problem with a period of two spans."""
-    return Problem(
-        problem.system, problem.speed, _twice(problem.symmetry), problem.share, problem.clock, problem.rule, problem.watch
-    )
+    span = problem.symmetry
+    turn, order = span.rotation @ span.rotation, span.order[span.order]
+    return attrs.evolve(problem, symmetry=Symmetry(2.0 * span.span, turn, 2.0 * span.angle, order, span.pitch))
 
 
 def doubled(branch: Branch, point: Point) -> tuple[Branch, Point]:
@@ -321,14 +313,14 @@ def doubled(branch: Branch, point: Point) -> tuple[Branch, Point]:
     ----------
     Seydel, Practical Bifurcation and Stability Analysis, 3rd ed. (2010), section 7.4.
     """
-    solved = point.solved
-    problem, path = solved.problem, solved.path
-    turned, order = problem.symmetry.rotation, problem.symmetry.order
+    solution = point.solved
+    problem, path = solution.problem, solution.path
+    rotation, order = problem.symmetry.rotation, problem.symmetry.order
     both = Path(
         np.append(path.nodes[:-1], problem.symmetry.span + path.nodes),
-        np.vstack([path.q[:-1], path.q @ turned.T]),
-        np.vstack([path.v[:-1], path.v @ turned.T]),
-        np.vstack([path.a, path.a @ turned.T]),
+        np.vstack([path.q[:-1], path.q @ rotation.T]),
+        np.vstack([path.v[:-1], path.v @ rotation.T]),
+        np.vstack([path.a, path.a @ rotation.T]),
         np.concatenate([path.ball, path.ball[:, order]]),
         np.concatenate([path.rate, path.rate[:, order]]),
     )

@@ -64,7 +64,7 @@ def _by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolera
         here = part(share + step)
         first = guess(here, q, tangent, nodes) if before is None else _between(before, last, 1.0 + step / gap)
         try:
-            solved = full_steps(here, first, ROUGH)
+            solution = full_steps(here, first, ROUGH)
         except ConvergenceError:
             step *= 0.5
             # A large mesh makes small steps dear; none leads round a fold anyway.
@@ -72,8 +72,8 @@ def _by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolera
                 raise
             continue
         share, gap = share + step, step
-        before, last = last, solved.path
-        step *= 1.5 if solved.sweeps <= 5 else 1.0
+        before, last = last, solution.path
+        step *= 1.5 if solution.sweeps <= 5 else 1.0
     return refine(solve(problem, last, 1e-2 * tolerance), tolerance)
 
 
@@ -180,10 +180,10 @@ def _at_full_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], t
             try:
                 if share < 0.0:
                     # The motion on its own mesh as it is half a turn later, for a problem whose force is the opposite of its own.
-                    solved = attrs.evolve(after.solved, path=path)
-                    nodes = solved.path.nodes
-                    q, v, _, _, _ = states(solved, nodes + np.pi)
-                    _, _, a, ball, rate = states(solved, problem.angles(nodes) + np.pi)
+                    solution = attrs.evolve(after.solved, path=path)
+                    nodes = solution.path.nodes
+                    q, v, _, _, _ = states(solution, nodes + np.pi)
+                    _, _, a, ball, rate = states(solution, problem.angles(nodes) + np.pi)
                     path = Path(nodes, np.ascontiguousarray(q), np.ascontiguousarray(v), np.ascontiguousarray(a), ball, rate)
                 yield refine(solve(problem, path, 1e-2 * tolerance), tolerance)
             except ConvergenceError:
@@ -199,19 +199,19 @@ _NEAR = (1.02, 1.05, 0.97)
 
 
 def _by_homotopy(
-    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, lost: bool
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, without_motion: bool
 ) -> tuple[Refined, str] | None:
     """The first motion that leads here from another speed or load, and from where; None where none does.
 
     q : (5,) static equilibrium;  tangent : (5, 5) of its contacts
-    lost : no motion is known here, so that nearby branches are worth following through their folds
+    without_motion : no motion is known here, so that nearby branches are worth following through their folds
     """
-    for ratio in (*(_NEAR if lost else ()), *_RATIOS):
+    for ratio in (*(_NEAR if without_motion else ()), *_RATIOS):
         problem.watch()
         at = partial(_at_speed, problem)
         with suppress(ConvergenceError):
-            refined = _continued_to(at, q, tangent, tolerance, ratio, lost and ratio in _NEAR)
-            return refined, "from a higher speed" if ratio > 1.0 else "from a lower speed"
+            candidate = _continued_to(at, q, tangent, tolerance, ratio, without_motion and ratio in _NEAR)
+            return candidate, "from a higher speed" if ratio > 1.0 else "from a lower speed"
     if problem.system.load[0] == 0.0 or problem.system.free[0] == 0.0:
         return None
     for ratio in _LOADS:
@@ -304,15 +304,15 @@ def chosen(
 ) -> PeriodicMotion:
     """The motion that is taken, of all that the branch from rest and Newton's iteration lead to."""
     highest = highest_order(problem, tangent)
-    lost, branch = None, _ForceBranch()
+    failure, branch = None, _ForceBranch()
     try:
         branch = _force_branch(problem, q, tangent, mesh_of(problem, highest))
     except ConvergenceError as why:
-        lost = why
+        failure = why
     motions: list[PeriodicMotion] = []
-    for refined in _at_full_force(problem, branch.crossings, tolerance):
-        if not any(_alike(refined, motion.refined) for motion in motions):
-            motions.append(with_multipliers(refined, highest, "from rest"))
+    for candidate in _at_full_force(problem, branch.crossings, tolerance):
+        if not any(_alike(candidate, motion.refined) for motion in motions):
+            motions.append(with_multipliers(candidate, highest, "from rest"))
     fold = None if branch.reaches else branch.largest
     if direct is not None:
         # Where both ways lead to motion motion, the shorter motion is told.
@@ -325,20 +325,20 @@ def chosen(
         try:
             motions = [with_multipliers(_by_force_steps(problem, q, tangent, tolerance), highest, "from rest")]
         except ConvergenceError:
-            if lost is not None:
-                raise lost from None
+            if failure is not None:
+                raise failure from None
     if all(motion.floquet.verdict == "unstable" for motion in motions):
-        for refined in _from_undamped(problem, q, tangent, mesh_of(problem, highest), tolerance):
-            if not any(_alike(refined, other_motion.refined) for other_motion in motions):
-                motions.append(with_multipliers(refined, highest, "from no damping", fold))
+        for candidate in _from_undamped(problem, q, tangent, mesh_of(problem, highest), tolerance):
+            if not any(_alike(candidate, other_motion.refined) for other_motion in motions):
+                motions.append(with_multipliers(candidate, highest, "from no damping", fold))
     if (
         fold is not None
         and problem.system.scalars[CAGE] == 0.0
         and all(motion.floquet.verdict == "unstable" for motion in motions)
     ):
-        reached = _by_homotopy(problem, q, tangent, tolerance, not motions)
-        if reached is not None and not any(_alike(reached[0], other_motion.refined) for other_motion in motions):
-            motions.append(with_multipliers(reached[0], highest, reached[1], fold))
+        homotopy = _by_homotopy(problem, q, tangent, tolerance, not motions)
+        if homotopy is not None and not any(_alike(homotopy[0], other_motion.refined) for other_motion in motions):
+            motions.append(with_multipliers(homotopy[0], highest, homotopy[1], fold))
     if not motions:
         back = "where its branch turns back (an internal resonance)"
         end = back if branch.folds else "beyond which it could not be followed"

@@ -57,9 +57,7 @@ class _Rule:
     Lagrange polynomial l_j, u from 0 to 1. For s points the error at the ends of intervals is of order 2 s where the motion
     is smooth, between them of order s + 2.
 
-    References
-    ----------
-    de Boor, Swartz, SIAM J. Numer. Anal. 10 (1973), 582-606: collocation at Gaussian points.
+    Source: de Boor, Swartz, SIAM J. Numer. Anal. 10 (1973), 582-606: collocation at Gaussian points.
     """
 
     points: np.ndarray
@@ -91,13 +89,13 @@ def _rule(stages: int = STAGES) -> _Rule:
     points = 0.5 * (x + 1.0)
     _, velocity, position = integrals(points, points)
     _, v_end, q_end = integrals(points, np.ones(1))
-    tried = np.array(_TRIED)
-    _, v_all, q_all = integrals(np.concatenate([points, tried]), np.ones(1))
+    trial_points = np.array(_TRIED)
+    _, v_all, q_all = integrals(np.concatenate([points, trial_points]), np.ones(1))
     gain = np.vstack([q_all, v_all])
     gain[:, :stages] -= np.vstack([q_end, v_end])
     legendre = np.linalg.inv(np.polynomial.legendre.legvander(x, stages - 1))
     both = np.ascontiguousarray(np.vstack([velocity, position, v_end, q_end, points]))
-    return _Rule(points, velocity, position, both, tried, *integrals(points, tried), gain, legendre)
+    return _Rule(points, velocity, position, both, trial_points, *integrals(points, trial_points), gain, legendre)
 
 
 #: Largest difference that counts as rounding, over the largest force: ball solves end near 1e-12.
@@ -345,14 +343,6 @@ _STIFF = 0.02
 _STEP = 0.1
 
 
-def _derivative(problem: Problem, path: Path) -> np.ndarray:
-    """Rates (m s, Z, r) of the columns that have rates, from the balls' places along the motion."""
-    rated = np.array(problem.system.rated_columns)
-    closure, rate = Closure(problem.closing, problem.symmetry.order, rated), path.rate.copy()
-    renew_rates(problem.mesh(path.nodes), closure, problem.speed, path.ball, rate)
-    return rate[:, :, rated]
-
-
 def stiff(problem: Problem, path: Path) -> bool:
     """Whether putting rates in does not converge: balls lag about as long as the ring's damping is over its stiffness."""
     # One state tells how much dashpots do: balls that are closed anywhere are closed at most times.
@@ -378,12 +368,15 @@ def renew(problem: Problem, path: Path, solved: bool) -> None:
     after every sweep. Where lag times the largest entry of D is no longer small that diverges, in the finest modes of the
     mesh first, and Newton's iteration takes over: (I - D T) dr = D b - r with T = db/dr of each ball, by differences.
     """
-    rated = problem.system.rated_columns
-    rates = _derivative(problem, path)
+    rate_columns = problem.system.rated_columns
+    columns = np.array(problem.system.rated_columns)
+    closure, path_rate = Closure(problem.closing, problem.symmetry.order, columns), path.rate.copy()
+    renew_rates(problem.mesh(path.nodes), closure, problem.speed, path.ball, path_rate)
+    rates = path_rate[:, :, columns]
     if solved:
-        old = path.rate[:, :, rated]
-        rates = old + _solve(problem, path, rates - old)
-    path.rate[:, :, rated] = rates
+        old = path.rate[:, :, rate_columns]
+        rates = old + _solve_places(problem, path, rates - old)
+    path.rate[:, :, rate_columns] = rates
 
 
 @cache
@@ -406,25 +399,25 @@ def _weights(rule: _Rule, nodes: np.ndarray) -> np.ndarray:
     return (derivative[:, 2:-2] / h[:, :, None]).reshape(-1, s + 4)
 
 
-def _step(problem: Problem, path: Path) -> float:
+def _place_step(problem: Problem, path: Path) -> float:
     return _STEP * max(float(np.abs(path.v / problem.weight).max()), 1e-9) * problem.speed
 
 
-def _places(problem: Problem, path: Path, moved: list[list[int]]) -> list[np.ndarray]:
+def _places(problem: Problem, path: Path, coordinates: list[list[int]]) -> list[np.ndarray]:
     """Columns (m s, Z, r) of the balls at the Gauss points, for each set of columns with the rates of that set moved."""
     system, rule = problem.system, problem.rule
     angles, q, v = path.states((rule.points, rule.velocity, rule.position))
     places = []
-    for columns in moved:
+    for columns in coordinates:
         ball, rate = path.ball.copy(), path.rate.copy()
-        rate[:, :, columns] += _step(problem, path)
+        rate[:, :, columns] += _place_step(problem, path)
         at = States(angles.ravel() / problem.speed, q.reshape(-1, 5), v.reshape(-1, 5) * problem.speed, ball, rate)
         responses(system, at)
         places.append(ball[:, :, system.rated_columns])
     return places
 
 
-def _solve(problem: Problem, path: Path, residual: np.ndarray) -> np.ndarray:
+def _solve_places(problem: Problem, path: Path, residual: np.ndarray) -> np.ndarray:
     """(I - D T)^-1 of a residual (m s, Z, r), all balls of a span together: one goes on where another one ends."""
     from scipy.sparse import bsr_array, eye_array
     from scipy.sparse.linalg import splu
@@ -433,9 +426,9 @@ def _solve(problem: Problem, path: Path, residual: np.ndarray) -> np.ndarray:
     s, order = len(problem.rule.points), problem.symmetry.order
     # T (m s, Z, r, r) [s]: places by rates.
     columns: list[list[int]] = [[c] for c in problem.system.rated_columns]
-    here, *moved = _places(problem, path, [[], *columns])
+    here, *others = _places(problem, path, [[], *columns])
     lags, weights = (
-        np.stack([(balls - here) / _step(problem, path) for balls in moved], axis=-1),
+        np.stack([(balls - here) / _place_step(problem, path) for balls in others], axis=-1),
         problem.speed * _weights(problem.rule, path.nodes),
     )
     back = np.argsort(order)
@@ -510,13 +503,13 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
         return newton_iteration(problem, path, tolerance, patience, limit, np.array(problem.system.rated_columns))
     sweeps, change = 0, np.inf
     for turn in range(_RATES):
-        solved = newton_iteration(problem, path, tolerance, patience, limit, np.empty(0, dtype=np.int64))
-        sweeps += solved.sweeps
-        last, change = change, float(np.abs((solved.path.q - path.q) / problem.weight).max())
-        path = solved.path
-        enough = 10.0 * max(tolerance, solved.rounding) * solved.size
-        if turn > 0 and (change <= enough or (change >= last and change <= _LEFT * solved.size)):
-            return attrs.evolve(solved, sweeps=sweeps)
+        solution = newton_iteration(problem, path, tolerance, patience, limit, np.empty(0, dtype=np.int64))
+        sweeps += solution.sweeps
+        last, change = change, float(np.abs((solution.path.q - path.q) / problem.weight).max())
+        path = solution.path
+        enough = 10.0 * max(tolerance, solution.rounding) * solution.size
+        if turn > 0 and (change <= enough or (change >= last and change <= _LEFT * solution.size)):
+            return attrs.evolve(solution, sweeps=sweeps)
         problem.watch()
         renew(problem, path, True)
     raise ConvergenceError(
@@ -528,26 +521,28 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
 
 def linearised(problem: Problem, path: Path) -> Eliminated:
     """About a path, whose arrays a step of Newton's method moves then."""
-    eliminated, closure = (
+    elimination, closure = (
         problem.eliminated(path.nodes),
         Closure(problem.closing, problem.symmetry.order, np.empty(0, dtype=np.int64)),
     )
     samples, once = path.samples(problem.push(path.nodes)), Limits(0.0, 0.0, 1, 0)
-    status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, once, eliminated, np.zeros(REPORT))
+    status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, once, elimination, np.zeros(REPORT))
     if status == BALLS_FAILED:
         raise ConvergenceError("the balls have no equilibrium between the races", {"q": path.q[0].copy()})
-    return eliminated
+    return elimination
 
 
-def newton_iteration(problem: Problem, path: Path, tolerance: float, patience: int, limit: int, rated: np.ndarray) -> Solved:
-    """The compiled iteration; ``rated``: columns of the balls whose rates are put in after every sweep."""
-    eliminated, report = problem.eliminated(path.nodes), np.zeros(REPORT)
+def newton_iteration(
+    problem: Problem, path: Path, tolerance: float, patience: int, limit: int, rate_columns: np.ndarray
+) -> Solved:
+    """The compiled iteration; ``rate_columns``: columns of the balls whose rates are put in after every sweep."""
+    elimination, report = problem.eliminated(path.nodes), np.zeros(REPORT)
     q, v, a, ball, rate = path.q.copy(), path.v.copy(), path.a.copy(), path.ball.copy(), path.rate.copy()
     solution = attrs.evolve(path, q=q, v=v, a=a, ball=ball, rate=rate)
-    closure = Closure(problem.closing, problem.symmetry.order, rated)
+    closure = Closure(problem.closing, problem.symmetry.order, rate_columns)
     limits = Limits(tolerance, problem.system.force_rounding(path.q[0]), limit, patience)
     samples = solution.samples(problem.push(path.nodes))
-    status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, limits, eliminated, report)
+    status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, limits, elimination, report)
     if status != SOLVED:
         why = {STALLED: "the iteration stalls", SINGULAR: "the motion is singular"}.get(
             status, "the balls have no equilibrium between the races"
@@ -560,7 +555,7 @@ def newton_iteration(problem: Problem, path: Path, tolerance: float, patience: i
     return Solved(
         problem,
         solution,
-        eliminated,
+        elimination,
         float(report[SIZE]),
         report[SHORTENED] == 0.0,
         int(report[SWEEPS]),

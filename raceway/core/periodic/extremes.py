@@ -17,21 +17,6 @@ from raceway.core.signatures import MATRIX, VECTOR
 _ITERATIONS = 6
 
 
-@jit(void(VECTOR, VECTOR, VECTOR))
-def _transform(curve, re, im):
-    """Harmonics 0 to N / 2 of N samples: curve = sum re cos - im sin."""
-    n = curve.size
-    for h in range(n // 2 + 1):
-        re[h], im[h] = 0.0, 0.0
-        weight = (1.0 if h in (0, n // 2) else 2.0) / n
-        step = 2.0 * np.pi * h / n
-        c, s, cosine, sine = 1.0, 0.0, np.cos(step), np.sin(step)
-        for i in range(n):
-            re[h] += weight * curve[i] * c
-            im[h] -= weight * curve[i] * s
-            c, s = c * cosine - s * sine, s * cosine + c * sine
-
-
 @jit(float64(VECTOR, VECTOR, VECTOR, float64))
 def _extreme(curve, re, im, sign):
     """Largest (sign 1) or least (-1) value of the polynomial near the largest or least of the samples."""
@@ -58,7 +43,7 @@ def _extreme(curve, re, im, sign):
 
 
 @jit(void(VECTOR, VECTOR, VECTOR, VECTOR))
-def _values(re, im, cosine, values):
+def _force_values(re, im, cosine, values):
     """Of the polynomial at m equidistant angles of a turn, whose cosines and sines (2 m,) are given; forces do not pull."""
     m = values.size
     for i in range(m):
@@ -93,9 +78,19 @@ def force_extremes(force, order, spans, peak, least, turn):
                 for i in range(n):
                     curve[m * n + i] = force[i, race * z + ball]
                 ball = order[ball]
-            _transform(curve, re, im)
+            # Harmonics: curve = sum re cos - im sin
+            samples = curve.size
+            for h in range(samples // 2 + 1):
+                re[h], im[h] = 0.0, 0.0
+                weight = (1.0 if h in (0, samples // 2) else 2.0) / samples
+                turn_step = 2.0 * np.pi * h / samples
+                c, s, cos_step, sin_step = 1.0, 0.0, np.cos(turn_step), np.sin(turn_step)
+                for i in range(samples):
+                    re[h] += weight * curve[i] * c
+                    im[h] -= weight * curve[i] * s
+                    c, s = c * cos_step - s * sin_step, s * cos_step + c * sin_step
             largest, smallest = _extreme(curve, re, im, 1.0), max(_extreme(curve, re, im, -1.0), 0.0)
-            _values(re, im, cosine, values)
+            _force_values(re, im, cosine, values)
             ball = k
             for m in range(spans):
                 at, step = m * (fine // spans), fine // max(times, 1)

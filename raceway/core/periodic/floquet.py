@@ -72,7 +72,7 @@ class Floquet:
         }
 
 
-def floquet(solved: Solved, highest: float = 0.0) -> Floquet:
+def floquet(solution: Solved, highest: float = 0.0) -> Floquet:
     """Multipliers of a periodic motion, from its last linearisation.
 
     Parameters
@@ -84,13 +84,13 @@ def floquet(solved: Solved, highest: float = 0.0) -> Floquet:
     The rates of the balls are taken as they are along the motion.  That leaves the phases as they are, and the decay that the
     contacts' dashpots bring off by the difference of the races' compliances over their sum (2 % of the decay for B7206C).
     """
-    return floquet_of(transfer(solved, highest), solved.problem.symmetry.span)
+    return floquet_of(transfer(solution, highest), solution.problem.symmetry.span)
 
 
-def transfer(solved: Solved, highest: float = 0.0) -> np.ndarray:
+def transfer(solution: Solved, highest: float = 0.0) -> np.ndarray:
     """(2 n, 2 n) of a disturbance of the state over a span, turned back; ``highest`` as of ``floquet``."""
-    span_transfer = solved.eliminated.span_transfer if highest == 0.0 else _finer(solved, highest)
-    return np.asarray(solved.problem.closing.T @ span_transfer[:, : 2 * len(solved.problem.free)])
+    span_transfer = solution.eliminated.span_transfer if highest == 0.0 else _finer(solution, highest)
+    return np.asarray(solution.problem.closing.T @ span_transfer[:, : 2 * len(solution.problem.free)])
 
 
 def floquet_of(over: np.ndarray, span: float) -> Floquet:
@@ -101,10 +101,10 @@ def floquet_of(over: np.ndarray, span: float) -> Floquet:
     return Floquet(over_turn[order], over_span[order])
 
 
-def _finer(solved: Solved, highest: float) -> np.ndarray:
+def _finer(solution: Solved, highest: float) -> np.ndarray:
     """The transfer over a span, linearised anew where intervals are long for the fastest vibration."""
-    problem, path = solved.problem, solved.path
+    problem, path = solution.problem, solution.path
     parts = np.ceil(np.diff(path.nodes) * min(highest, 2000.0) / _PHASE - 1e-9).astype(int)
     if parts.max() <= 1:
-        return solved.eliminated.span_transfer
+        return solution.eliminated.span_transfer
     return linearised(problem, resampled(problem, path, *divided(path.nodes, np.maximum(parts, 1)))).span_transfer

@@ -210,35 +210,15 @@ def _transfer_of(equations, mesh, samples, k, local, report):
         report[JUMP] = max(report[JUMP], max(abs(jump_q), abs(jump_v)) / equations.weight[c])
 
 
-@jit(void(LOCAL, int64, ELIMINATED))
-def _carry_on(local, k, eliminated):
-    """Keep what interval k leaves, and multiply the transfer of those before by its own."""
-    stages, transfer, span_transfer = eliminated
-    product = local.product
-    size = local.block.shape[0]
-    states, columns = span_transfer.shape[0], span_transfer.shape[1]
-    for i in range(size):
-        for j in range(columns):
-            stages[k * size + i, j] = local.block[i, size + j]
-    for i in range(states):
-        for j in range(columns):
-            transfer[k * states + i, j] = local.transfer[i, j]
-            total = local.transfer[i, j] if j >= states else 0.0
-            for p in range(states):
-                total += local.transfer[i, p] * span_transfer[p, j]
-            product[i, j] = total
-    copy_matrix(product, span_transfer)
-
-
 @jit(int64(EQUATIONS, MESH, SAMPLES, ELIMINATED, VECTOR), allocates=True)
-def condense(equations, mesh, samples, eliminated, report):
+def condense(equations, mesh, samples, elimination, report):
     """Linearise and eliminate interval by interval; the number of intervals done, less than m at a failure."""
-    return _condense(equations, mesh, samples, eliminated, report, _room(equations, mesh))
+    return _condense(equations, mesh, samples, elimination, report, _room(equations, mesh))
 
 
 @jit(int64(EQUATIONS, MESH, SAMPLES, ELIMINATED, VECTOR, LOCAL))
-def _condense(equations, mesh, samples, eliminated, report, local):
-    forces, span_transfer, response = equations.forces, eliminated.span_transfer, local.response
+def _condense(equations, mesh, samples, elimination, report, local):
+    forces, span_transfer, response = equations.forces, elimination.span_transfer, local.response
     m, s, n = mesh.nodes.size - 1, mesh.rule.shape[1], equations.free.size
     columns = 2 * n + 2
     contacts = Contacts(forces.law, forces.law_params, equations.memory, local.memory, 0.0)
@@ -258,7 +238,22 @@ def _condense(equations, mesh, samples, eliminated, report, local):
         if not eliminate(local.block):
             return k
         _transfer_of(equations, mesh, samples, k, local, report)
-        _carry_on(local, k, eliminated)
+        # What interval k leaves, and the transfer of those before times its own
+        stages, transfer, span_transfer = elimination
+        product = local.product
+        size = local.block.shape[0]
+        states, columns = span_transfer.shape[0], span_transfer.shape[1]
+        for i in range(size):
+            for j in range(columns):
+                stages[k * size + i, j] = local.block[i, size + j]
+        for i in range(states):
+            for j in range(columns):
+                transfer[k * states + i, j] = local.transfer[i, j]
+                total = local.transfer[i, j] if j >= states else 0.0
+                for p in range(states):
+                    total += local.transfer[i, p] * span_transfer[p, j]
+                product[i, j] = total
+        copy_matrix(product, span_transfer)
     return m
 
 
@@ -292,9 +287,9 @@ def forces(force, params, times, out):
 
 
 @jit(void(INDICES, ELIMINATED, VECTOR, float64, CHANGE))
-def spread(free, eliminated, first, parameter, change):
+def spread(free, elimination, first, parameter, change):
     """The change of a path that the change first (2 n,) of its first state and that of the parameter make."""
-    stages, transfer, _ = eliminated
+    stages, transfer, _ = elimination
     dq, dv, da = change
     n, m = free.size, dq.shape[0] - 1
     s = stages.shape[0] // (m * n)
@@ -431,54 +426,54 @@ def _sizes(weight, samples, change):
 @jit(void(MESH, CLOSURE, float64, CUBE, CUBE), allocates=True)
 def renew_rates(mesh, closure, speed, ball, rate):
     """rate (m s, Z, c) [m/s] of the columns of ball (m s, Z, c) that have one: two samples of the next span follow at each end."""
-    nodes, rated, order = mesh.nodes, closure.rated, closure.order
+    nodes, rate_columns, order = mesh.nodes, closure.rated, closure.order
     m, s, z = nodes.size - 1, mesh.rule.shape[1], ball.shape[1]
-    longer, more = np.empty(m + 3), np.empty((m * s + 4, z, rated.size))
+    longer, more = np.empty(m + 3), np.empty((m * s + 4, z, rate_columns.size))
     most = np.empty_like(more)
     longer[0], longer[m + 2] = nodes[0] - (nodes[m] - nodes[m - 1]), nodes[m] + nodes[1] - nodes[0]
     for k in range(m + 1):
         longer[k + 1] = nodes[k]
-    for c in range(rated.size):
+    for c in range(rate_columns.size):
         for b in range(z):
             for k in range(m * s):
-                more[k + 2, b, c] = ball[k, b, rated[c]]
+                more[k + 2, b, c] = ball[k, b, rate_columns[c]]
             for k in range(2):
                 # Ball b stands one span later where ball order[b] stood.
-                more[m * s + 2 + k, b, c] = ball[k, order[b], rated[c]]
-                more[k, order[b], c] = ball[m * s - 2 + k, b, rated[c]]
+                more[m * s + 2 + k, b, c] = ball[k, order[b], rate_columns[c]]
+                more[k, order[b], c] = ball[m * s - 2 + k, b, rate_columns[c]]
     differentiate(longer, mesh.rule[2 * s + 2], speed, more, most)
     for k in range(m * s):
         for b in range(z):
-            for c in range(rated.size):
-                rate[k, b, rated[c]] = most[k + 2, b, c]
+            for c in range(rate_columns.size):
+                rate[k, b, rate_columns[c]] = most[k + 2, b, c]
 
 
 @jit(int64(EQUATIONS, CLOSURE, MESH, SAMPLES, LIMITS, ELIMINATED, VECTOR), allocates=True)
-def newton(equations, closure, mesh, samples, limits, eliminated, report):
+def newton(equations, closure, mesh, samples, limits, elimination, report):
     """Move the samples, but push and slope, onto the periodic motion."""
     m, n = mesh.nodes.size - 1, equations.free.size
-    noted, safe = np.zeros(3), samples.ball.copy()
+    scratch, safe = np.zeros(3), samples.ball.copy()
     change = Change(np.zeros_like(samples.q), np.zeros_like(samples.v), np.zeros_like(samples.a))
     close, first, local = np.empty((2 * n, 2 * n + 1)), np.empty(2 * n), _room(equations, mesh)
     factor, worst, halvings, fine = 1.0, np.inf, 0, 0
     for sweep in range(1, limits.sweeps + 1):
         report[SWEEPS] = sweep
-        condensed = _condense(equations, mesh, samples, eliminated, noted, local)
+        success = _condense(equations, mesh, samples, elimination, scratch, local)
         # The accelerations of a first guess are rough: its imbalance tells nothing.
-        if condensed < m or (sweep > 2 and noted[IMBALANCE] > 2.0 * worst and noted[IMBALANCE] > 1e-9 * noted[FORCE]):
+        if success < m or (sweep > 2 and scratch[IMBALANCE] > 2.0 * worst and scratch[IMBALANCE] > 1e-9 * scratch[FORCE]):
             report[SHORTENED] = 1.0
             halvings += 1
             if sweep == 1 or halvings > limits.patience:
-                return BALLS_FAILED if condensed < m else STALLED
+                return BALLS_FAILED if success < m else STALLED
             factor *= 0.5
             _move(samples, change, -factor)
             copy_cube(safe, samples.ball)
             continue
-        worst, halvings = noted[IMBALANCE], 0
+        worst, halvings = scratch[IMBALANCE], 0
         report[WORST_IMBALANCE] = worst
-        if not _first_state(equations, closure.rotation, eliminated.span_transfer, samples, close, first):
+        if not _first_state(equations, closure.rotation, elimination.span_transfer, samples, close, first):
             return SINGULAR
-        spread(equations.free, eliminated, first, 0.0, change)
+        spread(equations.free, elimination, first, 0.0, change)
         if sweep > 1:
             factor = min(1.0, 2.0 * factor)
         _move(samples, change, factor)

@@ -59,7 +59,7 @@ def _exponent(first, second, h, omega):
 
 
 @jit(int64(CUBE, VECTOR, int64[::1], float64))
-def _parts(A0, mass, dofs, distance):
+def _transfer_parts(A0, mass, dofs, distance):
     """Steps between two samples a distance [rad] apart: by the fastest vibration, and by how much A0 changes."""
     n, fastest, change = A0.shape[0], 0.0, 0.0
     for i in dofs:
@@ -94,7 +94,7 @@ def span_transfer(A0, A1, mass, dofs, span, out):
     False where a step has no inverse.
     """
     n, d = A0.shape[0], dofs.size
-    parts = _parts(A0, mass, dofs, span / n)
+    parts = _transfer_parts(A0, mass, dofs, span / n)
     h = span / (n * parts)
     first, second, omega = np.empty((2, d, d)), np.empty((2, d, d)), np.empty((2 * d, 2 * d))
     square, even, odd = np.empty((2 * d, 2 * d)), np.empty((2 * d, 2 * d)), np.empty((2 * d, 2 * d))

@@ -120,7 +120,7 @@ def _differences(n, span, first, second):
 
 
 @jit(void(MATRIX, MATRIX))
-def _doubled(u, out):
+def _at_twice_the_angles(u, out):
     """out (2 n, 5): the trigonometric polynomial through u (n, 5) at twice as many angles."""
     n = u.shape[0]
     for j in range(n):
@@ -239,18 +239,11 @@ def _generate(u, out):
     out[0], out[1], out[2], out[3], out[4] = 0.0, -u[2], u[1], -u[4], u[3]
 
 
-@jit(void(MATRIX, MATRIX))
-def _generate_columns(C, out):
-    """out (5, 5) = C G."""
-    for i in range(5):
-        out[i, 0], out[i, 1], out[i, 2], out[i, 3], out[i, 4] = 0.0, C[i, 2], -C[i, 1], C[i, 4], -C[i, 3]
-
-
 @jit(boolean(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX), allocates=True)
 def _imbalances(kernels, turning, numbers, level, work):
     """r, A0 and A1 of all samples, from u; False where balls find no place."""
     n, columns, sense, w = level.u.shape[0], level.ball.shape[2], turning.sense, numbers.speed
-    f, force, rate, moved, v, q = np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5)
+    f, force, rate, state, v, q = np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5)
     response = Response(f, np.empty((5, 5)), np.empty((5, 5)), work)
     half, viscous, across = np.empty((5, 5)), np.empty((5, 5)), np.empty((5, 5))
     memory, history = np.zeros((numbers.params.shape[0], 0)), np.zeros(level.ball.shape[1:])
@@ -260,12 +253,12 @@ def _imbalances(kernels, turning, numbers, level, work):
     for j in range(n):
         angle = turning.span * j / n
         A0, A1, u, u1 = level.A0[j], level.A1[j], level.u[j], level.u1[j]
-        _generate(u, moved)
+        _generate(u, state)
         for i in range(5):
-            rate[i] = u1[i] + sense * moved[i]  # over w, in the frame
-            moved[i] = w * rate[i]
+            rate[i] = u1[i] + sense * state[i]  # over w, in the frame
+            state[i] = w * rate[i]
         _turn(sense * angle, u, q)
-        _turn(sense * angle, moved, v)
+        _turn(sense * angle, state, v)
         keep_slips(numbers.constants.scalars, level.ball[j], history)
         if numbers.damped:
             for k in range(history.shape[0]):
@@ -283,16 +276,18 @@ def _imbalances(kernels, turning, numbers, level, work):
         _turn(-sense * angle, force, level.r[j])
         _turn_matrix(sense * angle, response.K, half, A0)
         _turn_matrix(sense * angle, response.C, half, viscous)
-        _generate(u1, moved)
+        _generate(u1, state)
         for i in range(5):
             shaft = numbers.shaft if i > 2 else 0.0
             inertia = w * w * numbers.mass[i]
             centre = u[i] if i > 0 else 0.0  # -G^2 u
-            level.r[j, i] += shaft * u[i] + inertia * (level.u2[j, i] + sense * (2.0 * moved[i] - sense * centre))
+            level.r[j, i] += shaft * u[i] + inertia * (level.u2[j, i] + sense * (2.0 * state[i] - sense * centre))
             for k in range(5):
                 level.r[j, i] += w * numbers.damping[i, k] * rate[k]
                 A1[i, k] = w * (numbers.damping[i, k] + viscous[i, k])
-        _generate_columns(A1, across)
+        for i in range(5):
+            across[i, 0], across[i, 1], across[i, 2] = 0.0, A1[i, 2], -A1[i, 1]
+            across[i, 3], across[i, 4] = A1[i, 4], -A1[i, 3]
         for i in range(5):
             for k in range(5):
                 A0[i, k] += sense * across[i, k]
@@ -321,7 +316,7 @@ def _jacobian(level, mass, speed, dofs, J):
 
 
 @jit(boolean(LEVEL, VECTOR, float64, int64[::1]))
-def _newton_step(level, mass, speed, dofs):
+def _orbit_step(level, mass, speed, dofs):
     """u of all samples by Newton's method; False where the matrix is singular."""
     n, d, J = level.u.shape[0], dofs.size, level.J
     _jacobian(level, mass, speed, dofs, J)
@@ -392,7 +387,7 @@ def _level(u, ball, spans, span, dense, d):
 
 
 @jit(types.UniTuple(float64, 2)(LEVEL, TURNING, NUMBERS))
-def _moved(level, turning, numbers):
+def _apply_step(level, turning, numbers):
     """Add the step in r to u; size of the step, and of the motion about the equilibrium."""
     centre, weight = numbers.centre, numbers.weight
     n, step, size = level.u.shape[0], 0.0, 0.0
@@ -409,7 +404,7 @@ def _moved(level, turning, numbers):
 
 
 @jit(types.Tuple((int64, float64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, int64[::1]), allocates=True)
-def _solve(kernels, turning, numbers, level, work, dofs):
+def _solve_orbit(kernels, turning, numbers, level, work, dofs):
     """Status, last step over the motion, and the motion's size [m], of the orbit with a level's samples."""
     dense, before, size = level.J.shape[0] > 1, np.inf, 0.0
     wave = 2.0 * np.pi / turning.span
@@ -417,10 +412,10 @@ def _solve(kernels, turning, numbers, level, work, dofs):
         if not _imbalances(kernels, turning, numbers, level, work):
             return NOT_SOLVED, np.inf, size
         if dense:
-            fine = _newton_step(level, numbers.mass, numbers.speed, dofs)
+            fine = _orbit_step(level, numbers.mass, numbers.speed, dofs)
         else:
             fine = _harmonic_step(level, numbers.mass, numbers.speed, wave, dofs)
-        step, size = _moved(level, turning, numbers)
+        step, size = _apply_step(level, turning, numbers)
         if not fine or not step < 1e-2 or not size < 1e-2:
             return NOT_SOLVED, np.inf, size
         if numbers.damped:
@@ -445,26 +440,6 @@ def _force_line(turning, numbers, push, force):
             push[1, i] -= force[i] * np.sin(angle) / 8.0
 
 
-@jit(void(MATRIX, NUMBERS, VECTOR, MATRIX, VECTOR), allocates=True)
-def _linear_response(K, numbers, free, push, line):
-    """1x line (10,) of M q'' + C q' + (K + S) q = F under the line (2, 5) of a force."""
-    A, speed = np.zeros((10, 11)), numbers.speed
-    for i in range(5):
-        if free[i] == 0.0:
-            A[i, i] = A[5 + i, 5 + i] = 1.0
-            continue
-        for j in range(5):
-            A[i, j] = A[5 + i, 5 + j] = K[i, j] * free[j]
-            A[i, 5 + j], A[5 + i, j] = -speed * numbers.damping[i, j] * free[j], speed * numbers.damping[i, j] * free[j]
-        held = (numbers.shaft if i > 2 else 0.0) - speed * speed * numbers.mass[i]
-        A[i, i] += held
-        A[5 + i, 5 + i] += held
-        A[i, 10], A[5 + i, 10] = push[0, i], push[1, i]
-    solve(A)
-    for i in range(10):
-        line[i] = A[i, 10]
-
-
 @jit(void(VECTOR, VECTOR, TURNING, MATRIX), allocates=True)
 def _first_guess(centre, line, turning, u):
     """u (n, 5): the linear response about an equilibrium (5,), seen from the frame."""
@@ -477,7 +452,7 @@ def _first_guess(centre, line, turning, u):
 
 
 @jit(void(MATRIX, float64, VECTOR, VECTOR))
-def _lines(u, sense, mean, line):
+def _harmonic_lines(u, sense, mean, line):
     """Mean (5,) and 1x line (10,) of the motion u (n, 5)."""
     n = u.shape[0]
     for i in range(5):
@@ -495,20 +470,6 @@ def _lines(u, sense, mean, line):
     if sense != 0.0:
         for i in (1, 3):
             line[5 + i], line[6 + i] = sense * line[i + 1], -sense * line[i]
-
-
-@jit(float64(MATRIX, float64, VECTOR, VECTOR))
-def _residual(u, sense, mean, line):
-    """Rms of what is neither mean nor 1x, over that of 1x, radially."""
-    n, square, size = u.shape[0], 0.0, 0.0
-    for i in range(3):
-        size += 0.5 * (line[i] ** 2 + line[5 + i] ** 2)
-    for j in range(n):
-        angle = 2.0 * np.pi * j / n
-        for i in (1, 2):
-            synchronous = line[i] if sense != 0.0 else line[i] * np.cos(angle) - line[5 + i] * np.sin(angle)
-            square += (u[j, i] - mean[i] - synchronous) ** 2 / n
-    return np.sqrt(square / max(size, 1e-300))
 
 
 @jit(float64(VECTOR, VECTOR))
@@ -534,15 +495,15 @@ def _change(A0):
 
 
 @jit(NUMBERS(LINEAR, POINTS, STATES, TURNING, int64, VECTOR), allocates=True)
-def _numbers(linear, points, states, turning, p, weight):
+def _orbit_numbers(linear, points, states, turning, p, weight):
     """Of one point; ``weight`` is filled in."""
     constants = Constants(points.scalars[p], points.table[p])
     weight[:3] = 1.0
     weight[3] = weight[4] = constants.scalars[TILT_ARM]
-    damped = constants.scalars[DAMPING] != 0.0 or constants.scalars[TIME_CONSTANT] != 0.0
+    damping = constants.scalars[DAMPING] != 0.0 or constants.scalars[TIME_CONSTANT] != 0.0
     return Numbers(
         constants, points.params[p], points.load[p], turning.mass[p], turning.damping[p], points.shaft[p], turning.speed[p],
-        turning.params[p], damped, states.q[p], weight,
+        turning.params[p], damping, states.q[p], weight,
     )  # fmt: skip
 
 
@@ -553,20 +514,36 @@ def _orbit(kernels, linear, turning, numbers, K, ball, work):
     d = dofs.size
     push, line, before, mean, error = np.empty((2, 5)), np.empty(10), np.zeros(10), np.empty(5), np.inf
     _force_line(turning, numbers, push, mean)
-    _linear_response(K, numbers, linear.free, push, line)
+    # The 1x line of M q'' + C q' + (K + S) q = F
+    A, speed = np.zeros((10, 11)), numbers.speed
+    for i in range(5):
+        if linear.free[i] == 0.0:
+            A[i, i] = A[5 + i, 5 + i] = 1.0
+            continue
+        for j in range(5):
+            A[i, j] = A[5 + i, 5 + j] = K[i, j] * linear.free[j]
+            A[5 + i, j] = speed * numbers.damping[i, j] * linear.free[j]
+            A[i, 5 + j] = -A[5 + i, j]
+        dynamic_stiffness = (numbers.shaft if i > 2 else 0.0) - speed * speed * numbers.mass[i]
+        A[i, i] += dynamic_stiffness
+        A[5 + i, 5 + i] += dynamic_stiffness
+        A[i, 10], A[5 + i, 10] = push[0, i], push[1, i]
+    solve(A)
+    for i in range(10):
+        line[i] = A[i, 10]
     n, u = turning.least, np.empty((turning.least, 5))
     _first_guess(numbers.centre, line, turning, u)
     while True:
         start, dense = u.copy(), n * d <= _DENSE
         level = _level(u, ball, spans, turning.span, dense, d)
-        status, step, _ = _solve(kernels, turning, numbers, level, work, dofs)
+        status, step, _ = _solve_orbit(kernels, turning, numbers, level, work, dofs)
         if status != SOLVED and not dense and n * d <= 4 * _DENSE:
             copy_matrix(start, u)
             level = _level(u, ball, spans, turning.span, True, d)
-            status, step, _ = _solve(kernels, turning, numbers, level, work, dofs)
+            status, step, _ = _solve_orbit(kernels, turning, numbers, level, work, dofs)
         if status != SOLVED:
             break
-        _lines(level.u, turning.sense, mean, line)
+        _harmonic_lines(level.u, turning.sense, mean, line)
         error = max(_difference(line, before), step)
         if error <= turning.tolerance:
             break
@@ -575,7 +552,7 @@ def _orbit(kernels, linear, turning, numbers, K, ball, work):
             status = UNRESOLVED
             break
         u = np.empty((2 * n, 5))
-        _doubled(level.u, u)
+        _at_twice_the_angles(level.u, u)
         n *= 2
     return status, error, level
 
@@ -585,10 +562,21 @@ def _report(turning, numbers, level, status, error, p, out):
     """One point's answer."""
     push, force = np.empty((2, 5)), np.empty(5)
     _force_line(turning, numbers, push, force)
-    _lines(level.u, turning.sense, out.mean[p], out.line[p])
+    _harmonic_lines(level.u, turning.sense, out.mean[p], out.line[p])
     out.status[p], out.error[p], out.samples[p], out.change[p] = status, error, level.u.shape[0], _change(level.A0)
     out.span[p] = turning.span
-    out.residual[p] = _residual(level.u, turning.sense, out.mean[p], out.line[p])
+    # Rms of what is neither mean nor 1x, over that of 1x, radially
+    mean = out.mean[p]
+    line = out.line[p]
+    n, square, size = level.u.shape[0], 0.0, 0.0
+    for i in range(3):
+        size += 0.5 * (line[i] ** 2 + line[5 + i] ** 2)
+    for j in range(n):
+        angle = 2.0 * np.pi * j / n
+        for i in (1, 2):
+            synchronous = line[i] if turning.sense != 0.0 else line[i] * np.cos(angle) - line[5 + i] * np.sin(angle)
+            square += (level.u[j, i] - mean[i] - synchronous) ** 2 / n
+    out.residual[p] = np.sqrt(square / max(size, 1e-300))
     force_extremes(
         level.force, turning.order, int(np.round(2.0 * np.pi / turning.span)), out.peak[p], out.least[p], out.turn[p]
     )
@@ -605,7 +593,7 @@ def orbits(kernels, linear, points, states, turning, out):
         out.status[p] = states.status[p]
         if states.status[p] != 0:
             continue
-        numbers = _numbers(linear, points, states, turning, p, weight)
+        numbers = _orbit_numbers(linear, points, states, turning, p, weight)
         status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[p], states.ball[p], work)
         _report(turning, numbers, level, status, error, p, out)
         if status == SOLVED and out.transfer.shape[1] > 0:
@@ -632,7 +620,7 @@ def _by_chords(kernels, turning, numbers, level, inverse, work, dofs):
             for column in range(n * d):
                 total += inverse[row, column] * right[column]
             level.r[row // d, dofs[row % d]] = total
-        step, size = _moved(level, turning, numbers)
+        step, size = _apply_step(level, turning, numbers)
         if not step < 1e-2:
             return NOT_SOLVED, np.inf
         if numbers.damped:
@@ -652,7 +640,7 @@ def neighbours(kernels, linear, points, states, turning, out):
     z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
     work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
     out.status[:] = NOT_SOLVED
-    numbers = _numbers(linear, points, states, turning, 0, weight)
+    numbers = _orbit_numbers(linear, points, states, turning, 0, weight)
     status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[0], states.ball[0], work)
     n, d = level.u.shape[0], dofs.size
     if status != SOLVED or n * d > 4 * _DENSE:
@@ -665,17 +653,17 @@ def neighbours(kernels, linear, points, states, turning, out):
     if not solve(J):
         return
     inverse[:] = J[:, n * d :]
-    u, ball, rate, moved, seen = level.u.copy(), level.ball.copy(), level.ball_rate.copy(), np.empty(5), np.empty(5)
+    u, ball, rate, shift, answer = level.u.copy(), level.ball.copy(), level.ball_rate.copy(), np.empty(5), np.empty(5)
     for p in range(1, points.table.shape[0]):
         if states.status[p] != 0:
             continue
-        numbers = _numbers(linear, points, states, turning, p, weight)
+        numbers = _orbit_numbers(linear, points, states, turning, p, weight)
         for i in range(5):
-            moved[i] = states.q[p, i] - states.q[0, i]
+            shift[i] = states.q[p, i] - states.q[0, i]
         for j in range(n):  # along with the equilibrium
-            _turn(-turning.sense * turning.span * j / n, moved, seen)
+            _turn(-turning.sense * turning.span * j / n, shift, answer)
             for i in range(5):
-                level.u[j, i] = u[j, i] + seen[i]
+                level.u[j, i] = u[j, i] + answer[i]
         level.ball[:], level.ball_rate[:] = ball, rate
         status, error = _by_chords(kernels, turning, numbers, level, inverse, work, dofs)
         _report(turning, numbers, level, status, error, p, out)

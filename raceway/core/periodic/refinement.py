@@ -55,7 +55,7 @@ def _defects(problem: Problem, path: Path) -> np.ndarray:
     return defect
 
 
-def _carried(transfer: np.ndarray, first: np.ndarray, defect: np.ndarray) -> np.ndarray:
+def _error_path(transfer: np.ndarray, first: np.ndarray, defect: np.ndarray) -> np.ndarray:
     """(m + 1, 2 n) changes of the states at nodes that defects (m, 2 n) and a first change (2 n,) make; ``transfer`` (m 2 n, 2 n)."""
     out = np.empty((len(defect) + 1, len(first)))
     out[0] = first
@@ -80,30 +80,30 @@ class Estimate:
     field: np.ndarray
 
 
-def estimate(solved: Solved, closed: Callable[[np.ndarray], np.ndarray] | None = None) -> Estimate:
+def estimate(solution: Solved, closure: Callable[[np.ndarray], np.ndarray] | None = None) -> Estimate:
     """The error of a motion by its defects, carried round, and by the tail of its polynomials.
 
     Parameters
     ----------
-    closed : change of the state at the start (2 n,) with which the span closes after a gap (2 n,) at its end; None: the parameter
+    closure : change of the state at the start (2 n,) with which the span closes after a gap (2 n,) at its end; None: the parameter
         of a branch stays as it is, which has no answer at a fold
     """
-    problem, path = solved.problem, solved.path
+    problem, path = solution.problem, solution.path
     free, weight = problem.free, problem.weight
     m, s, n = path.intervals, len(problem.rule.points), len(free)
     defect = _defects(problem, path)
-    transfer, span_transfer = solved.eliminated.transfer[:, : 2 * n], solved.eliminated.span_transfer
-    end = _carried(transfer, np.zeros(2 * n), defect)[-1]
-    first = np.linalg.solve(problem.closing - span_transfer[:, : 2 * n], end) if closed is None else closed(end)
+    transfer, span_transfer = solution.eliminated.transfer[:, : 2 * n], solution.eliminated.span_transfer
+    end = _error_path(transfer, np.zeros(2 * n), defect)[-1]
+    first = np.linalg.solve(problem.closing - span_transfer[:, : 2 * n], end) if closure is None else closure(end)
     dq = np.zeros_like(path.q)
-    dq[:, free] = _carried(transfer, first, defect)[:, :n]
+    dq[:, free] = _error_path(transfer, first, defect)[:, :n]
     h = np.diff(path.nodes)
     legendre = np.abs(np.einsum("js,msc->mjc", problem.rule.legendre, path.a.reshape(m, s, 5))) / weight
     last, lower = legendre[:, -1], legendre[:, -3:].max(axis=1)
     beyond = last * np.sqrt(last / np.maximum(lower, 1e-300))
     tails = _BETWEEN * h**2 * beyond.max(axis=1)
     defects = np.maximum(np.abs(defect[:, :n]), np.abs(defect[:, n:])) / weight[free]
-    floor = max(solved.size, 1e-300)
+    floor = max(solution.size, 1e-300)
     error = (float(np.abs(dq / weight).max()) + float(tails.max())) / floor
     return Estimate(error, defects.max(axis=1), tails, dq)
 
@@ -157,40 +157,40 @@ class Refined:
     evaluations: int
 
 
-def refine(solved: Solved, tolerance: float) -> Refined:
+def refine(solution: Solved, tolerance: float) -> Refined:
     """Divide intervals and solve again until the estimated error is below the tolerance, or the mesh cannot grow.
 
     Notes
     -----
     An error within rounding's share, or a mesh that reaches ``MOST_INTERVALS``, ends it too; the error says so.
     """
-    problem = solved.problem
+    problem = solution.problem
     s = len(problem.rule.points)
-    sweeps, evaluations = solved.sweeps, solved.sweeps * solved.path.intervals * s
+    sweeps, evaluations = solution.sweeps, solution.sweeps * solution.path.intervals * s
     for rounds in range(_ROUNDS):
-        estimated = estimate(solved)
-        m = solved.path.intervals
+        error = estimate(solution)
+        m = solution.path.intervals
         evaluations += m * len(problem.rule.tried)
-        if estimated.error <= max(tolerance, solved.rounding) or rounds == _ROUNDS - 1:
+        if error.error <= max(tolerance, solution.rounding) or rounds == _ROUNDS - 1:
             break
-        target = tolerance * solved.size
-        carried = float(np.abs(estimated.field / problem.weight).max())
+        target = tolerance * solution.size
+        largest = float(np.abs(error.field / problem.weight).max())
         # Defects add up; each of the important ones may make its share.
-        important = max(int((estimated.defect > 0.1 * estimated.defect.max()).sum()), 1)
-        allowed = 0.5 * target / max(carried, 1e-300) * estimated.defect.sum() / important
-        too_much = np.maximum(estimated.defect / max(allowed, 1e-300), estimated.between / (0.5 * target))
+        important = max(int((error.defect > 0.1 * error.defect.max()).sum()), 1)
+        target_defect = 0.5 * target / max(largest, 1e-300) * error.defect.sum() / important
+        too_much = np.maximum(error.defect / max(target_defect, 1e-300), error.between / (0.5 * target))
         # Where a contact opens, halving takes a defect down by 2^2.5 to 2^3.5.
         parts = np.minimum(2 ** np.ceil(np.log2(np.maximum(too_much, 1.0)) / 3.0).astype(int), _PARTS)
         if parts.max() == 1:
             parts[np.argmax(too_much)] = 2
-        nodes, parent = divided(solved.path.nodes, parts)
+        nodes, parent = divided(solution.path.nodes, parts)
         if len(nodes) > MOST_INTERVALS:
             break
         problem.watch()
-        solved = solve(problem, resampled(problem, solved.path, nodes, parent), _NEWTON * tolerance)
-        sweeps += solved.sweeps
-        evaluations += solved.sweeps * solved.path.intervals * s
-    return Refined(solved, estimated.error, rounds, sweeps, evaluations)
+        solution = solve(problem, resampled(problem, solution.path, nodes, parent), _NEWTON * tolerance)
+        sweeps += solution.sweeps
+        evaluations += solution.sweeps * solution.path.intervals * s
+    return Refined(solution, error.error, rounds, sweeps, evaluations)
 
 
 def motion_at(problem: Problem, path: Path, angles: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -217,11 +217,11 @@ def _displacement_at(
     return k, step, u, q, rule, a
 
 
-def displacements(solved: Solved, angles: np.ndarray) -> np.ndarray:
+def displacements(solution: Solved, angles: np.ndarray) -> np.ndarray:
     """q (n, 5) at any angles (n,): the first of ``states``."""
-    problem, symmetry = solved.problem, solved.problem.symmetry
+    problem, symmetry = solution.problem, solution.problem.symmetry
     spans = _spans(symmetry.span, angles)
-    q = _displacement_at(problem, solved.path, angles - spans * symmetry.span)[3]
+    q = _displacement_at(problem, solution.path, angles - spans * symmetry.span)[3]
     return np.einsum("nij,nj->ni", rotations(symmetry.angle * np.arange(spans.max() + 1))[spans], q) if spans.any() else q
 
 
@@ -230,14 +230,14 @@ def _spans(span: float, angles: np.ndarray) -> np.ndarray:
     return np.maximum(np.ceil(angles / span - 1e-12).astype(int) - 1, 0)
 
 
-def record(solved: Solved, schedule: Schedule, counts: Tables) -> Record:
+def record(solution: Solved, schedule: Schedule, counts: Tables) -> Record:
     """Samples at every ``stride``-th step of a schedule, which begins at angle zero.
 
     Parameters
     ----------
     counts : what the record says about its making; penetration and contact force are added
     """
-    problem = solved.problem
+    problem = solution.problem
     system, span = problem.system, problem.symmetry.span
     every = problem.speed * schedule.dt * schedule.stride
     total = schedule.steps // schedule.stride
@@ -248,7 +248,10 @@ def record(solved: Solved, schedule: Schedule, counts: Tables) -> Record:
     if a_turn * schedule.stride != schedule.steps_per_turn or abs(inside * every - span) > 1e-9 * span:
         inside = total
     inside = min(inside, total)
-    q, v, a, ball, rate, gap, force = _with_contacts(solved, angles[:inside])
+    angles = angles[:inside]
+    q, v, a, ball, rate = states(solution, angles)
+    now = responses(system, States(angles / problem.speed, q, v * problem.speed, ball, rate))
+    gap, force = now.gap, now.force
     repeat = _Repeat(problem, inside, total)
     push = np.empty((total, 5))
     time = schedule.dt * schedule.stride * np.arange(1, total + 1)
@@ -274,11 +277,11 @@ def record(solved: Solved, schedule: Schedule, counts: Tables) -> Record:
     )
 
 
-def states(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
+def states(solution: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
     """q, dq/dtheta, d2q/dtheta2 (n, 5), balls and rates (n, Z, c) at any angles (n,): those beyond the span are turned there."""
-    problem, symmetry = solved.problem, solved.problem.symmetry
+    problem, symmetry = solution.problem, solution.problem.symmetry
     spans = _spans(symmetry.span, angles)
-    q, v, a, ball, rate = motion_at(problem, solved.path, angles - spans * symmetry.span)
+    q, v, a, ball, rate = motion_at(problem, solution.path, angles - spans * symmetry.span)
     if spans.any():
         repeat = _Repeat(problem, 1, int(spans.max()) + 1)
         turn = repeat.turns[spans]
@@ -286,14 +289,6 @@ def states(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
         order = repeat.orders[spans][:, :, None]
         ball, rate = (np.take_along_axis(x, np.broadcast_to(order, x.shape), axis=1) for x in (ball, rate))
     return q, v, a, np.ascontiguousarray(ball), np.ascontiguousarray(rate)
-
-
-def _with_contacts(solved: Solved, angles: np.ndarray) -> tuple[np.ndarray, ...]:
-    """The same, balls where they are at rest, with gaps and contact forces (n, 2 Z)."""
-    speed = solved.problem.speed
-    q, v, a, ball, rate = states(solved, angles)
-    now = responses(solved.problem.system, States(angles / speed, q, v * speed, ball, rate))
-    return q, v, a, ball, rate, now.gap, now.force
 
 
 class _Repeat:

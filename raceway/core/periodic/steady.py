@@ -61,14 +61,14 @@ def _orbit(motion: PeriodicMotion, reported: bool) -> Tables:
     }
 
 
-def synchronous_response(solved: Solved) -> tuple[complex, float]:
+def synchronous_response(solution: Solved) -> tuple[complex, float]:
     """Z [N/m] along the force and the major semi-axis [m] of the radial motion's synchronous (1x) component."""
-    problem = solved.problem
+    problem = solution.problem
     angles = 2.0 * np.pi * np.arange(_TABLE_SAMPLES) / _TABLE_SAMPLES
     push = np.empty((_TABLE_SAMPLES, 5))
     forces(problem.system.force, problem.system.force_params, angles / problem.clock, push)
-    turned = 2.0 / _TABLE_SAMPLES * np.exp(-1j * angles)
-    line, force = turned @ displacements(solved, angles), turned @ push
+    phasor = 2.0 / _TABLE_SAMPLES * np.exp(-1j * angles)
+    line, force = phasor @ displacements(solution, angles), phasor @ push
     forward, backward = 0.5 * abs(line[1] - 1j * line[2]), 0.5 * abs(line[1] + 1j * line[2])
     return complex(stiffness(force, line)), float(forward + backward)
 
@@ -246,8 +246,8 @@ def starting_orbit(
         orbit, highest = steady_orbit(system, period, q, _SAMPLES), highest_order(problem, tangent)
         try:
             # The motion of Fourier collocation, solved for once more on a mesh.
-            recorded = Recorded(orbit.period, orbit.displacement, orbit.velocity, orbit.acceleration)
-            path = recorded.first_guess(problem, np.zeros(5), np.zeros((5, 5)), mesh_of(problem, highest))
+            record = Recorded(orbit.period, orbit.displacement, orbit.velocity, orbit.acceleration)
+            path = record.first_guess(problem, np.zeros(5), np.zeros((5, 5)), mesh_of(problem, highest))
             motion = with_multipliers(
                 refine(solve(problem, path, 1e-2 * _TOLERANCE), _TOLERANCE), highest, "by Fourier collocation"
             )
@@ -267,10 +267,10 @@ def starting_orbit(
 
 def _sampled(motion: PeriodicMotion, period: float) -> Orbit:
     """A motion at equidistant times of a turn."""
-    solved = motion.refined.solved
-    problem, system = solved.problem, solved.problem.system
+    solution = motion.refined.solved
+    problem, system = solution.problem, solution.problem.system
     times = period / _SAMPLES * np.arange(_SAMPLES)
-    q, v, a, ball, rate = states(solved, problem.speed * times)
+    q, v, a, ball, rate = states(solution, problem.speed * times)
     v = v * problem.speed
     now = responses(system, States(times, q, v, ball, rate), tangents=True)
     force = np.array([system.outer_force(t) for t in times])

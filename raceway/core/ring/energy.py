@@ -35,19 +35,19 @@ def friction_energy(system: System, record: Record) -> _FrictionEnergy:
         return _FrictionEnergy(np.zeros(n), np.zeros(n))
     slip = record.ball[:, :, 2:4]
     force = system.scalars[layout.STICK] * (_place(system, record) - slip)
-    lost = np.zeros(n)
-    lost[1:] = np.cumsum((force[1:] * np.diff(slip, axis=0)).sum(axis=(1, 2)))
-    return _FrictionEnergy(0.5 * (force**2).sum(axis=(1, 2)) / system.scalars[layout.STICK], lost)
+    dissipation = np.zeros(n)
+    dissipation[1:] = np.cumsum((force[1:] * np.diff(slip, axis=0)).sum(axis=(1, 2)))
+    return _FrictionEnergy(0.5 * (force**2).sum(axis=(1, 2)) / system.scalars[layout.STICK], dissipation)
 
 
 def _place(system: System, record: Record) -> np.ndarray:
     """(n, Z, 2) tangential place of the inner and the outer contact [m]; the slip is the place at which nothing pulls."""
     scalars, table = system.scalars, system.table
-    travelled, rest_radial = scalars[layout.CAGE] * record.time, scalars[layout.REST_RADIAL]
+    cage_angle, rest_radial = scalars[layout.CAGE] * record.time, scalars[layout.REST_RADIAL]
     if system.spin is not None:
-        travelled = system.spin.cage_angle(scalars[layout.CAGE], record.time)
+        cage_angle = system.spin.cage_angle(scalars[layout.CAGE], record.time)
         rest_radial = rest_radial + system.spin.grown(system.spin.speed(record.time))[:, None]
-    azimuth = np.arctan2(table[:, layout.SINE], table[:, layout.COSINE]) + travelled[:, None]
+    azimuth = np.arctan2(table[:, layout.SINE], table[:, layout.COSINE]) + cage_angle[:, None]
     c, s = np.cos(azimuth), np.sin(azimuth)
     shift = np.broadcast_to(table[:, layout.SHIFT], azimuth.shape)
     if system.spin is not None and system.spin.shift is not None:
@@ -59,10 +59,11 @@ def _place(system: System, record: Record) -> np.ndarray:
     turn = side * (tilt_y * s - tilt_z * c)
     axial = scalars[layout.REST_AXIAL] + shift + side * x + scalars[layout.TILT_ARM] * turn
     radial = rest_radial + (y + lever * tilt_z) * c + (z - lever * tilt_y) * s
-    p, moved = record.ball, system.groove_displacement(record.ball)
+    p, groove_shift = record.ball, system.groove_displacement(record.ball)
     groove = scalars[layout.OFFSET_INNER] + 0.5 * scalars[layout.DIAMETER]
     inner = (
-        scalars[layout.OFFSET_INNER] * np.arctan2(axial + moved[:, :, 0] - p[:, :, 0], radial + moved[:, :, 1] - p[:, :, 1])
+        scalars[layout.OFFSET_INNER]
+        * np.arctan2(axial + groove_shift[:, :, 0] - p[:, :, 0], radial + groove_shift[:, :, 1] - p[:, :, 1])
         - groove * turn
     )
     outer = scalars[layout.OFFSET_OUTER] * np.arctan2(p[:, :, 0], p[:, :, 1])
@@ -73,8 +74,6 @@ def _place(system: System, record: Record) -> np.ndarray:
 class _EnergyBalance:
     """Energies (n,) [J] along a record and their drift.
 
-    Attributes
-    ----------
     drift : largest change of kinetic + stored - work + losses, over the largest kinetic energy, work or change stored
     """
 
@@ -110,43 +109,41 @@ def energy_balance(system: System, record: Record) -> _EnergyBalance:
     fourth order, those of friction sums over steps of first order.
     """
     n, pairs = record.gap.shape
-    energy, stored = np.empty(n * pairs), np.zeros(n)
-    tiled = np.tile(system.law_params, (n, 1))
+    energy, potential = np.empty(n * pairs), np.zeros(n)
+    params = np.tile(system.law_params, (n, 1))
     memory = np.tile(system.law_state, (n, 1))
     for share, gap in _gaps(system, record):
-        stored_energy(system.law, tiled, memory, memory.copy(), gap.reshape(-1), np.empty((6, n * pairs)), energy)
-        stored += share * energy.reshape(n, pairs).sum(axis=1)
+        stored_energy(system.law, params, memory, memory.copy(), gap.reshape(-1), np.empty((6, n * pairs)), energy)
+        potential += share * energy.reshape(n, pairs).sum(axis=1)
     q, v = record.displacement, record.velocity
-    stored -= (record.ball[:, :, 1] * system.table[:, layout.CENTRIFUGAL]).sum(axis=1)
-    stored += 0.5 * np.einsum("ni,ij,nj->n", q, system.stiffness, q) - q @ system.load
+    potential -= (record.ball[:, :, 1] * system.table[:, layout.CENTRIFUGAL]).sum(axis=1)
+    potential += 0.5 * np.einsum("ni,ij,nj->n", q, system.stiffness, q) - q @ system.load
     if system.condensed:
-        stored += 0.5 * np.einsum("nc,nc->n", record.contact_force, system.structural_approach(record.ball))
-        stored += system.ring_energy(record.ball)
+        potential += 0.5 * np.einsum("nc,nc->n", record.contact_force, system.structural_approach(record.ball))
+        potential += system.ring_energy(record.ball)
     friction = friction_energy(system, record)
-    stored += friction.stored
+    potential += friction.stored
     kinetic = 0.5 * np.einsum("ni,ij,nj->n", v, system.mass, v)
     dt = record.time[1] - record.time[0]
     work = cumulative_integral(np.einsum("ni,ni->n", record.force, v), dt)
-    lost = np.einsum("ni,ij,nj->n", v, system.damping, v)
+    power = np.einsum("ni,ij,nj->n", v, system.damping, v)
     if system.scalars[layout.DAMPING] > 0.0:
         speed = np.gradient(record.gap, dt, axis=0)
-        lost = lost + system.scalars[layout.DAMPING] * (speed**2 * (record.gap < 0.0)).sum(axis=1)
+        power = power + system.scalars[layout.DAMPING] * (speed**2 * (record.gap < 0.0)).sum(axis=1)
     if system.scalars[layout.TIME_CONSTANT] > 0.0:
-        lost = lost + _lost_in_contacts(system, record, rate(record.gap, dt))
-    losses = cumulative_integral(lost, dt) + friction.lost
-    total = kinetic + stored - work + losses
-    size = max(kinetic.max(), np.ptp(stored), np.ptp(work), np.ptp(losses), 1e-300)
-    return _EnergyBalance(kinetic, stored, work, losses, float(np.abs(total - total[0]).max() / size))
-
-
-def _lost_in_contacts(system: System, record: Record, speed: np.ndarray) -> np.ndarray:
-    """(n,) power that a time constant takes [W]: what the contacts carry beyond their springs, times the approach's rate."""
-    elastic = np.empty(record.gap.shape)
-    work = np.empty((3, record.gap.shape[1]))
-    for k, gap in enumerate(np.ascontiguousarray(record.gap)):
-        system.law(gap, work[2], system.law_params, system.law_state, system.law_state.copy(), 0.0, elastic[k], *work[:2])
-    lost: np.ndarray = ((elastic - record.contact_force) * speed).sum(axis=1)
-    return lost
+        # What the contacts carry beyond their springs, times the approach's rate
+        approach_rate = rate(record.gap, dt)
+        elastic = np.empty(record.gap.shape)
+        scratch = np.empty((3, record.gap.shape[1]))
+        for k, gap in enumerate(np.ascontiguousarray(record.gap)):
+            system.law(
+                gap, scratch[2], system.law_params, system.law_state, system.law_state.copy(), 0.0, elastic[k], *scratch[:2]
+            )
+        power = power + ((elastic - record.contact_force) * approach_rate).sum(axis=1)
+    losses = cumulative_integral(power, dt) + friction.lost
+    total = kinetic + potential - work + losses
+    size = max(kinetic.max(), np.ptp(potential), np.ptp(work), np.ptp(losses), 1e-300)
+    return _EnergyBalance(kinetic, potential, work, losses, float(np.abs(total - total[0]).max() / size))
 
 
 def rate(values: np.ndarray, dt: float) -> np.ndarray:

@@ -99,13 +99,13 @@ def _definiteness(K, linear, arm, factor, scale):
 def _slow_damping(kernels, contacts, constants, q, places, response, history):
     """C of the response, of a ring that moves while the balls stay, to that of slow motions in which they move, too: see
     ``raceway.core.ring.system.System.damping_at``; ``history`` (Z, b) holds the slips."""
-    stiffest, damped, ball, C = 0.0, 0.0, places.copy(), response.C
+    stiffest, most_damping, ball, C = 0.0, 0.0, places.copy(), response.C
     for i in range(3):
-        stiffest, damped = max(stiffest, response.K[i, i]), max(damped, C[i, i])
-    if damped == 0.0:
+        stiffest, most_damping = max(stiffest, response.K[i, i]), max(most_damping, C[i, i])
+    if most_damping == 0.0:
         return
-    rate, columns, still = SLOW * stiffest / damped, ball.shape[1], np.zeros(5)
-    shifted = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), response.work)
+    rate, columns, still = SLOW * stiffest / most_damping, ball.shape[1], np.zeros(5)
+    probe = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), response.work)
     C[:] = 0.0
     for sign in (1.0, -1.0):
         for k in range(ball.shape[0]):
@@ -113,10 +113,10 @@ def _slow_damping(kernels, contacts, constants, q, places, response, history):
                 if columns == kernels.columns or c < 2 or c > 3:  # slips have no rates
                     history[k, c] = -sign * rate * places[k, c]
         copy_matrix(places, ball)
-        kernels.system(0.0, q, still, Balls(ball, sign * rate, history), contacts, constants, shifted)
+        kernels.system(0.0, q, still, Balls(ball, sign * rate, history), contacts, constants, probe)
         for i in range(5):
             for j in range(5):
-                C[i, j] += sign * (shifted.K[i, j] + sign * rate * shifted.C[i, j]) / (2.0 * rate)
+                C[i, j] += sign * (probe.K[i, j] + sign * rate * probe.C[i, j]) / (2.0 * rate)
 
 
 @jit(void(KERNELS, LINEAR, POINTS, STATES), allocates=True, releases=True)
@@ -154,8 +154,8 @@ def equilibria(kernels, linear, points, states):
         if status == CONVERGED:
             keep_slips(constants.scalars, ball, history)
             contacts = Contacts(kernels.law, params, memory, memory, 0.0)
-            failed = kernels.system(0.0, q, still, Balls(ball, 0.0, history), contacts, constants, response) != 0
-            if failed or not _definiteness(K, own, constants.scalars[TILT_ARM], factor, scale) > _LEAST:
+            unsolvable = kernels.system(0.0, q, still, Balls(ball, 0.0, history), contacts, constants, response) != 0
+            if unsolvable or not _definiteness(K, own, constants.scalars[TILT_ARM], factor, scale) > _LEAST:
                 status = LOOSE
             for i in range(2 * z):
                 states.force[p, i] = work[CONTACT_FORCE, i]

@@ -275,19 +275,19 @@ def _trust_region_step(H, g, norm, trace, radius, factor, step):
 @jit(float64(float64, float64, MATRIX, VECTOR, VECTOR, VECTOR))
 def _decrease_ratio(before, after, H, g, g_new, step):
     """Fall of the potential from ``before`` to ``after`` [J] over that of the quadratic model over a step."""
-    predicted, slopes = 0.0, 0.0
+    model_decrease, slopes = 0.0, 0.0
     for i in range(5):
         total = g[i]
         for j in range(5):
             total += 0.5 * H[i, j] * step[j]
-        predicted -= step[i] * total
+        model_decrease -= step[i] * total
         slopes += (g[i] + g_new[i]) * step[i]
-    if not predicted > 0.0:
+    if not model_decrease > 0.0:
         return 0.0
-    if predicted <= 1e-13 * (abs(before) + abs(after)):
+    if model_decrease <= 1e-13 * (abs(before) + abs(after)):
         # Energies no longer tell the two states apart: the mean of the slopes at both ends of the step does.
-        return -0.5 * slopes / predicted
-    return (before - after) / predicted
+        return -0.5 * slopes / model_decrease
+    return (before - after) / model_decrease
 
 
 @jit(float64(float64, float64, float64))
@@ -296,15 +296,6 @@ def _next_radius(ratio, radius, size):
     if ratio < 0.25:
         return 0.25 * min(radius, size)
     return 3.0 * radius if ratio > 0.75 and size >= 0.7 * radius else radius
-
-
-@jit(boolean(VECTOR, VECTOR, float64))
-def _runs_away(q, scale, arm):
-    """Whether the ring is a thousand of its arms away: nothing holds it."""
-    away = False
-    for i in range(5):
-        away = away or abs(q[i]) > 1e3 * arm * scale[i]
-    return away
 
 
 @jit(void(STATIC, RESPONSE, STATIC, RESPONSE))
@@ -335,16 +326,20 @@ def solve_equilibrium(forces, linear, tolerance, t, state, response, report):
         return BALLS_FAILED
     # What the ring feels counts: under centrifugal force the outer races may carry a million times more, of which only
     # the rounding (a ten-thousandth of the tolerance, 1e-15) remains.
-    carried, weight, potential, relative = _force_scale(work), 0.0, np.nan, np.inf
+    force_scale, weight, potential, relative = _force_scale(work), 0.0, np.nan, np.inf
     for i in range(5):
         weight += abs(linear.load[i]) * scale[i]
     for iteration in range(_LIMIT):
         norm = _gradient(linear, now.f, q, scale, g)
-        relative = norm / max(carried + weight, 1e-300)
+        relative = norm / max(force_scale + weight, 1e-300)
         report[ITERATIONS], report[RESIDUAL] = iteration, relative
         if not np.isfinite(norm):
             return NOT_FINITE
-        if _runs_away(q, scale, arm):
+        # A thousand of its arms away: nothing holds the ring
+        away = False
+        for i in range(5):
+            away = away or abs(q[i]) > 1e3 * arm * scale[i]
+        if away:
             return RUN_AWAY
         if relative <= tolerance:
             return CONVERGED
@@ -373,7 +368,7 @@ def solve_equilibrium(forces, linear, tolerance, t, state, response, report):
             if not ratio > 1e-4:
                 continue
             potential = energy
-        carried = carried_new
+        force_scale = carried_new
         _accept(trial, new, state, now)
     return CONVERGED if relative <= 1e3 * tolerance else NOT_CONVERGED
 

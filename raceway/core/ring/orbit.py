@@ -92,9 +92,9 @@ def responses(system: System, states: States, tangents: bool = False) -> Respons
     """
     n, out = len(states.times), _room(system, len(states.times), tangents)
     q, v = np.ascontiguousarray(states.q), np.ascontiguousarray(states.v)
-    evaluated = _respond(system.compiled_forces, system.law_state, states._replace(q=q, v=v), out)
-    if evaluated < n:
-        raise ConvergenceError("the balls have no equilibrium between the races", {"q": q[evaluated].copy()})
+    status = _respond(system.compiled_forces, system.law_state, states._replace(q=q, v=v), out)
+    if status < n:
+        raise ConvergenceError("the balls have no equilibrium between the races", {"q": q[status].copy()})
     return out
 
 
@@ -182,7 +182,7 @@ def orbit_near(
     q = start.copy()
     ball = np.zeros((samples, system.ball_count, system.ball_columns))
     rate = np.zeros_like(ball)
-    rated = system.rated_columns
+    rate_columns = system.rated_columns
     f, K, C, _, _ = now = _room(system, samples, tangents=True)
     scale = max(np.abs(force).max(), np.abs(system.load).max(), 1e-300)
     linear, diagonal = _linear_part(system, free, first, inertial), np.arange(samples)
@@ -191,13 +191,13 @@ def orbit_near(
     for iterations in range(1, limit + 1):
         v = first @ q if inertial else np.zeros_like(q)
         if inertial and iterations > 1:
-            rate[:, :, rated] = np.einsum("ij,jkc->ikc", first, ball[:, :, rated])
-        evaluated = _evaluate(system, States(times, q, v, ball, rate), now)
+            rate[:, :, rate_columns] = np.einsum("ij,jkc->ikc", first, ball[:, :, rate_columns])
+        status = _evaluate(system, States(times, q, v, ball, rate), now)
         imbalance = f + q @ system.stiffness.T - system.load - force
         if inertial:
             imbalance += v @ system.damping.T + (second @ q) @ system.mass.T
         r = imbalance[:, free]
-        residual = float(np.abs(r * weight).max() / scale) if evaluated == samples and np.isfinite(r).all() else np.inf
+        residual = float(np.abs(r * weight).max() / scale) if status == samples and np.isfinite(r).all() else np.inf
         if residual <= tolerance and iterations > 2:
             break
         if residual > 2.0 * worst and damping_factor > 1e-3:
@@ -278,6 +278,6 @@ def at_rest(system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Moti
 def static_orbit(system: Ring, q: np.ndarray, ball: np.ndarray, ramped: bool) -> Motion:
     """The equilibrium under the constant load and the excitation's force at time zero: for series of equilibria."""
     outer = np.zeros(5) if ramped else system.outer_force(0.0)
-    loaded = attrs.evolve(system, load=system.load + outer)
-    q, ball, _ = loaded.solve_equilibrium(q, ball)
+    under_load = attrs.evolve(system, load=system.load + outer)
+    q, ball, _ = under_load.solve_equilibrium(q, ball)
     return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())

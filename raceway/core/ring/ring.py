@@ -95,15 +95,15 @@ class SteppedBearing:
     def internal(self, t: float, dt: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         system, rate, gain = self.system.at_speed(t), np.zeros_like(self._ball), 0.0
         self._damping = system.damping
-        guess, rated = self._ball.copy(), system.rated_columns
+        guess, rate_columns = self._ball.copy(), system.rated_columns
         if dt > 0.0:
             gain = 1.5 / dt
-            rate[:, rated] = (0.5 * self._before[:, rated] - 2.0 * self._ball[:, rated]) / dt
-            guess[:, rated] = 2.0 * self._ball[:, rated] - self._before[:, rated]
+            rate[:, rate_columns] = (0.5 * self._before[:, rate_columns] - 2.0 * self._ball[:, rate_columns]) / dt
+            guess[:, rate_columns] = 2.0 * self._ball[:, rate_columns] - self._before[:, rate_columns]
         else:
             system = system.stopped(t)
         if self._guess is not None:  # what is not rated, slips, is handed over as it was committed
-            guess[:, rated] = self._guess[:, rated]
+            guess[:, rate_columns] = self._guess[:, rate_columns]
         self._now = system.evaluate(u, v, guess, rate, t, Increment(dt, gain, self._memory))
         self._guess = self._now.ball.copy()
         return np.asarray(self._now.force + system.damping @ v + system.stiffness @ u)
@@ -240,8 +240,8 @@ class ChangingSpeed:
 
     def grown(self, speed: np.ndarray) -> np.ndarray:
         """Growth of the inner raceway (n,) [m] at speeds (n,) [rad/s] beyond that at w_r."""
-        (free, fit, lost), squared = self.growth, (speed / self.reference) ** 2
-        return np.asarray(free * (squared - 1.0) + np.maximum(fit - lost * squared, 0.0) - max(fit - lost, 0.0))
+        (free, fit, loss), square = self.growth, (speed / self.reference) ** 2
+        return np.asarray(free * (square - 1.0) + np.maximum(fit - loss * square, 0.0) - max(fit - loss, 0.0))
 
     def cage_angle(self, cage: float, time: np.ndarray) -> np.ndarray:
         """(n,) [rad] by which balls have travelled since time zero; ``cage``: their speed at w_r [rad/s]."""
@@ -435,18 +435,18 @@ class Ring(ABC):
         for k, (time, state) in enumerate(zip(times, states, strict=True)):
             place(time, state, still, constants, work, (3 * k, 3 * k + 1, 3 * k + 2))
         parts = work.reshape(*np.shape(q)[:-1], 3, 2, -1).swapaxes(-1, -2)
-        moved = 0.0 if ball is None else self.groove_displacement(ball)
-        return parts[..., 1, :, :] + moved, parts[..., 0, :, :].copy()
+        groove_shift = 0.0 if ball is None else self.groove_displacement(ball)
+        return parts[..., 1, :, :] + groove_shift, parts[..., 0, :, :].copy()
 
     def stress_free_slip(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
         """(Z, 2) slips of inner and outer contacts at which no friction acts [m]."""
         e, direction = self.centre_vectors(q, t, ball)
         inner = np.arctan2(e[:, 0] - ball[:, 0], e[:, 1] - ball[:, 1])
         outer = np.arctan2(ball[:, 0], ball[:, 1])
-        turned = self.table[:, layout.SIDE] * (q[3] * direction[:, 1] - q[4] * direction[:, 0])
+        section_turn = self.table[:, layout.SIDE] * (q[3] * direction[:, 1] - q[4] * direction[:, 0])
         groove = self.scalars[layout.OFFSET_INNER] + 0.5 * self.scalars[layout.DIAMETER]
         return np.column_stack(
-            [self.scalars[layout.OFFSET_INNER] * inner - groove * turned, self.scalars[layout.OFFSET_OUTER] * outer]
+            [self.scalars[layout.OFFSET_INNER] * inner - groove * section_turn, self.scalars[layout.OFFSET_OUTER] * outer]
         )
 
     def at_standstill(self) -> Self:
@@ -485,13 +485,13 @@ class Ring(ABC):
         det(s^2 M - 2 s C - K) = 0; of one mode with the damping ratio z it is (2 / w) (sqrt(1 + 4 z^2) - 2 z).  Damping of the
         ground acts at the end of the step and does not enter.
         """
-        undamped = self.critical_time_step(tangent)
+        limit = self.critical_time_step(tangent)
         if not damping.any():
-            return undamped
+            return limit
         k, c = self._per_mass(tangent, self.stiffness), self._per_mass(damping)
         identity = np.eye(len(k))
         fastest = float(np.linalg.eigvals(np.block([[0.0 * identity, identity], [k, 2.0 * c]])).real.max())
-        return min(undamped, 2.0 / fastest) if fastest > 0.0 else undamped
+        return min(limit, 2.0 / fastest) if fastest > 0.0 else limit
 
     def _per_mass(self, matrix: np.ndarray, further: np.ndarray | float = 0.0) -> np.ndarray:
         """The symmetric part of a matrix (5, 5), plus a further one, among the unknowns, for coordinates of unit mass."""
@@ -522,8 +522,8 @@ class Ring(ABC):
         rows = self.of_balls(self.sliding, self.table[self.sliding].copy())
         evaluation = rows.evaluate(q, ball=now.ball[self.sliding])
         impedance = rows.stiffness_at(q, evaluation) + 1j * _INFINITESIMAL * rows.damping_at(q, evaluation)
-        met = stiffness + 1j * _INFINITESIMAL * damping - np.outer(impedance[:, 0], impedance[0]) / impedance[0, 0]
-        return met.real.copy(), met.imag / _INFINITESIMAL
+        condensate = stiffness + 1j * _INFINITESIMAL * damping - np.outer(impedance[:, 0], impedance[0]) / impedance[0, 0]
+        return condensate.real.copy(), condensate.imag / _INFINITESIMAL
 
     def viscous_stiffness_at(self, q: np.ndarray, ball: np.ndarray, frequency: float) -> np.ndarray:
         """What dashpots of the contacts add to their stiffness (5, 5) at an equilibrium, complex: motions exp(j w t), w [rad/s]."""

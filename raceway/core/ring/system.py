@@ -55,8 +55,8 @@ class System(Ring):
         """A copy with the law's parameters (2 Z, k) and reach (2 Z,) [m] at a running speed."""
         table, before = self.table.copy(), 0.0 if self.reach is None else self.reach
         table[:, [layout.OWN_OFFSET_INNER, layout.OWN_OFFSET_OUTER]] -= (reach - before).reshape(2, -1).T
-        mounted = self.law_params if self.mounted_params is None else self.mounted_params
-        return attrs.evolve(self, table=table, law_params=law_params, mounted_params=mounted, reach=reach)
+        rest_params = self.law_params if self.mounted_params is None else self.mounted_params
+        return attrs.evolve(self, table=table, law_params=law_params, mounted_params=rest_params, reach=reach)
 
     def standing(self, growth: Growth) -> System:
         """At standstill, where laws have the parameters of standstill."""
@@ -126,8 +126,8 @@ class System(Ring):
         both, outer = self.between_balls()
         push = np.zeros((self.ball_count, 2))
         push[:, 1] = self.table[:, layout.CENTRIFUGAL]
-        carried = -(self.groove_displacement(ball).reshape(*ball.shape[:-2], -1) + outer @ push.reshape(-1))
-        return 0.5 * np.einsum("...i,ij,...j->...", carried, np.linalg.pinv(both, rcond=1e-12), carried)
+        elastic_shift = -(self.groove_displacement(ball).reshape(*ball.shape[:-2], -1) + outer @ push.reshape(-1))
+        return 0.5 * np.einsum("...i,ij,...j->...", elastic_shift, np.linalg.pinv(both, rcond=1e-12), elastic_shift)
 
     def _work(self) -> np.ndarray:
         return np.zeros((work_rows(self.scalars, self.table), 2 * self.ball_count))

@@ -47,7 +47,7 @@ def viscous_stiffness(
     linear = (np.abs(stiffness(fastest) - static - fastest * damping) <= _LINEAR * np.outer(size, size)).all()
 
     def change(w: float) -> np.ndarray:
-        return 1j * w * damping if linear else _continued(stiffness, w) - static
+        return 1j * w * damping if linear else _continuation(stiffness, w) - static
 
     if cage == 0.0:
         return change(frequency)
@@ -58,14 +58,14 @@ def viscous_stiffness(
     return np.asarray(sum(part @ change(w) @ part for part, w in parts))
 
 
-def _continued(stiffness: Callable[[float], np.ndarray], frequency: float) -> np.ndarray:
+def _continuation(stiffness: Callable[[float], np.ndarray], frequency: float) -> np.ndarray:
     """S(j w) from S on the positive axis."""
     values = np.array([stiffness(abs(frequency) * rate) for rate in _RATES])
     size = np.sqrt(np.abs(np.diagonal(values, axis1=1, axis2=2)).max(axis=0))
     size[size == 0.0] = 1.0
-    scaled = values / np.outer(size, size)
-    support, fitted = _RATES[::2], _RATES[1::2]
-    loewner = (scaled[1::2, None] - scaled[::2]) / np.subtract.outer(fitted, support)[:, :, None, None]
+    unit_values = values / np.outer(size, size)
+    support, targets = _RATES[::2], _RATES[1::2]
+    loewner = (unit_values[1::2, None] - unit_values[::2]) / np.subtract.outer(targets, support)[:, :, None, None]
     _, singular, rows = np.linalg.svd(np.moveaxis(loewner, 1, -1).reshape(-1, len(support)), full_matrices=False)
     # Of all weights that interpolate to rounding those whose denominator is largest.
     null = rows[min(int((singular > _ROUNDING * max(singular[0], 1.0)).sum()), len(rows) - 1) :]

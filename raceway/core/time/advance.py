@@ -82,11 +82,9 @@ def advance(
 
 def _record(recording: Recording, schedule: Schedule, final: Motion) -> Record:
     counters = recording.counters
-    recorded = int(counters[ROWS])
-    rows, probes = recording.rows[:recorded], recording.probes[:recorded]
-    pairs = [
-        part.reshape(recorded, -1, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)
-    ]  # positions and, with friction, slips
+    count = int(counters[ROWS])
+    rows, probes = recording.rows[:count], recording.probes[:count]
+    pairs = [part.reshape(count, -1, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)]  # positions and, with friction, slips
     return Record(
         time=rows[:, 0],
         displacement=rows[:, 1:6],

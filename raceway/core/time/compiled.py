@@ -135,8 +135,8 @@ def _differences(formula, free, motion, trial):
     """v and a at the end of the step from q there and the motion (4, 5) at its begin."""
     dt, beta, gamma = formula.dt, formula.beta, formula.gamma
     for i in range(5):
-        predicted = motion[0, i] + dt * motion[1, i] + dt * dt * (0.5 - beta) * motion[2, i]
-        trial.a[i] = (trial.q[i] - predicted) * formula.to_a * free[i]
+        prediction = motion[0, i] + dt * motion[1, i] + dt * dt * (0.5 - beta) * motion[2, i]
+        trial.a[i] = (trial.q[i] - prediction) * formula.to_a * free[i]
         trial.v[i] = motion[1, i] + dt * ((1.0 - gamma) * motion[2, i] + gamma * trial.a[i])
 
 
@@ -150,22 +150,22 @@ def _imbalance(formula, linear, motion, trial, response, push, arm):
         scale += abs(response.work[CONTACT_FORCE_ROW, i])
     for i in range(5):
         weight = 1.0 if i < 3 else 1.0 / arm
-        net_force, inertia, held = response.f[i] - load[i] - push[i], 0.0, 0.0
+        net_force, inertia, spring_force = response.f[i] - load[i] - push[i], 0.0, 0.0
         for j in range(5):
             net_force += damping[i, j] * v[j] + stiffness[i, j] * q[j]
             inertia += mass[i, j] * ((1.0 - formula.am) * a[j] + formula.am * motion[2, j])
-            held += mass[i, j] * abs(q[j])
+            spring_force += mass[i, j] * abs(q[j])
         net_forces[i] = net_force
         residual[i] = (inertia + (1.0 - formula.af) * net_force + formula.af * motion[3, i]) * free[i]
         norm = max(norm, abs(residual[i]) * weight)
         # Below the rounding of the inertia forces nothing can be asked.
-        moving = max(moving, abs(inertia) * weight, 1e-6 * held * formula.to_a * weight)
+        moving = max(moving, abs(inertia) * weight, 1e-6 * spring_force * formula.to_a * weight)
         scale = max(scale, abs(push[i] + load[i]) * weight)
     return norm, moving, max(scale, moving)
 
 
 @jit(boolean(FORMULA, LINEAR, RESPONSE, VECTOR, MATRIX, VECTOR), inline=True)
-def _newton_step(formula, linear, response, residual, J, dq):
+def _time_step_newton(formula, linear, response, residual, J, dq):
     """dq (5,) that takes the residual away; J (5, 6) is scratch.  False where the matrix is singular."""
     mass, damping, stiffness, free, _ = linear
     for i in range(5):
@@ -217,7 +217,7 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
             # Start from constant acceleration.
             counters[EXCITATION] = max(counters[EXCITATION], abs(push[i]) * (1.0 if i < 3 else 1.0 / arm))
             q[i] = motion[0, i] + dt * motion[1, i] + 0.5 * dt * dt * motion[2, i]
-        before, halvings, balanced = np.inf, 0, False
+        before, halvings, in_balance = np.inf, 0, False
         for _ in range(_NEWTON_LIMIT):
             _differences(formula, linear.free, motion, trial)
             counters[EVALUATIONS] += 1.0
@@ -231,7 +231,7 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
             enough = tolerance * max(counters[EXCITATION], moving) + rounding + _NOTHING
             # Forces of a law that iterates may be rougher than rounding: what no longer shrinks is measured by the largest of all.
             if norm <= enough or 0.5 * before < norm <= tolerance * scale:
-                balanced = True
+                in_balance = True
                 break
             if norm > 2.0 * before and halvings < _HALVINGS:
                 halvings += 1
@@ -240,11 +240,11 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
                     q[i] -= dq[i]
                 continue
             halvings, before = 0, norm
-            if not _newton_step(formula, linear, response, trial.residual, J, dq):
+            if not _time_step_newton(formula, linear, response, trial.residual, J, dq):
                 break
             for i in range(5):
                 q[i] += dq[i]
-        if not balanced:
+        if not in_balance:
             counters[REASON], counters[RESIDUAL] = NEWTON, norm
             return step
         if not _commit(trial, motion):
@@ -271,7 +271,7 @@ def _effective_inverse(linear, dt, J):
 
 
 @jit(void(LINEAR, boolean, VECTOR, VECTOR, VECTOR, VECTOR), inline=True)
-def _unbalanced(linear, ground, q, half, push, f):
+def _net_force(linear, ground, q, half, push, f):
     """f (5,), at first the contacts' force, becomes the force that accelerates; ``ground``: whether damping or stiffness act."""
     for i in range(5):
         f[i] = linear.load[i] + push[i] - f[i]
@@ -282,20 +282,6 @@ def _unbalanced(linear, ground, q, half, push, f):
         for j in range(5):
             force -= linear.damping[i, j] * half[j] + linear.stiffness[i, j] * q[j]
         f[i] = force
-
-
-@jit(boolean(MATRIX, VECTOR, VECTOR, VECTOR), inline=True)
-def _accelerate(effective, f, q, a):
-    """a (5,) of the force f (5,), by ``_effective_inverse``; whether it and the displacement q (5,) are bounded."""
-    bounded = True
-    for i in range(5):
-        total = 0.0
-        for j in range(5):
-            total += effective[i, 5 + j] * f[j]
-        a[i] = total
-        if not abs(q[i]) < 1.0 or not np.isfinite(total):
-            bounded = False
-    return bounded
 
 
 @jit(LOOP, allocates=True)
@@ -326,8 +312,17 @@ def central_difference(forces, linear, outer, coefficients, steps, state, record
         if forces.system(t, q, guess, balls, contacts, constants, response) != 0:
             counters[REASON] = BALLS
             break
-        _unbalanced(linear, ground, q, half, push, response.f)
-        if not _accelerate(effective, response.f, q, a):
+        _net_force(linear, ground, q, half, push, response.f)
+        # Whether acceleration and displacement are bounded
+        finite = True
+        for i in range(5):
+            total = 0.0
+            for j in range(5):
+                total += effective[i, 5 + j] * response.f[j]
+            a[i] = total
+            if not abs(q[i]) < 1.0 or not np.isfinite(total):
+                finite = False
+        if not finite:
             counters[REASON] = UNBOUNDED
             break
         for i in range(5):
@@ -342,16 +337,6 @@ def central_difference(forces, linear, outer, coefficients, steps, state, record
             for j in range(5):
                 motion[3, i] -= linear.mass[i, j] * motion[2, j]
     return steps_taken
-
-
-@jit(void(OUTER, float64, VECTOR, STATE, VECTOR, STATIC, VECTOR))
-def _extrapolate(outer, t, load, state, push, equilibrium, total):
-    """First guess of the next equilibrium, and its load ``total`` (5,): the constant one and ``push`` (5,) at time t."""
-    outer_force(outer, t, push)
-    for i in range(5):
-        equilibrium.q[i] = state.motion[0, i] + state.motion[1, i]
-        total[i] = load[i] + push[i]
-    copy_matrix(state.ball, equilibrium.ball)
 
 
 @jit(boolean(FORCES, float64, STATIC, MATRIX, RESPONSE), allocates=True)
@@ -403,13 +388,18 @@ def quasi_static(solver: Kernel) -> Kernel:
         work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
         response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), work)
         report, push, total, still = np.zeros(2), np.empty(5), np.empty(5), state.motion.copy()
-        loaded = Linear(linear.mass, linear.damping, linear.stiffness, linear.free, total)
+        under_load = Linear(linear.mass, linear.damping, linear.stiffness, linear.free, total)
         equilibrium = StaticState(np.empty(5), np.empty_like(state.ball), state.memory)
         for step in range(steps.total):
             number = steps.first + step + 1
             t = number * steps.dt
-            _extrapolate(outer, t, linear.load, state, push, equilibrium, total)
-            status = solver(forces, loaded, coefficients[0], t, equilibrium, response, report)
+            # First guess of the next equilibrium, and its load
+            outer_force(outer, t, push)
+            for i in range(5):
+                equilibrium.q[i] = state.motion[0, i] + state.motion[1, i]
+                total[i] = linear.load[i] + push[i]
+            copy_matrix(state.ball, equilibrium.ball)
+            status = solver(forces, under_load, coefficients[0], t, equilibrium, response, report)
             counters[EVALUATIONS] += report[ITERATIONS] + 1.0
             if status != CONVERGED:
                 counters[REASON], counters[RESIDUAL] = _reason_of(status), report[LEFT]

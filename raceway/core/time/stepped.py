@@ -28,11 +28,11 @@ def implicit(system: SteppedSystem, recorder: Recorder, numbers: Numbers, tolera
         start = 3.0 * (before[2] - before[1]) + before[0] if system.smooth and len(before) == 3 else None
         outer = recorder.load(recorder.time_of(step))
         excitation = max(excitation, system.measure(outer - constant))
-        state = _step(recorder, recorder.time_of(step), outer, excitation, numbers, tolerance, start)
+        state = _implicit_step(recorder, recorder.time_of(step), outer, excitation, numbers, tolerance, start)
         recorder.accept(state, outer=outer)
 
 
-def _step(
+def _implicit_step(
     recorder: Recorder,
     t: float,
     outer: np.ndarray,
@@ -43,8 +43,6 @@ def _step(
 ) -> State:
     """The state at time t, one step on.
 
-    Parameters
-    ----------
     outer : (size,) outer forces at t;  excitation : largest so far [N]
     start : where Newton's method begins; None: at constant acceleration
     """
@@ -52,13 +50,13 @@ def _step(
     system, before, dt = recorder.system, recorder.state, recorder.schedule.dt
     net_force_before = -system.mass_times(before.a) if before.net_force is None else before.net_force
     to_a, to_v = 1.0 / (beta * dt * dt), gamma / (beta * dt)
-    predicted = before.u + dt * before.v + dt * dt * (0.5 - beta) * before.a
+    prediction = before.u + dt * before.v + dt * dt * (0.5 - beta) * before.a
     u = before.u + dt * before.v + 0.5 * dt * dt * before.a if start is None else start
     load = system.measure(outer)
     history: list[float] = []
     norm_before, halvings, du = np.inf, 0, np.zeros_like(u)
     for _ in range(NEWTON_LIMIT):
-        a = (u - predicted) * to_a
+        a = (u - prediction) * to_a
         v = before.v + dt * ((1.0 - gamma) * before.a + gamma * a)
         recorder.evaluations += 1
         try:

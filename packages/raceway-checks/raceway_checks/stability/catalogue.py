@@ -101,25 +101,25 @@ def _any_scene(base: Tables, registry: Registry, own: bool) -> Iterator[Case]:
             setting, changes = {"integrator": name, "law": law}, law_changes(law, registry)
             arguments = {**by_name, "changes": changes}
             for tilt in ("locked", "free"):
-                tilted = {**arguments, "changes": {**changes, "supports.tilt": tilt}}
+                with_tilt = {**arguments, "changes": {**changes, "supports.tilt": tilt}}
                 title = "steps around the limit, small motions of the bearing"
-                yield Case(title, "motions:small_motions", {**setting, "tilt": tilt}, tilted)
+                yield Case(title, "motions:small_motions", {**setting, "tilt": tilt}, with_tilt)
             orbit = "orbit at the safe limit", "motions:orbit_at_the_safe_limit"
             if own:
                 yield Case(*orbit, setting, arguments)
             for axial, newton, tilt, quick in () if own else _DATA["orbits"]:
                 orbiting = {**changes, "load.axial": axial, **_force(newton), "supports.tilt": tilt}
-                shown = {**setting, "axial": axial, "force": newton, "tilt": tilt}
-                yield Case(*orbit, shown, {**arguments, "changes": orbiting}, quick)
+                setting_shown = {**setting, "axial": axial, "force": newton, "tilt": tilt}
+                yield Case(*orbit, setting_shown, {**arguments, "changes": orbiting}, quick)
             for steps in (100_000,) if own else (100_000, 1_000_000):
                 for factor, amplitude in _UNDAMPED:
-                    undamped = {**arguments, "steps": steps, "factor": factor, "amplitude": amplitude}
-                    yield Case("undamped steps", "motions:many_steps", setting, undamped, steps == 100_000)
+                    without_damping = {**arguments, "steps": steps, "factor": factor, "amplitude": amplitude}
+                    yield Case("undamped steps", "motions:many_steps", setting, without_damping, steps == 100_000)
     judge = "" if "excitation" not in base else "any" if own else "orbit"
     for factor in _PENALTIES if "penalty" in laws else ():
         arguments = {"tables": base, "changes": {"contact.kind": "penalty"}, "penalty_factor": factor, "judge": judge}
-        shown = {"law": "penalty", "penalty / default": factor}
-        yield Case("penalty", "scenes:extreme", shown, arguments, own or factor in (1e-3, 1e3))
+        setting_shown = {"law": "penalty", "penalty / default": factor}
+        yield Case("penalty", "scenes:extreme", setting_shown, arguments, own or factor in (1e-3, 1e3))
 
 
 def _contacts(base: Tables, registry: Registry) -> Iterator[Case]:
@@ -128,11 +128,11 @@ def _contacts(base: Tables, registry: Registry) -> Iterator[Case]:
     for law in laws_with(registry, "resultant"):
         arguments: Tables = {"tables": base, "changes": law_changes(law, registry)}
         for name in names:
-            moved, setting = {**arguments, "integrator": name}, {"integrator": name, "law": law}
+            common, setting = {**arguments, "integrator": name}, {"integrator": name, "law": law}
             for speed in (0.01, 1.0, 10.0):
-                yield Case("impact", "motions:impact", setting, {**moved, "speed": speed, "steps": 100})
+                yield Case("impact", "motions:impact", setting, {**common, "speed": speed, "steps": 100})
             for depth in (1e-4, 5e-4):
-                yield Case("deep initial penetration", "motions:deep_penetration", setting, {**moved, "depth": depth})
+                yield Case("deep initial penetration", "motions:deep_penetration", setting, {**common, "depth": depth})
         guesses = [1e-3, 5e-3, 5e-2, -1e-3, -5e-3]
         yield Case("equilibrium from afar", "motions:settled_from_afar", {"law": law}, {**arguments, "guesses": guesses})
         for name, options, step, chatters in _DATA["chatter"]:
@@ -142,13 +142,13 @@ def _contacts(base: Tables, registry: Registry) -> Iterator[Case]:
 
 
 def _scenes(base: Tables, registry: Registry) -> Iterator[Case]:
-    for name, changes, closed, judge in SCENES:
-        if closed:
+    for name, changes, exact, judge in SCENES:
+        if exact:
             yield Case(f"Hertz' contacts: {name}", "scenes:hertz_factor", {}, {"tables": base, "changes": changes})
         for law in laws_with(registry, "resultant"):
             lawful = {**changes, **law_changes(law, registry)}
             arguments: Tables = {"tables": base, "judge": judge, "changes": lawful}
-            yield Case(name, "scenes:extreme", {"law": law}, {**arguments, "closed_form": closed}, name in _DATA["quick"])
+            yield Case(name, "scenes:extreme", {"law": law}, {**arguments, "closed_form": exact}, name in _DATA["quick"])
             if name in _DATA["condensed"]:
                 arguments |= {"changes": {**lawful, "bodies.kind": "condensed"}, "may_be_too_stiff": True}
                 yield Case(name, "scenes:extreme", {"law": law, "bodies": "condensed"}, arguments, False)

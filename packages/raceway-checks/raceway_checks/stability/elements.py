@@ -104,20 +104,20 @@ def _tip(kind: str, poisson: float) -> float:
     end = points[:, 0] > 8.0 - 1e-9
     load = np.zeros_like(points)
     load[end, 2] = 1.0 / end.sum()
-    held = np.repeat(points[:, :1] < 1e-9, 3, axis=1)
-    return float(solve_static(op.stiffness(), points, load, held, tolerance=1e-6).displacement[end, 2].mean())
+    fixed_dofs = np.repeat(points[:, :1] < 1e-9, 3, axis=1)
+    return float(solve_static(op.stiffness(), points, load, fixed_dofs, tolerance=1e-6).displacement[end, 2].mean())
 
 
 def bad_elements(rows: Rows, _bench: None) -> None:
     """An element turned inside out, and one without a volume."""
     points, cells = _block((1, 1, 1), (1.0, 1.0, 1.0))
-    for name, moved in (("inside out", -2.0), ("flat", -1.0)):
-        bad = points + np.where(points[:, :1] == 1.0, [moved, 0.0, 0.0], 0.0)
-        build = partial(_step, bad, cells)
+    for name, corner_x in (("inside out", -2.0), ("flat", -1.0)):
+        bad = points + np.where(points[:, :1] == 1.0, [corner_x, 0.0, 0.0], 0.0)
+        build = partial(_explicit_step, bad, cells)
         rows.refused("inverted or degenerate", "MeshError: such an element has no mass", build, {"element": name})
 
 
-def _step(points: np.ndarray, cells: np.ndarray) -> float:
+def _explicit_step(points: np.ndarray, cells: np.ndarray) -> float:
     return HexOperator(points, cells, _YOUNG, _POISSON, _DENSITY).stable_step()
 
 

@@ -108,7 +108,21 @@ def impact(rows: Rows, bench: Bench, integrator: str, speed: float, steps: int) 
     system, method = impact_system(mass, law, params), bench.method(integrator)
     force, rebound = _force(system, depth), speed
     if at.dissipative:
-        force, rebound = _solved_impact(system, mass, speed, depth)
+        # Greatest force [N] and speed of the rebound [m/s] of a law that depends on the rate
+        from scipy.integrate import solve_ivp
+
+        def leaves(_: float, y: np.ndarray) -> float:
+            return float(y[0])
+
+        leaves.terminal, leaves.direction = True, -1.0  # type: ignore[attr-defined]
+        # The unit of length is the depth, so that both unknowns are of the size of 1.
+        span = 10.0 * pi * depth / speed
+        solution = solve_ivp(
+            lambda _, y: [y[1] * speed / depth, -_force(system, y[0] * depth, y[1] * speed) / (mass * speed)], (0.0, span), [0.0, 1.0],
+            events=leaves, rtol=1e-9, atol=1e-12, max_step=0.01 * depth / speed,
+        )  # fmt: skip
+        force = max(_force(system, x * depth, v * speed) for x, v in solution.y.T)
+        rebound = -float(solution.y[1, -1]) * speed
     dt = pi * depth / speed / steps
     record = integrate(method, system, _mass_at(-0.4 * dt * speed, speed), Schedule(dt, 2 * steps, 1))
     departure = -float(record.velocity[-1, 0])
@@ -126,24 +140,6 @@ def _force(system: System, approach: float, rate: float = 0.0) -> float:
     """Contact force and damper [N] of one mass."""
     x = np.eye(5)[0]
     return float(system.evaluate(approach * x, rate * x, ball=np.zeros((1, 2))).force[0])
-
-
-def _solved_impact(system: System, mass: float, speed: float, depth: float) -> tuple[float, float]:
-    """Greatest force [N] and speed of the rebound [m/s] of a law that depends on the rate; ``depth``: without its loss [m]."""
-    from scipy.integrate import solve_ivp
-
-    def leaves(_: float, y: np.ndarray) -> float:
-        return float(y[0])
-
-    leaves.terminal, leaves.direction = True, -1.0  # type: ignore[attr-defined]
-    # The unit of length is the depth, so that both unknowns are of the size of 1.
-    span = 10.0 * pi * depth / speed
-    solution = solve_ivp(
-        lambda _, y: [y[1] * speed / depth, -_force(system, y[0] * depth, y[1] * speed) / (mass * speed)], (0.0, span), [0.0, 1.0],
-        events=leaves, rtol=1e-9, atol=1e-12, max_step=0.01 * depth / speed,
-    )  # fmt: skip
-    largest = max(_force(system, x * depth, v * speed) for x, v in solution.y.T)
-    return largest, -float(solution.y[1, -1]) * speed
 
 
 def deep_penetration(rows: Rows, bench: Bench, integrator: str, depth: float) -> None:
@@ -200,8 +196,8 @@ def chatter(rows: Rows, bench: Bench, integrator: str, options: Tables, step: fl
         start = _mass_at(-height * q[0], 0.0, load / mass)
         late = integrate(method, system, start, Schedule(dt, 400, 1)).contact_force[-100:, 0]
         falls.append((_unrest(late, load), 100.0 * float((late <= 0.0).mean()), height))
-    worst, opened, height = max(falls)
-    note = f"most after a fall from {height:g} times the approach at rest: open in {opened:.0f} % of these steps"
+    worst, open_gap, height = max(falls)
+    note = f"most after a fall from {height:g} times the approach at rest: open in {open_gap:.0f} % of these steps"
     words = "contact force less the load over the load, rms of steps 301 to 400, largest of eight falls"
     setting, limit, why = {**options, "step/period": step}, Limit.at_most(_AT_REST), "at rest by then"
     if chatters:
@@ -225,16 +221,16 @@ def _trapezoids(system: System, mass: float, load: float, gap: float, dt: float)
     x, rate, a, forces = -gap, 0.0, load / mass, []
     for _ in range(400):
 
-        def unbalanced(new: float, x: float = x, rate: float = rate, a: float = a) -> float:
+        def imbalance(new: float, x: float = x, rate: float = rate, a: float = a) -> float:
             then = rate + 0.5 * dt * (a + new)
             return mass * new + damper * then + _force(system, x + dt * rate + 0.25 * dt**2 * (a + new), then) - load
 
         # Without any contact the step is linear, and its answer is the largest there is.
         highest = (load - damper * (rate + 0.5 * dt * a)) / (mass + 0.5 * dt * damper)
         lowest = highest - 1.0
-        while unbalanced(lowest) > 0.0:
+        while imbalance(lowest) > 0.0:
             lowest = highest - 2.0 * (highest - lowest)
-        new = float(brentq(unbalanced, lowest, highest, xtol=1e-12, rtol=1e-14)) if unbalanced(highest) > 0.0 else highest
+        new = float(brentq(imbalance, lowest, highest, xtol=1e-12, rtol=1e-14)) if imbalance(highest) > 0.0 else highest
         x, rate, a = x + dt * rate + 0.25 * dt**2 * (a + new), rate + 0.5 * dt * (a + new), new
         forces.append(_force(system, x, rate))
     return np.array(forces[-100:])
@@ -264,15 +260,15 @@ def _around_the_limit(
     def growth(factor: float) -> float:
         """Largest displacement over the first; of a motion that was stopped, where it was stopped."""
         try:
-            moved = integrate(method, system, start, Schedule(factor * limit, _STEPS, 1)).displacement
+            displacement = integrate(method, system, start, Schedule(factor * limit, _STEPS, 1)).displacement
         except ConvergenceError as stop:  # grown until the balls find no place, or beyond a metre
-            moved = stop.state["q"]
-        return float(np.abs((moved - still) * weight).max() / size)
+            displacement = stop.state["q"]
+        return float(np.abs((displacement - still) * weight).max() / size)
 
     words = f"largest over first displacement, {_STEPS} steps"
     for factor in _FACTORS:
-        bounded = method.implicit or factor < 1.0
-        why, limit_of_growth = (_SWINGS, Limit.at_most(_BOUNDED)) if bounded else (_GROWS, Limit.at_least(_GROWING))
+        stable = method.implicit or factor < 1.0
+        why, limit_of_growth = (_SWINGS, Limit.at_most(_BOUNDED)) if stable else (_GROWS, Limit.at_least(_GROWING))
         rows.check(words, growth(factor), why, limit_of_growth, at={"step/limit": factor})
     if not method.implicit:
         low, high = 0.5, 2.0

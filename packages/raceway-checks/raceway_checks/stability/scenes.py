@@ -21,7 +21,7 @@ import numpy as np
 
 from raceway import RacewayError, SceneError
 from raceway.extend import (
-    Equilibrium, Model, Motion, Record, Schedule, System, Tables, at_rest, drift, energy_balance, integrate, law_params,
+    Equilibrium, Model, Motion, Record, Schedule, Tables, at_rest, drift, energy_balance, integrate, law_params,
     make_basis, reach_of, renews, resolve, running_pairs, series_factor, solve_equilibrium, standstill, surrogate,
 )  # fmt: skip
 from raceway_checks.stability.catalogue import COARSE, STATIC, transient
@@ -74,7 +74,7 @@ def extreme(
         bench = bench.changed({"contact.stiffness": penalty_factor * (default / unit)})
     if may_be_too_stiff and _too_stiff(rows, bench):
         return
-    _at_rest(rows, bench, closed_form)
+    _check_rest(rows, bench, closed_form)
     if not judge:
         return
     words, why = "|Z| [N/m], predicted by the steady motion", _STEADY_WHY
@@ -99,9 +99,9 @@ def extreme(
             return abs(_stiffness(result())), result().stability["energy_drift"]
 
         def balance(result: Callable[[], Result] = result) -> Measured:
-            unbalanced = result().stability["energy_drift"]
+            drift = result().stability["energy_drift"]
             # No number fails the row: a motion whose energy nobody balances is not shown to be right.
-            return (float("nan") if unbalanced is None else unbalanced), unbalanced
+            return (float("nan") if drift is None else drift), drift
 
         if near is not None:
             row = rows.check(words, motion, why, Limit.equal(near, _Z_ERROR), at=setting)
@@ -160,13 +160,13 @@ def displacement_under_axial_load(model: Model) -> float:
                 force_at = partial(_force_at, model, pair, params)
                 approach += inverted(force_at, load, size) - float(reach[pair])
             distance = model.geometry.centre_distance + approach
-            moved = sqrt(max(distance**2 - rest_radial**2, 0.0))
-            angle = atan2(moved, rest_radial)
-        return moved
+            displacement = sqrt(max(distance**2 - rest_radial**2, 0.0))
+            angle = atan2(displacement, rest_radial)
+        return displacement
 
     def force(load: float) -> float:
-        moved = axial(load)
-        return z * load * moved / sqrt(moved**2 + rest_radial**2)
+        displacement = axial(load)
+        return z * load * displacement / sqrt(displacement**2 + rest_radial**2)
 
     total = model.problem.load.axial
     load = inverted(force, total, total / (z * max(sin(model.problem.bearing.contact_angle), 0.1)))
@@ -204,22 +204,16 @@ def energy_slope(model: Model, equilibrium: Equilibrium) -> float:
     """
     system, axis, q = surrogate(model.system), np.eye(5)[0], equilibrium.displacement
     step = _PART * float(np.max(-system.evaluate(q, ball=equilibrium.ball).gap))
-    moved = np.array([q + sign * step * axis for sign in (-1.0, 1.0)])
-    states = [system.evaluate(each, ball=equilibrium.ball) for each in moved]
+    displacements = np.array([q + sign * step * axis for sign in (-1.0, 1.0)])
+    states = [system.evaluate(each, ball=equilibrium.ball) for each in displacements]
     gap, force, ball = (np.array([getattr(state, name) for state in states]) for name in ("gap", "contact_force", "ball"))
-    rates, final = np.zeros((2, 5)), at_rest(system, moved[1], ball[1], False)
-    record = Record(np.array([0.0, 1.0]), moved, rates, rates, gap, force, ball, final, Schedule(1.0, 2, 1), {})
-    stored = energy_balance(system, record).stored
+    rates, final = np.zeros((2, 5)), at_rest(system, displacements[1], ball[1], False)
+    record = Record(np.array([0.0, 1.0]), displacements, rates, rates, gap, force, ball, final, Schedule(1.0, 2, 1), {})
+    energy = energy_balance(system, record).stored
     # Contacts by the law's force between both gaps: over the whole approach a law with a short transition at first touch, such
     # as a roughness, is integrated to 1e-5 only, which the small difference of two energies magnifies.
     before, after = (energy_of_contacts(system.law, system.law_params, system.law_state, each).sum() for each in gap)
-    change = stored[1] - stored[0] - float(after - before) + _between(system, gap)
-    # The stored energy counts the load's potential, too, whose slope is the load.
-    return float(system.load[0] + change / (2.0 * step))
-
-
-def _between(system: System, gap: np.ndarray) -> float:
-    """What all contacts store [J] from the first of two gaps (2, n) to the second."""
+    # What all contacts store [J] between both gaps
     (first, last), n = gap, gap.shape[1]
     total = 0.0
     for at, weight in zip(*np.polynomial.legendre.leggauss(4), strict=True):
@@ -227,22 +221,24 @@ def _between(system: System, gap: np.ndarray) -> float:
         here = first + 0.5 * (1.0 + at) * (last - first)
         system.law(here, np.zeros(n), system.law_params, system.law_state, system.law_state.copy(), 0.0, force, *slopes)
         total -= 0.5 * weight * float((force * (last - first)).sum())
-    return total
+    change = energy[1] - energy[0] - float(after - before) + total
+    # The stored energy counts the load's potential, too, whose slope is the load.
+    return float(system.load[0] + change / (2.0 * step))
 
 
-def _at_rest(rows: Rows, bench: Bench, closed_form: bool) -> None:
+def _check_rest(rows: Rows, bench: Bench, closed_form: bool) -> None:
     """Axial forces of the contacts against the load; the approach by a closed form where there is one."""
     # Nothing turns and nothing rubs: the balls' loads are along their contact angles.
     bench = bench.changed({"kinematics.gyroscopic": "none", "contact.friction": 0.0})
     scene = bench.scene
 
     @cache
-    def settled() -> tuple[Model, Equilibrium]:
+    def equilibrium_of_model() -> tuple[Model, Equilibrium]:
         model = bench.model()
         return model, solve_equilibrium(model)
 
     def axial() -> float:
-        model, equilibrium = settled()
+        model, equilibrium = equilibrium_of_model()
         load = equilibrium.contact_force[: model.system.ball_count]
         return float(np.sum(np.where(load > 0.0, load * np.sin(np.nan_to_num(equilibrium.angle_inner)), 0.0)))
 
@@ -252,11 +248,11 @@ def _at_rest(rows: Rows, bench: Bench, closed_form: bool) -> None:
         rows.check("sum of the balls' axial forces [N]", axial, why, Limit.equal(load, 1e-8))
     else:
         try:
-            ratio = 0.5 * float(settled()[1].contact_force.sum()) / load
+            ratio = 0.5 * float(equilibrium_of_model()[1].contact_force.sum()) / load
         except RacewayError:
             ratio = 1.0  # the row itself tells that there is no equilibrium
         words = "axial slope of the stored energy [N]"
-        rows.check(words, lambda: energy_slope(*settled()), _SLOPE_WHY, Limit.equal(load, _SLOPE * ratio))
+        rows.check(words, lambda: energy_slope(*equilibrium_of_model()), _SLOPE_WHY, Limit.equal(load, _SLOPE * ratio))
     if closed_form:
         model = bench.changed({"kinematics.ball_inertia": False, "load.radial": [0.0, 0.0]}).model()
         why = "the law's own force, inverted for one ball by bisection; both are solved to 1e-9 and better"
@@ -272,10 +268,10 @@ def _too_stiff(rows: Rows, bench: Bench) -> bool:
         if _TOO_STIFF not in str(error):
             raise
         rigid = bench.changed({"bodies.kind": "rigid"}).model()
-        allowed = _stiffer_than_hertz(rigid, make_basis(rigid.problem).ball_load)
+        excusable = _stiffer_than_hertz(rigid, make_basis(rigid.problem).ball_load)
         why = "the law's own slope at the ball's load, or five times it, is above Hertz's; elastic bodies leave that no room"
         row = rows.refused(_TOO_STIFF, why, partial(_raise, error))
-        if not allowed:
+        if not excusable:
             rows.written[-1] = attrs.evolve(row, verdict=FAILED)
         return True
     return False
@@ -305,7 +301,7 @@ def warning(rows: Rows, bench: Bench, words: str, reason: str) -> None:
     rows.warned(words, reason, bench.result().warnings)
 
 
-def _calibrated(bench: Bench) -> Bench:
+def _with_calibration(bench: Bench) -> Bench:
     """The same bodies with the calibrated law, steps apart."""
     same = {key: value for key, value in bench.changes.items() if key != "mesh" and not key.startswith("integrator.")}
     return attrs.evolve(bench, changes={**same, **_CALIBRATED})
@@ -314,10 +310,10 @@ def _calibrated(bench: Bench) -> Bench:
 def condensed_at_rest(rows: Rows, bench: Bench) -> None:
     """The axial displacement, and the balls' axial forces against the load."""
     bench = bench.changed({"excitation": None})
-    results = [each.result() for each in (bench, _calibrated(bench))]
+    results = [each.result() for each in (bench, _with_calibration(bench))]
     balls = results[0].to_dict()["equilibrium"]["balls"]
-    pressed = [ball for ball in balls if ball["contact_angle_inner_deg"] is not None]
-    axial = sum(ball["load_inner_n"] * np.sin(np.radians(ball["contact_angle_inner_deg"])) for ball in pressed)
+    contact_balls = [ball for ball in balls if ball["contact_angle_inner_deg"] is not None]
+    axial = sum(ball["load_inner_n"] * np.sin(np.radians(ball["contact_angle_inner_deg"])) for ball in contact_balls)
     x, near = (float(result.equilibrium.displacement[0]) for result in results)
     rows.check("axial displacement [m], predicted by Hertz on these bodies", x, _COARSE, Limit.equal(near, 0.06))
     why = "a ball's angle is that of its centre, the resultant of its pressures leans by a degree from it"
@@ -326,21 +322,22 @@ def condensed_at_rest(rows: Rows, bench: Bench) -> None:
 
 def turn(rows: Rows, bench: Bench, integrator: str) -> None:
     """The dynamic stiffness of one turn."""
-    steady, stepped = (
-        each.changed({"integrator.kind": kind}) for each, kind in ((_calibrated(bench), "periodic"), (bench, integrator))
+    steady, dynamic = (
+        each.changed({"integrator.kind": kind})
+        for each, kind in ((_with_calibration(bench), "periodic"), (bench, integrator))
     )
-    near, stiffness = (abs(_stiffness(each.result())) for each in (steady, stepped))
+    near, stiffness = (abs(_stiffness(each.result())) for each in (steady, dynamic))
     rows.check("|Z| [N/m], predicted by Hertz on these bodies", stiffness, _COARSE, Limit.equal(near, 0.05))
 
 
 def calibrated_at_rest(rows: Rows, bench: Bench) -> None:
     """Axial displacement and radial stiffness against condensed bodies; what the seat carries against the load."""
-    condensed = bench.over(STATIC).changed({"bodies.kind": "condensed"}).result().equilibrium
+    of_condensed = bench.over(STATIC).changed({"bodies.kind": "condensed"}).result().equilibrium
     result = bench.over(COARSE).result()
     why = "elements of 3.2 mm, two through a wall, bend too little: 1 % as a rule; twice that"
-    near, value = float(condensed.displacement[0]), float(result.equilibrium.displacement[0])
+    near, value = float(of_condensed.displacement[0]), float(result.equilibrium.displacement[0])
     rows.check("axial displacement [m], predicted by condensed bodies", value, why, Limit.equal(near, 0.02))
-    near, value = float(condensed.stiffness[1, 1]), float(result.equilibrium.stiffness[1, 1])
+    near, value = float(of_condensed.stiffness[1, 1]), float(result.equilibrium.stiffness[1, 1])
     rows.check("radial stiffness [N/m], predicted by condensed bodies", value, why, Limit.equal(near, 0.02))
     _on_the_seat(rows, result)
 
@@ -354,18 +351,18 @@ def _on_the_seat(rows: Rows, result: Result) -> None:
 def points_at_rest(rows: Rows, bench: Bench) -> None:
     """What the outer seat carries, and the stored energy over the axial way between two loads, against the load."""
 
-    def settled(axial: float) -> tuple[float, float, Result]:
+    def at_axial_load(axial: float) -> tuple[float, float, Result]:
         result = bench.changed({"load.axial": axial}).result()
         stored = result.to_dict()["model"]["energies_j"]
         return float(result.equilibrium.displacement[0]), stored["elastic"] + stored["contact"], result
 
     load = bench.scene.load.axial
-    x, stored, result = settled(load)
+    x, energies, result = at_axial_load(load)
     _on_the_seat(rows, result)
 
     def slope() -> float:
-        further, more, _ = settled((1.0 + _MORE) * load)
-        return (more - stored) / (further - x)
+        further, more, _ = at_axial_load((1.0 + _MORE) * load)
+        return (more - energies) / (further - x)
 
     why = "points are looked up anew on the race's facets after 0.02 of a facet's half width, as on another mesh"
     words = "change of the stored energy over the axial way [N]"

@@ -119,16 +119,16 @@ class Rows:
         ----------
         why : the reason of the limit;  at : setting of this row alone
         """
-        observed = drift = None
+        observation = drift = None
         try:
-            measured = value() if callable(value) else value
-            observed, drift = measured if isinstance(measured, tuple) else (measured, None)
-            if not all(math.isfinite(number) for number in (observed, drift or 0.0)):
-                note, observed, drift = f"not a number: {observed}, energy {drift}", None, None
+            outcome = value() if callable(value) else value
+            observation, drift = outcome if isinstance(outcome, tuple) else (outcome, None)
+            if not all(math.isfinite(number) for number in (observation, drift or 0.0)):
+                note, observation, drift = f"not a number: {observation}, energy {drift}", None, None
         except RacewayError as error:
             note = f"refused, unexpectedly: {short(error)}"
-        good = observed is not None and limit.least <= observed <= limit.most
-        number = None if observed is None else float(observed)
+        good = observation is not None and limit.least <= observation <= limit.most
+        number = None if observation is None else float(observation)
         row = self._row(good, quantity, limit.words, why, note, at)
         self.written[-1] = attrs.evolve(row, predicted=limit.near, observed=number, energy_drift=drift)
         return self.written[-1]
@@ -151,9 +151,9 @@ class Rows:
         """A case, or a part of it, that ended without an answer."""
         return self._row(False, "answer", "an answer or a refusal", "", why, at)
 
-    def _row(self, good: bool, quantity: str, expected: str, why: str, note: str = "", at: Tables | None = None) -> _Row:
+    def _row(self, good: bool, quantity: str, expectation: str, why: str, note: str = "", at: Tables | None = None) -> _Row:
         verdict = AS_EXPECTED if good else FAILED
-        row = _Row(self.case, {**self.setting, **(at or {})}, quantity, expected, None, None, None, verdict, why, note)
+        row = _Row(self.case, {**self.setting, **(at or {})}, quantity, expectation, None, None, None, verdict, why, note)
         self.written.append(row)
         return row
 
@@ -209,21 +209,21 @@ class Stability(Answer):
         """The study as Markdown: what failed first, then a table for each case."""
         bad = [attrs.asdict(row) for row in self.failed]
         counts = (
-            f"{self._counted}, {self.seconds:.0f} s on {self.processes} processes ({self.reused} stored cases); "
+            f"{self._count_words}, {self.seconds:.0f} s on {self.processes} processes ({self.reused} stored cases); "
             f"{self.left_out} cases not asked for."
         )
-        lines = [f"# {self.title}", "", counts, *(["", "## Failed", "", *_table(bad)] if bad else [])]
+        lines = [f"# {self.title}", "", counts, *(["", "## Failed", "", *_case_table(bad)] if bad else [])]
         for name in dict.fromkeys(row.case for row in self.rows):
-            lines += ["", f"## {name}", "", *_table(attrs.asdict(row) for row in self.rows if row.case == name)]
+            lines += ["", f"## {name}", "", *_case_table(attrs.asdict(row) for row in self.rows if row.case == name)]
         return {"md": "\n".join(lines) + "\n"}
 
     @property
-    def _counted(self) -> str:
+    def _count_words(self) -> str:
         return f"{len(self.rows) - len(self.failed)} of {len(self.rows)} rows as expected, {self.cases} cases"
 
     def _facts(self) -> tuple[str, list[Fact]]:
         bad: list[Fact] = [("failed", row.case, row.note or row.reason) for row in self.failed]
-        return self.title, [("rows", "", self._counted), *bad]
+        return self.title, [("rows", "", self._count_words), *bad]
 
     def report(self) -> Iterator[Part]:
         """A line for each case, or for each row; what is not as expected in full."""
@@ -242,7 +242,7 @@ class Stability(Answer):
         for row in self.failed:
             cells = ", ".join(cell for name, cell in _cells(row).items() if cell and name != "verdict")
             yield Words(f"failed: {cells}. {row.note or row.reason}", "red")
-        yield f"{self._counted}{f', {self.reused} stored' if self.reused else ''}, {self.seconds:.0f} s"
+        yield f"{self._count_words}{f', {self.reused} stored' if self.reused else ''}, {self.seconds:.0f} s"
         if self.left_out and not self.by_row:
             yield f"left out: {self.left_out} cases that take longer; --all runs them"
 
@@ -283,20 +283,20 @@ def stability(
     """
     from raceway_checks.stability.catalogue import catalogue
 
-    begun, cpu = time.monotonic(), processor_time()
+    start, cpu = time.monotonic(), processor_time()
     registry = registry_with(plugins)
     if scene is not None:
         scene_from_dict(scene, registry)  # mistakes are refused before anything is run
     cases = catalogue(registry, scene)
-    selected = [case for case in cases if (case.quick or every if only is None else only in case.name)]
-    if not selected:
+    subset = [case for case in cases if (case.quick or every if only is None else only in case.name)]
+    if not subset:
         names = list(dict.fromkeys(case.name for case in cases))
         raise SceneError.at("only", only, f"no case is called so{nearest(only or '', names)}; cases: {'; '.join(names)}")
     with written(kept) as store:
-        rows, reused = measured(selected, processes, registry, store, plugins, progress)
+        rows, reused = measured(subset, processes, registry, store, plugins, progress)
     title = "Stiff and extreme cases" if scene is None else f"Stiff and extreme cases of {scene.get('title', 'the scene')}"
-    seconds, left_out = (time.monotonic() - begun, processor_time() - cpu), len(cases) - len(selected)
-    return Stability(title, tuple(rows), len(selected), left_out, reused, *seconds, processes, store.fault, only is not None)
+    seconds, left_out = (time.monotonic() - start, processor_time() - cpu), len(cases) - len(subset)
+    return Stability(title, tuple(rows), len(subset), left_out, reused, *seconds, processes, store.fault, only is not None)
 
 
 def measured(
@@ -314,13 +314,13 @@ def measured(
     items = [Item(tables_key(attrs.asdict(case), registry, program=program), case.name, case) for case in cases]
     executor = local(registry, processes, **({"patience": patience} if processes else {}))
     answers, reused = work_through(
-        _answer, items, store, executor, registry, plugins, on_progress,
+        _case_answer, items, store, executor, registry, plugins, on_progress,
         lambda item, reason: {"rows": [attrs.asdict(Rows(item.name, item.task.setting).lost(reason))]},
     )  # fmt: skip
     return [_Row(**row) for answer in answers for row in answer["rows"]], reused
 
 
-def _answer(case: Case, registry: Registry) -> Tables:
+def _case_answer(case: Case, registry: Registry) -> Tables:
     return {"rows": [attrs.asdict(row) for row in case_rows(case, registry)]}
 
 
@@ -341,16 +341,16 @@ def case_rows(case: Case, registry: Registry) -> list[_Row]:
     return rows.written
 
 
-def _table(rows: Iterable[Tables]) -> list[str]:
+def _case_table(rows: Iterable[Tables]) -> list[str]:
     lines = ["| setting | quantity | expected | predicted | observed | energy drift | verdict | why |", "|---" * 8 + "|"]
     for row in rows:
-        setting = ", ".join(f"{key} {_number(value)}" for key, value in row["setting"].items()) or "-"
-        numbers = [_number(row[name]) for name in ("predicted", "observed", "energy_drift")]
+        setting = ", ".join(f"{key} {_number_text(value)}" for key, value in row["setting"].items()) or "-"
+        numbers = [_number_text(row[name]) for name in ("predicted", "observed", "energy_drift")]
         why = "; ".join(text for text in (row["reason"], row["note"]) if text)
         cells = [setting, row["quantity"], row["expected"], *numbers, row["verdict"], why]
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return lines
 
 
-def _number(value: object) -> str:
+def _number_text(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else "" if value is None else str(value)

@@ -40,10 +40,10 @@ def _scene(case: Case, registry: Registry, **tables: Tables) -> Scene:
     return scene_from_dict({"title": case.id, **tables}, registry)
 
 
-def _numbers(case: Case, computed: dict[str, tuple[str, float]]) -> Rows:
+def _number_rows(case: Case, values: dict[str, tuple[str, float]]) -> Rows:
     """What the case states, beside the quantity and number that were computed for its key."""
     for key, reference in case.outputs.items():
-        yield case.row(computed[key][0], reference, float(computed[key][1]), case.rel_tol)
+        yield case.row(values[key][0], reference, float(values[key][1]), case.rel_tol)
 
 
 def _masta(case: Case, registry: Registry) -> Rows:
@@ -62,7 +62,7 @@ def _masta(case: Case, registry: Registry) -> Rows:
     load = {"axial": float(inputs["Fz_N"]), "radial": radial, "moment": moment}
     result = run(_scene(case, registry, bearing=bearing, supports={"tilt": "free"}, load=load), registry)
     q = result.equilibrium.displacement
-    yield from _numbers(case, {
+    yield from _number_rows(case, {
         "dr_um": ("radial displacement [um]", 1e6 * float(np.hypot(q[1], q[2]))),
         "da_um": ("axial displacement from mid-clearance [um]", 1e6 * float(q[0])),
         "psi_mrad": ("tilt [mrad]", 1e3 * float(np.hypot(q[3], q[4]))),
@@ -76,7 +76,7 @@ def _race_ellipse(case: Case, registry: Registry) -> Rows:
     inner = _model(_scene(case, registry, bearing=bearing, load={"axial": 3000.0 * _POUND})).inner
     load = case.inputs["Q_lb"] * _POUND
     a, b = inner.semi_axes(load)
-    yield from _numbers(case, {
+    yield from _number_rows(case, {
         "a_in": ("semi-major axis [in]", float(a) / _INCH), "b_in": ("semi-minor axis [in]", float(b) / _INCH),
         "delta_in": ("approach [in]", float(inner.approach(load)) / _INCH),
         "pmax_psi": ("peak pressure [psi]", float(inner.peak_pressure(load)) / _PSI),
@@ -100,9 +100,9 @@ def _nsk_pair(case: Case, registry: Registry) -> Rows:
     for words, factor in (("", 2.0), (" as pair", 1.0)):
         for preload, ka, kr in zip(case.inputs["preload_N"], axial, radial, strict=True):
             # Of the pair: with locked tilts the distance of the rows does not matter.
-            paired = {"preset": preset, "arrangement": "DB", "preload": float(preload), "row_distance": 16e-3}
+            pair_keys = {"preset": preset, "arrangement": "DB", "preload": float(preload), "row_distance": 16e-3}
             row: dict[str, Tables] = {"bearing": {"preset": preset}, "load": {"axial": float(preload)}}
-            scene = _scene(case, registry, **({"bearing": paired} if words else row))
+            scene = _scene(case, registry, **({"bearing": pair_keys} if words else row))
             stiffness = run(scene, registry).equilibrium.stiffness
             where = f"of the pair at {preload} N{words} [N/um]"
             yield case.row(f"axial stiffness {where}", ka, factor * 1e-6 * float(stiffness[0, 0]), case.rel_tol["ka"])
@@ -115,14 +115,14 @@ def _rig_force(case: Case, registry: Registry) -> Rows:
     moment = inputs["m_g"] * 1e-3 * inputs["e_mm"] * 1e-3
     load: Tables = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
 
-    def excited(kind: str, rpm: float, share: float) -> Excitation:
+    def excitation(kind: str, rpm: float, share: float) -> Excitation:
         keys = {"kind": kind, "speed_rpm": float(rpm), "amplitude": "unbalance", "unbalance": moment, "load_share": share}
         return _scene(case, registry, **load, excitation=keys).excitation
 
     for kind in ("bidirectional", "unidirectional"):
         for rpm, total, half, frequency in zip(inputs["rpm"], out["F0_N"], out["Ftr_N"], out["f_Hz"], strict=True):
             where = f"{kind}, {rpm} r/min"
-            rotor, bearing = (excited(kind, rpm, share) for share in (1.0, 0.5))
+            rotor, bearing = (excitation(kind, rpm, share) for share in (1.0, 0.5))
             yield case.row(f"force of the rotor, {where} [N]", total, _largest_force(rotor), case.rel_tol)
             yield case.row(f"force on each bearing, {where} [N]", half, _largest_force(bearing), case.rel_tol)
             yield case.row(f"frequency, {where} [Hz]", frequency, bearing.frequency_hz, case.rel_tol)
@@ -244,10 +244,10 @@ def _article_pressures(case: Case, registry: Registry) -> Rows:
 
     for axial, radial in inputs["loads_n"]:
         where = f"{axial:g} N axial" + (f", {radial:g} N radial" if radial else "")
-        reference, computed = _hertz(model(axial, radial)), _nodal(model(axial, radial, int(inputs["points"])))
+        reference, nodal_pressures = _hertz(model(axial, radial)), _nodal(model(axial, radial, int(inputs["points"])))
         for race in ("inner", "outer"):
             quantity = f"peak pressure, {race} race, {where} [MPa]"
-            yield case.row(quantity, reference[race], computed[race], tolerance["pressure"])
+            yield case.row(quantity, reference[race], nodal_pressures[race], tolerance["pressure"])
     axial, radial = inputs["loads_n"][int(inputs["heaviest"])]
     most, fewer = inputs["independence_points"]
     fine, coarse = (_nodal(model(axial, radial, int(n))) for n in (most, fewer))
@@ -368,28 +368,24 @@ def verify(
         A case that does not exist (with the nearest name) or that is there for information only.
     """
     registry = registry or default_registry()
-    cases, rows, report = _cases(only), list[Row](), progress or (lambda *_: None)
-    for count, case in enumerate(cases):
-        report(case.id, count, len(cases))
-        rows += compute(case, registry)
-    report("", len(cases), len(cases))
-    return Verification(tuple(rows), every)
-
-
-def _cases(only: str | Iterable[str]) -> list[Case]:
-    """The cases to compute, in the file's order."""
     cases = reference_cases()
-    checked = {name: case for name, case in cases.items() if case.checked}
-    names = ([only] if isinstance(only, str) else list(only)) or list(checked)
+    checkable = {name: case for name, case in cases.items() if case.checked}
+    names = ([only] if isinstance(only, str) else list(only)) or list(checkable)
     faults = []
     for name in names:
-        if name not in checked:
-            why = f"no such case{nearest(str(name), checked)}; known"
+        if name not in checkable:
+            why = f"no such case{nearest(str(name), checkable)}; known"
             why = f"is not computed: {cases[name].role}; computed are" if name in cases else why
-            faults.append(Mistake("only", name, f"{why}: {', '.join(checked)}"))
+            faults.append(Mistake("only", name, f"{why}: {', '.join(checkable)}"))
     if faults:
         raise SceneError(faults)
-    return [case for name, case in checked.items() if name in names]
+    selection = [case for name, case in checkable.items() if name in names]
+    rows, report = list[Row](), progress or (lambda *_: None)
+    for count, case in enumerate(selection):
+        report(case.id, count, len(selection))
+        rows += compute(case, registry)
+    report("", len(selection), len(selection))
+    return Verification(tuple(rows), every)
 
 
 def compute(case: Case, registry: Registry) -> list[Row]:

@@ -81,7 +81,7 @@ class _Header:
     scale: float = 1.0
 
     def __str__(self) -> str:
-        return f"'{_shortened(self.text)}' {f'as {self.name}' if self.name else self.fault or 'left out'}"
+        return f"'{_short_text(self.text)}' {f'as {self.name}' if self.name else self.fault or 'left out'}"
 
 
 def columns_of(
@@ -104,18 +104,18 @@ def columns_of(
     """
     mapping = _mapping(headers, mapping or {})
     # A map of a column that does not exist, to an unknown name, or to another unit than the header's.
-    texts = {_plain(text): text for text in headers}
-    for header, meant in mapping.items():
-        name, scale = unscaled(meant)
+    texts = {_clean(text): text for text in headers}
+    for header, meaning in mapping.items():
+        name, scale = unscaled(meaning)
         if header not in texts:
             raise ValueError(
-                f"{where}no column '{_shortened(header)}' for --map; there are {', '.join(map(repr, texts.values()))}"
+                f"{where}no column '{_short_text(header)}' for --map; there are {', '.join(map(repr, texts.values()))}"
             )
         if name != IGNORE and _with_y(name) not in COLUMNS:
             raise ValueError(
                 f'{where}--map "{texts[header]}={name}": unknown name{nearest(name, COLUMNS)}; known: {_names()}'
             )
-        unit, quantity = _parts(header)[1], COLUMNS.get(_with_y(name), ("key", 0.0))[0]
+        unit, quantity = _header_parts(header)[1], COLUMNS.get(_with_y(name), ("key", 0.0))[0]
         if unit in _VOLTS and quantity != "key":
             if scale is None:
                 raise ValueError(
@@ -125,16 +125,16 @@ def columns_of(
         if quantity != "key" and unit in _ALL_UNITS and f"{quantity}_{unit}" != _with_y(name):
             remedy = f"{quantity}_{unit} is" if unit in UNITS[quantity] else "values in that unit are"
             raise ValueError(f"{where}'{texts[header]}' cannot be {name}: its header has another unit, and {remedy} meant")
-    columns = _recognised(headers, mapping)
+    columns = _meanings_of(headers, mapping)
     if any(header.fault for header in columns):
         raise ValueError(_message(columns, where, needed))
-    named = [(COLUMNS[header.name][0], header) for header in columns if header.name]
-    quantities = [quantity for quantity, _ in named]
-    doubled = [(quantity, header) for quantity, header in named if quantities.count(quantity) > 1]
-    if doubled:
+    by_quantity = [(COLUMNS[header.name][0], header) for header in columns if header.name]
+    quantities = [quantity for quantity, _ in by_quantity]
+    duplicates = [(quantity, header) for quantity, header in by_quantity if quantities.count(quantity) > 1]
+    if duplicates:
         raise ValueError(
-            f"{where}{', '.join(sorted({quantity for quantity, _ in doubled}))} is duplicated. Found: {', '.join(map(str, columns))}. "
-            f"Ignore one: {_options([(doubled[-1][1].text, IGNORE)], where)}"
+            f"{where}{', '.join(sorted({quantity for quantity, _ in duplicates}))} is duplicated. Found: {', '.join(map(str, columns))}. "
+            f"Ignore one: {_options([(duplicates[-1][1].text, IGNORE)], where)}"
         )
     if "time" not in quantities or len(quantities) < 2:
         missing = "no column for time" if "time" not in quantities else "time alone is no record"
@@ -144,23 +144,23 @@ def columns_of(
     return {quantity: (k, factor * scale) for k, (quantity, factor, scale) in factors.items()}
 
 
-def _plain(text: str) -> str:
+def _clean(text: str) -> str:
     """A header in small letters, with u for micro and single blanks."""
     return " ".join(unicodedata.normalize("NFKC", text).replace("μ", "u").lower().split())
 
 
 def _mapping(headers: Sequence[str], mapping: Mapping[str, str]) -> dict[str, str]:
     """Plain headers -> names; a header may be named without its unit in brackets, where one header has that name."""
-    names = [re.sub(r"\s*[\[(][^\])]*[\])]$", "", text) for text in map(_plain, headers)]
-    full = {name: _plain(text) for name, text in zip(names, headers, strict=True) if names.count(name) == 1}
-    plain = {_plain(text): name.strip() for text, name in mapping.items()}
-    return {text if text in map(_plain, headers) else full.get(text, text): name for text, name in plain.items()}
+    names = [re.sub(r"\s*[\[(][^\])]*[\])]$", "", text) for text in map(_clean, headers)]
+    full = {name: _clean(text) for name, text in zip(names, headers, strict=True) if names.count(name) == 1}
+    plain = {_clean(text): name.strip() for text, name in mapping.items()}
+    return {text if text in map(_clean, headers) else full.get(text, text): name for text, name in plain.items()}
 
 
 def over_time(headers: Sequence[str], mapping: Mapping[str, str] | None = None) -> bool:
     """Whether a column is time."""
-    meant = _mapping(headers, mapping or {})
-    return any(_parts(unscaled(meant.get(_plain(text), _plain(text)))[0])[0] == "time" for text in headers)
+    meanings = _mapping(headers, mapping or {})
+    return any(_header_parts(unscaled(meanings.get(_clean(text), _clean(text)))[0])[0] == "time" for text in headers)
 
 
 def unscaled(name: str) -> tuple[str, float | None]:
@@ -171,30 +171,30 @@ def unscaled(name: str) -> tuple[str, float | None]:
     return match["name"], size if match["sign"] == "*" else 1.0 / size
 
 
-def _recognised(headers: Sequence[str], mapping: Mapping[str, str]) -> list[_Header]:
+def _meanings_of(headers: Sequence[str], mapping: Mapping[str, str]) -> list[_Header]:
     """Each header by itself, then the axes together: X beside Y is another axis than X beside Z."""
-    meant = {text: unscaled(name) for text, name in mapping.items()}
+    meanings = {text: unscaled(name) for text, name in mapping.items()}
     # Names that say x are read as headers that say x: beside Y it stands across the shaft.
-    renamed = {
+    stand_ins = {
         text: name
-        for text, (name, _) in meant.items()
-        if any(name not in COLUMNS and _with_y(name) in COLUMNS for name, _ in meant.values()) and name != IGNORE
+        for text, (name, _) in meanings.items()
+        if any(name not in COLUMNS and _with_y(name) in COLUMNS for name, _ in meanings.values()) and name != IGNORE
     }
-    parts = [_parts(renamed.get(_plain(text), _plain(text))) for text in headers]
+    parts = [_header_parts(stand_ins.get(_clean(text), _clean(text))) for text in headers]
     axes: dict[str | None, set[str]] = {"force ": set(), None: set()}
     for text, (quantity, _) in zip(headers, parts, strict=True):
-        if mapping.get(_plain(text)) != IGNORE and (match := _AXIS.fullmatch(quantity)):
+        if mapping.get(_clean(text)) != IGNORE and (match := _AXIS.fullmatch(quantity)):
             axes[match["kind"]].add(quantity[-1])
     columns = []
     for text, (quantity, unit) in zip(headers, parts, strict=True):
-        plain = _plain(text)
-        name, scale = meant.get(plain, ("", None))
-        if plain in meant and plain not in renamed:
+        plain = _clean(text)
+        name, scale = meanings.get(plain, ("", None))
+        if plain in meanings and plain not in stand_ins:
             header = _Header(text, "" if name == IGNORE else name)
         else:
             match = _AXIS.fullmatch(quantity)
             header = _header(text, quantity, unit, axes[match["kind"]] if match else set())
-        volts = _TO_VOLTS.get(_parts(plain)[1] or "", 1.0)
+        volts = _TO_VOLTS.get(_header_parts(plain)[1] or "", 1.0)
         columns.append(header if scale is None else attrs.evolve(header, scale=scale * volts))
     return columns
 
@@ -203,7 +203,7 @@ def _with_y(name: str) -> str:
     return re.sub(r"^(force_)?x_", r"\1y_", name)
 
 
-def _parts(text: str) -> tuple[str, str | None]:
+def _header_parts(text: str) -> tuple[str, str | None]:
     """Quantity in the terms of ``_WORDS`` and unit of a plain header; "" and None where it has none."""
     match = _WITH_UNIT.match(text)
     name = match["name"] if match else text
@@ -254,31 +254,31 @@ def _header(text: str, quantity: str, unit: str | None, axes: set[str]) -> _Head
     return _Header(text, f"{name}_{unit}")
 
 
-def _message(columns: Sequence[_Header], where: str, needed: Mapping[str, str]) -> str:
+def _message(columns: Sequence[_Header], where: str, required: Mapping[str, str]) -> str:
     """One message: the columns, the meaning of each, which of the needed ones is missing, the map that mends it."""
     faulty = [header for header in columns if header.fault]
     present = {COLUMNS[header.name][0] for header in columns if header.name} | {header.guess for header in faulty}
-    absent = [word for name, word in needed.items() if not present & {name, *_INSTEAD.get(word, ())}]
-    missing = [name for name, word in needed.items() if word in absent]
+    absent = [word for name, word in required.items() if not present & {name, *_INSTEAD.get(word, ())}]
+    missing = [name for name, word in required.items() if word in absent]
     pairs = []
     for header in faulty:
-        unit = _parts(_plain(header.text))[1]
+        unit = _header_parts(_clean(header.text))[1]
         if header.guess and unit is not None:
             continue  # its unit is the fault, which no name mends
         likely = [name for name in missing if unit is None or unit in UNITS.get(name, _VOLTS)]
-        likely += [name for name in missing if unit in _VOLTS and needed is FORCED and name != "time"]
+        likely += [name for name in missing if unit in _VOLTS and required is FORCED and name != "time"]
         name = next(iter([header.guess] * bool(header.guess) + likely), IGNORE)
         if name in missing:
             missing.remove(name)
         units = UNITS.get(name, {})
-        meant = f"{name}_{unit if unit in units else _USUAL[name]}" if units else name
-        pairs.append((header.text, f"{meant}*FACTOR" if units and unit in _VOLTS else meant))
+        meaning = f"{name}_{unit if unit in units else _USUAL[name]}" if units else name
+        pairs.append((header.text, f"{meaning}*FACTOR" if units and unit in _VOLTS else meaning))
     first = f"{len(faulty)} columns are not known"
     if len(faulty) == 1:
         (text,) = (header.text for header in faulty)
-        first = f"unknown column '{_shortened(text)}'{nearest(_plain(text), COLUMNS) if len(text) < 30 else ''}"
+        first = f"unknown column '{_short_text(text)}'{nearest(_clean(text), COLUMNS) if len(text) < 30 else ''}"
     first += f"; missing: {', '.join(absent)}" * bool(absent)
-    if needed is FORCED and len(columns) < len(needed):
+    if required is FORCED and len(columns) < len(required):
         first += f"; {len(columns)} columns cannot be all of them: save all channels in one file"
     mend = f"State the quantity, for instance {_options(pairs, where)}; " if pairs else ""
     mend += f"FACTOR is the sensor's per V, {_SENSITIVITY}; " if "*FACTOR" in mend else ""
@@ -297,5 +297,5 @@ def _options(pairs: Sequence[tuple[str, str]], where: str) -> str:
     return f"{options} (in Python {argument})" if where else argument
 
 
-def _shortened(text: str) -> str:
+def _short_text(text: str) -> str:
     return text if len(text) <= 40 else f"{text[:37]}..."

@@ -99,7 +99,7 @@ def free_keys(scene: Scene, paths: Iterable[str]) -> list[Free]:
 def _limit(scene: Scene, path: str, value: float, step: float) -> float:
     """The last number that the rules of the scene's tables allow on the way from a value in steps of one sign."""
 
-    def allowed(number: float) -> bool:
+    def within_range(number: float) -> bool:
         try:
             with_number(scene, path, number)
         except ValueError:
@@ -109,14 +109,14 @@ def _limit(scene: Scene, path: str, value: float, step: float) -> float:
     inner = value
     for _ in range(_DOUBLINGS):
         outer = value + step
-        if not allowed(outer):
+        if not within_range(outer):
             break
         inner, step = outer, 2.0 * step
     else:
         return inf if step > 0.0 else -inf
     for _ in range(_HALVINGS):
         middle = 0.5 * (inner + outer)
-        if allowed(middle):
+        if within_range(middle):
             inner = middle
         else:
             outer = middle
@@ -167,11 +167,11 @@ def uncertain(scene: Scene, free: Collection[str], measured: Collection[str] = (
     tables = scene.source if scene.given is None else scene.given.merged()
     geometry = geometry_of(scene.source["bearing"], tables.get("bearing", {})) or {}
     parts = [("bearing", geometry), *((f"bearing.row[{row['row']}]", row) for row in geometry.get("rows", ()))]
-    inferred = {f"{name}.{key}": fact["scatter"] for name, part in parts for key, fact in part.get("inferred", {}).items()}
+    scatters = {f"{name}.{key}": fact["scatter"] for name, part in parts for key, fact in part.get("inferred", {}).items()}
     errors = {
-        key.path: inferred[key.path] * abs(key.value)
+        key.path: scatters[key.path] * abs(key.value)
         for key in continuous_keys(scene)
-        if inferred.get(key.path) and key.path not in {*ranges, *free, *measured}
+        if scatters.get(key.path) and key.path not in {*ranges, *free, *measured}
     }
     grooves = {path: size for path, size in errors.items() if ".conformity" in path}
     alone = {path: size for path, size in {**ranges, **errors}.items() if path not in {*free, *grooves}}
@@ -256,10 +256,10 @@ class Estimate:
         sizes = np.array([number.size for number in self.free])
         u, s, v = np.linalg.svd(self.jacobian * sizes, full_matrices=False)
         inverse = np.divide(1.0, s, out=np.zeros_like(s), where=s > _ROUNDING * s[0])
-        moved = -((columns.T @ u) * inverse @ v)
-        moved = (moved - moved @ (self.open / sizes).T @ (self.open / sizes)) * sizes
-        wider = np.hypot(self.half, NORMAL * np.linalg.norm(moved, axis=0))
-        return attrs.evolve(self, half=wider, shifts={**self.shifts, cause: moved})
+        shift = -((columns.T @ u) * inverse @ v)
+        shift = (shift - shift @ (self.open / sizes).T @ (self.open / sizes)) * sizes
+        wider = np.hypot(self.half, NORMAL * np.linalg.norm(shift, axis=0))
+        return attrs.evolve(self, half=wider, shifts={**self.shifts, cause: shift})
 
     def half_widths(self, slopes: np.ndarray, directly: Mapping[str, np.ndarray] | None = None) -> np.ndarray:
         """Half-widths at 95 % (m,) of numbers with derivatives (m, p) by the free ones.
@@ -342,14 +342,14 @@ def judged(
     n, p = jacobian.shape
     squares, freedom = float(residuals @ residuals), n - p
     scatter = float(np.sqrt(squares / freedom)) if freedom else None
-    noise, widened = 1.0 if stated else (scatter or 0.0), 1.0
+    noise, widening = 1.0 if stated else (scatter or 0.0), 1.0
     if stated and scatter is not None and scatter > 1.0 and chi2.sf(squares, freedom) < _UNLIKELY:
-        noise = widened = scatter
+        noise = widening = scatter
     reach = float(t.ppf(0.5 + 0.5 * CONFIDENCE, freedom)) if freedom and noise != 1.0 else NORMAL
     sizes = np.array([number.size for number in free])
     _, s, directions = np.linalg.svd(jacobian * sizes, full_matrices=False)
-    undetermined = (s <= _ROUNDING * s[0]) | (reach * noise > s) if s[0] > 0.0 else np.ones(p, bool)
-    root = directions[~undetermined] / s[~undetermined, None]
+    weak_directions = (s <= _ROUNDING * s[0]) | (reach * noise > s) if s[0] > 0.0 else np.ones(p, bool)
+    root = directions[~weak_directions] / s[~weak_directions, None]
     bread = root.T @ root
     covariance = noise**2 * bread * np.outer(sizes, sizes)
     if scores is not None:
@@ -358,14 +358,14 @@ def judged(
     half = reach * np.sqrt(np.diag(covariance))
     if freedom == 0 and not stated:  # as many data as numbers, errors not stated: nothing determines the noise
         half[:] = np.inf
-    half[(np.abs(directions[undetermined]) > _NAMED).any(axis=0)] = np.inf
+    half[(np.abs(directions[weak_directions]) > _NAMED).any(axis=0)] = np.inf
     combinations = tuple(
         _combination(free, direction, size / noise if noise else 0.0, sizes)
-        for direction, size in zip(directions[undetermined], s[undetermined], strict=True)
+        for direction, size in zip(directions[weak_directions], s[weak_directions], strict=True)
     )
     at_limit = tuple(key.name for key, value in zip(free, values, strict=True) if key.margin(value) < _AT_LIMIT)
     return Estimate(
-        free, values, covariance, reach, half, residuals, jacobian, scatter, widened, combinations, directions[undetermined] * sizes, at_limit,
+        free, values, covariance, reach, half, residuals, jacobian, scatter, widening, combinations, directions[weak_directions] * sizes, at_limit,
         evaluations,
     )  # fmt: skip
 

@@ -80,34 +80,36 @@ def fit(
         elif linear or over_time(headers_of(data, "data"), columns):
             record = signals_of(data, columns, FORCED if linear else ORBIT)
         signals = record if isinstance(record, Signals) else None
-        forced = record is not signals or signals is not None and any(name.startswith("force") for name in signals.columns)
+        by_force = record is not signals or signals is not None and any(name.startswith("force") for name in signals.columns)
         _refuse_foreign(
-            signals, forced or linear, scene is not None, mass is not None, slow_roll is not None or run_out is not None
+            signals, by_force or linear, scene is not None, mass is not None, slow_roll is not None or run_out is not None
         )
-        if record is not None and (forced or linear):
+        if record is not None and (by_force or linear):
             search = partial(fit_record, record, names, mass)
         elif scene is None:
             raise SceneError.at("scene", None, "is missing: give --scene, the model to fit")
         elif signals is not None:
-            read, subtracted = as_scene(scene, plugins=plugins), stated_run_out(slow_roll, run_out, columns)
-            search = partial(fit_rig, signals, read, names, registry, subtracted)
+            read, deduction = as_scene(scene, plugins=plugins), stated_run_out(slow_roll, run_out, columns)
+            search = partial(fit_rig, signals, read, names, registry, deduction)
         else:
             read = as_scene(scene, plugins=plugins)
-            measured = measurements_in(*table_of(data, "data", "measurement"), read, columns)
-            search = partial(fit_table, measured, read, names)
+            table = measurements_in(*table_of(data, "data", "measurement"), read, columns)
+            search = partial(fit_table, table, read, names)
         report("searching", 1, 2)
         return search()
 
 
-def _refuse_foreign(record: Signals | None, forced: bool, scene: bool, mass: bool, sloped: bool) -> None:
+def _refuse_foreign(record: Signals | None, by_force: bool, scene: bool, mass: bool, sloping: bool) -> None:
     """``SceneError`` for an argument that does not belong to the data."""
-    if forced and scene:
+    if by_force and scene:
         message = "a record of force and displacement is fitted by a linear model: omit it"
         raise SceneError.at("scene", None, message)
-    if sloped and (forced or record is None):
-        data = "the signals of a rig, without a force" if forced else "the signals of a rig over time; the data are a table"
+    if sloping and (by_force or record is None):
+        data = (
+            "the signals of a rig, without a force" if by_force else "the signals of a rig over time; the data are a table"
+        )
         raise SceneError.at("slow roll", None, f"belongs to {data}")
-    if mass and not forced:
+    if mass and not by_force:
         raise SceneError.at("mass", None, "belongs to a record of force and displacement; a scene has a mass")
 
 

@@ -157,7 +157,7 @@ class Fitted(Answer):
             "stated": self.stated,
             "confidence": CONFIDENCE,
             "free": free,
-            "covariance": sum((moved.T @ moved for moved in answer.shifts.values()), answer.covariance).tolist(),
+            "covariance": sum((shift.T @ shift for shift in answer.shifts.values()), answer.covariance).tolist(),
             "undetermined": [{"changes": c.changes, "moves_standard_errors": c.moves} for c in answer.undetermined],
             "derived": [attrs.asdict(number) for number in self.derived],
             "fit": {

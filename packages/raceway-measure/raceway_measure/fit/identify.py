@@ -134,7 +134,7 @@ class Identified(Answer):
 
     def content(self) -> Tables:
         """Signals, their 1x component, the bearing and its uncertainty, as tables for JSON."""
-        component, marked, state = self.component, self.component.marked, self.state
+        component, with_mark, state = self.component, self.component.marked, self.state
         time = self.rotation.recording.time
         speeds = {"mean": component.speed, "lowest": component.lowest, "highest": component.highest}
         return without_nan(
@@ -144,11 +144,11 @@ class Identified(Answer):
                     "duration_s": float(time[-1] - time[0]),
                     "turns": component.turns,
                     "speed_rpm": {name: value * 30.0 / pi for name, value in speeds.items()},
-                    "angle_from": "marks of key" if marked else "integrated speed, no mark: the phase is unknown",
+                    "angle_from": "marks of key" if with_mark else "integrated speed, no mark: the phase is unknown",
                 },
                 "line": {
                     "forward_m": abs(component.forward),
-                    "angle_deg": float(np.degrees(np.angle(component.forward))) if marked else None,
+                    "angle_deg": float(np.degrees(np.angle(component.forward))) if with_mark else None,
                     "backward_m": component.backward,
                     "error_m": component.error,
                     "residual": component.residual,
@@ -173,7 +173,7 @@ class Identified(Answer):
                     "how": "half-widths at 95 %: spread of the blocks of turns, slow roll, marks between samples, least squares against "
                     "whole-turn Fourier, the assumed tilt stiffness; parameters of the rig taken as known are in `sensitivities`",
                     "parts": {
-                        name: {"stiffness": part[0], "damping": part[1] if marked else None}
+                        name: {"stiffness": part[0], "damping": part[1] if with_mark else None}
                         for name, part in self.parts.items()
                     },
                 },
@@ -184,12 +184,12 @@ class Identified(Answer):
 
     def _identification(self) -> Tables:
         """K and C with the rig's tilt, then with it locked; what needs a phase is None without pulses."""
-        marked, state, z, error = self.component.marked, self.state, self.state.dynamic_stiffness, self.uncertainty
+        with_mark, state, z, error = self.component.marked, self.state, self.state.dynamic_stiffness, self.uncertainty
         stiffness, damping = state.locked
         return {
             "definition": "secant: force of the shaft on the inner ring over its deflection, 1x forward, tilt as in the rig",
             "speed_rpm": self.speed_rpm,
-            "dynamic_stiffness": {"real": z.real, "imag": z.imag if marked else None, "abs": abs(z)},
+            "dynamic_stiffness": {"real": z.real, "imag": z.imag if with_mark else None, "abs": abs(z)},
             "equivalent_stiffness": state.stiffness,
             "equivalent_stiffness_error": error[0],
             "equivalent_damping": self.equivalent_damping,
@@ -200,8 +200,8 @@ class Identified(Answer):
                 "definition": "the same less the force that the bearing carries for its tilt, by the scene's coupling at rest",
                 "equivalent_stiffness": stiffness,
                 "equivalent_stiffness_error": error[2],
-                "equivalent_damping": damping if marked else None,
-                "equivalent_damping_error": error[3] if marked else None,
+                "equivalent_damping": damping if with_mark else None,
+                "equivalent_damping_error": error[3] if with_mark else None,
             },
         }
 
@@ -274,11 +274,11 @@ class Identified(Answer):
         if c is not None and wide is not None:
             value = number(c, "N s/m", 4) if abs(c) > wide else "not resolved"
             facts.append(("C", value, f"+- {number(wide, 'N s/m', 2)} at 95 %"))
-        locked = interval(
+        locked_tilt = interval(
             "K, tilt locked", state.locked[0], self.uncertainty[2], "N/m", "less the force of the bearing's tilt"
         )
         scene = number(1e-6 * self.scene_stiffness, "N/µm")
-        return [*facts, ("K of the scene's bearing", scene, "under the same force and moment"), locked]
+        return [*facts, ("K of the scene's bearing", scene, "under the same force and moment"), locked_tilt]
 
     def report(self) -> list[Part]:
         """Signals, 1x component, bearing, K and C."""
@@ -365,14 +365,14 @@ def identify(
     folder = None if out is None else writable(Path(out))
     with telling(progress) as report:
         report("reading signals", 0, 3)
-        subtracted = stated_run_out(slow_roll, run_out, columns)
+        run_out_known = stated_run_out(slow_roll, run_out, columns)
         record = signals_of(signals, columns)
         recording = recording_of(record)
         report("bearing at rest", 1, 3)
         tested = bearing(read, read.load.axial, registry)
         report("identifying", 2, 3)
         with faults_at(record.source):
-            answer = identify_recording(recording, rig, tested, subtracted)
+            answer = identify_recording(recording, rig, tested, run_out_known)
     answer = attrs.evolve(answer, title=read.title, source=record.source)
     if folder is not None:
         answer.save(folder)
@@ -397,9 +397,9 @@ def standard_errors(shaft: Rotor, state: State, error: float) -> np.ndarray:
     return np.array([stiffness[0], stiffness[0] / state.speed, stiffness[1], stiffness[1] / state.speed])
 
 
-def _largest_change(state: State, changed: Iterable[State]) -> np.ndarray:
+def _largest_change(state: State, neighbours: Iterable[State]) -> np.ndarray:
     """Largest change of ``coefficients_of_state`` (4,) among changed states."""
-    return np.max([np.abs(coefficients_of_state(near) - coefficients_of_state(state)) for near in changed], axis=0)
+    return np.max([np.abs(coefficients_of_state(near) - coefficients_of_state(state)) for near in neighbours], axis=0)
 
 
 def identify_recording(
@@ -436,21 +436,19 @@ def identify_recording(
     # The tilt stiffness is the scene's, no sensor sees it: how far the scene misses K is all that is known of how far it misses that,
     # which goes with the axial stiffness and follows the contact angle more.
     stiffer = 1.0 + _TILT * abs(scene_stiffness / state.stiffness - 1.0)
-    turned = (-component.angle_error, component.angle_error)
+    angles = (-component.angle_error, component.angle_error)
     parts = {
         "spread": COVERAGE * standard_errors(shaft, state, component.error),
         "slow roll": COVERAGE * standard_errors(shaft, state, response.run_out.error),
         "marks": _largest_change(
-            state, [with_tilt_of(shaft, state, state.sensor + with_run_out * (exp(1j * turn) - 1.0)) for turn in turned]
+            state, [with_tilt_of(shaft, state, state.sensor + with_run_out * (exp(1j * turn) - 1.0)) for turn in angles]
         ),
         "window": _largest_change(state, [with_tilt_of(shaft, state, response.fourier)]),
         "tilt": _largest_change(
             state, [with_tilt_of(shaft, state, state.sensor, factor) for factor in (1.0 / stiffer, stiffer)]
         ),
     }
-    states = {
-        word: with_tilt_of(changed, state, state.sensor) for word, changed in changed_rotors(rig, component.speed).items()
-    }
+    states = {word: with_tilt_of(other, state, state.sensor) for word, other in changed_rotors(rig, component.speed).items()}
     states["tilt stiffness of the bearing +10 %"] = with_tilt_of(shaft, state, state.sensor, 1.1)
     more = attrs.evolve(shaft, unbalance_force=1.01 * shaft.unbalance_force)
     states["unbalance +1 %"] = with_tilt_of(more, state, state.sensor)

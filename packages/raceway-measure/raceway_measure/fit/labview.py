@@ -35,9 +35,9 @@ def read_tdms(path: Path) -> dict[str, np.ndarray]:
     except Exception as why:  # nptdms raises whatever its parsers stumble over
         raise ValueError(f"cannot be read: it is no .tdms file, or damaged ({why})") from None
     last = (file.file_status.channel_statuses or {}).items()
-    if lost := ", ".join(f"{name} {n}" for name, block in last if (n := block.expected_length - block.read_length)):
+    if incomplete := ", ".join(f"{name} {n}" for name, block in last if (n := block.expected_length - block.read_length)):
         raise ValueError(
-            f"is cut off, samples are missing at its end: {lost}. Copy it again, or export those that are there"
+            f"is cut off, samples are missing at its end: {incomplete}. Copy it again, or export those that are there"
         )
     channels = [channel for group in file.groups() for channel in group.channels()]
     if not channels:
@@ -50,10 +50,10 @@ def read_tdms(path: Path) -> dict[str, np.ndarray]:
     if len(clocks) < len(channels):
         raise ValueError("two groups have channels of one name: save one measurement in a file")
     if len(set(clocks.values())) > 1:
-        shown = "; ".join(
+        listing = "; ".join(
             f"{name} {count} samples every {step:g} s from {start:g} s" for name, (count, step, start) in clocks.items()
         )
-        raise ValueError(f"channels differ in length or clock: {shown}. Save the channels of one task with one rate")
+        raise ValueError(f"channels differ in length or clock: {listing}. Save the channels of one task with one rate")
     count, step, start = next(iter(clocks.values()))
     if step > 0.0:
         columns["time (s)"] = start + step * np.arange(count)

@@ -85,14 +85,14 @@ def aliasing_error(signal: np.ndarray, noise: np.ndarray) -> tuple[np.ndarray, f
     count = len(signal)
     quiet = signal - np.median(signal, axis=0)
     # A window removes what beginning and end of a record add everywhere, and leaves 3 / 8 of the noise; pulses are rare, noise is not.
-    windowed = np.abs(spectrum_of(np.hanning(count)[:, None] * quiet)) ** 2
+    window_power = np.abs(spectrum_of(np.hanning(count)[:, None] * quiet)) ** 2
     noise = np.minimum(noise, (1.4826 * np.median(np.abs(quiet), axis=0)) ** 2 / count)
-    level = windowed[-int(_TOP * len(windowed)) :].mean(axis=0)
+    level = window_power[-int(_TOP * len(window_power)) :].mean(axis=0)
     visible = level > _LOUDER * 0.375 * noise
     share = np.linspace(0.0, 1.0, count // 2 + 1)[:, None]  # frequency over half the rate
-    folded = spectrum_of((-1.0) ** np.arange(count)[:, None] * quiet) * ((1.0 - share) / (2.0 - share)) ** 2
-    part = float(np.sqrt(np.where(visible, level / windowed.max(axis=0), 0.0).max()))
-    return np.where(visible, folded, 0.0) / np.sqrt(2.0), part
+    alias = spectrum_of((-1.0) ** np.arange(count)[:, None] * quiet) * ((1.0 - share) / (2.0 - share)) ** 2
+    part = float(np.sqrt(np.where(visible, level / window_power.max(axis=0), 0.0).max()))
+    return np.where(visible, alias, 0.0) / np.sqrt(2.0), part
 
 
 #: Part of the force's power below and above the band of frequencies that are used, and how far these reach beyond it.
@@ -141,8 +141,8 @@ def spectra_of(signals: Signals) -> _Spectra:
     present = [pair for pair in _ONE if columns.keys() >= {*pair}]
     pairs = _TWO if columns.keys() >= {*_TWO[0], *_TWO[1]} else present[:1]
     if not pairs or columns.keys() >= {"force", "y", "z"}:
-        forced = any(name.startswith("force") for name in columns)
-        missing = "displacement along its axis" if forced else "force"
+        with_force = any(name.startswith("force") for name in columns)
+        missing = "displacement along its axis" if with_force else "force"
         raise SceneError.at(
             source, None,
             "force and displacement along the same axis are needed: time_s, force_n, x_um, or force_y_n, force_z_n, y_um, z_um of two axes. "
@@ -153,7 +153,7 @@ def spectra_of(signals: Signals) -> _Spectra:
     if np.ptp(steps) > 2.0 * _EVEN * steps.mean():
         text = f"intervals from {steps.min():.6g} to {steps.max():.6g} s: a Fourier transform needs even ones. Record at a fixed rate"
         raise SceneError.at(source, None, text)
-    for name in (*(force for _, force in pairs), *(moved for moved, _ in pairs)):
+    for name in (*(force for _, force in pairs), *(of_axis for of_axis, _ in pairs)):
         if np.ptp(columns[name]) <= 1e-12 * np.abs(columns[name]).max():
             raise SceneError.at(source, None, f"'{name}' is constant. Check its connection")
     displacement, force = (np.column_stack([columns[name] for name in names]) for names in zip(*pairs, strict=True))
@@ -165,8 +165,8 @@ def spectra_of(signals: Signals) -> _Spectra:
     band = (omega > 0.0) & (omega >= (1.0 - _WIDER) * low) & (omega <= (1.0 + _WIDER) * high) & (omega < omega[-1])
     order, time = _ORDERS.get(pairs[0][0], 0), interval * np.arange(count)
     axes = ("y",) if order else tuple(name for name, _ in pairs)
-    moved = of_displacement[band] / (1j * omega[band, None]) ** order
-    return _Spectra(omega[band], of_force[band], moved, axes, np.flatnonzero(band), time, force, order)
+    of_axis = of_displacement[band] / (1j * omega[band, None]) ** order
+    return _Spectra(omega[band], of_force[band], of_axis, axes, np.flatnonzero(band), time, force, order)
 
 
 def free_parts(names: Sequence[str], spectra: _Spectra, mass: float | None) -> list[Free]:
@@ -227,8 +227,8 @@ class LinearResiduals:
         omega, axes, time = self.spectra.omega, self.spectra.axes, self.spectra.time
         self.excited = np.ones(len(omega), bool)
         x, turns = 1j * omega / omega[-1], np.outer(time, self.tones)
-        grown = (time / time[-1:])[:, None]
-        waves = [wave * size for wave in (np.cos(turns), np.sin(turns)) for size in (1.0, grown)] if len(time) else []
+        growth = (time / time[-1:])[:, None]
+        waves = [wave * size for wave in (np.cos(turns), np.sin(turns)) for size in (1.0, growth)] if len(time) else []
         hum = [spectrum_of(wave)[self.spectra.indices] for wave in waves]
         powers_of_x = x[:, None] ** np.arange(-self.spectra.order, _LEAKAGE if len(time) else 0)
         self._parts = np.hstack([powers_of_x / np.abs(powers_of_x[:1]).clip(1.0), *hum])
@@ -262,9 +262,9 @@ class LinearResiduals:
     def select_excited(self, at: np.ndarray) -> None:
         """From here on only frequencies whose force the noise does not hide determine Z."""
         before = self.stiffness(at)
-        excited = (np.abs(self.spectra.force) ** 2 > _ABOVE * self.variance(at)).any(axis=1)
+        visible = (np.abs(self.spectra.force) ** 2 > _ABOVE * self.variance(at)).any(axis=1)
         self.before = before
-        self.excited = excited if excited.any() else np.ones_like(excited)
+        self.excited = visible if visible.any() else np.ones_like(visible)
 
     def unweighted(self, at: np.ndarray) -> np.ndarray:
         """Residuals e (n, d) [N]."""
@@ -299,7 +299,7 @@ def _real_and_imaginary(columns: np.ndarray) -> np.ndarray:
 
 def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, LinearResiduals, np.ndarray]:
     """Free numbers with their intervals, the model with its noise, and its residuals e (n, d) [N]."""
-    without_tones = answer, problem = _iterated(spectra, free, mass, ())
+    without_tones = answer, problem = _iterate(spectra, free, mass, ())
     while len(spectra.time) and (
         hum := largest_tone(problem.unweighted(answer.values), problem.variance(answer.values), spectra.omega)
     ):
@@ -308,7 +308,7 @@ def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[
         if len(tones) > TONES or (np.abs(spectra.force[near]) ** 2).sum() > _TONAL * (np.abs(spectra.force) ** 2).sum():
             answer, problem = without_tones  # a model that misses the force itself does so at the force's frequencies
             break
-        answer, problem = _iterated(spectra, free, mass, tones)
+        answer, problem = _iterate(spectra, free, mass, tones)
     residuals = problem.unweighted(answer.values)
     for omega in sorted(problem.tones):
         hz = omega / 2.0 / np.pi
@@ -316,7 +316,7 @@ def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[
     return attrs.evolve(_without_nuisance(answer, len(free), problem), free=tuple(free)), problem, residuals
 
 
-def _iterated(
+def _iterate(
     spectra: _Spectra, free: Sequence[Free], mass: float, tones: tuple[float, ...]
 ) -> tuple[Estimate, LinearResiduals]:
     """Estimate and variances by turns, beside tones of known frequencies [rad/s]."""
@@ -325,31 +325,27 @@ def _iterated(
     numbers = [*free, *problem.nuisance]
     for iteration in range(_ITERATIONS):  # linear at first, the force's noise alone: the end does not depend on the start
         answer = estimate(problem, numbers, stated=False)
-        problem.noise = _variances(problem, answer.values)
+        # Variances (2, k, d) of displacement and force by which
+        z2, e2 = np.abs(problem.stiffness(answer.values)) ** 2, np.abs(problem.unweighted(answer.values)) ** 2
+        n, d = e2.shape
+        both = np.stack([z2, np.broadcast_to(np.eye(d), (n, d, d))])
+        regressors = np.einsum("cnab,cnk->nackb", both, problem.colours).reshape(n, d, -1)
+        shares = regressors.mean(axis=(0, 1))
+        variances = np.full(shares.size, float(e2.mean())) / shares / shares.size
+        for _ in range(_STEPS):
+            mean = regressors @ variances
+            # Multiplicative steps of the likelihood's gradient: variances stay positive.
+            up = np.einsum("nak,na->k", regressors, e2 / mean**2)
+            down = np.einsum("nak,na->k", regressors, 1.0 / mean)
+            step = np.sqrt(up / down)
+            variances = variances * step
+            if np.abs(step - 1.0).max() < _CONVERGED:
+                break
+        problem.noise = np.asarray(variances.reshape(2, _COLOURS, d))
         if iteration >= _ALL:
             problem.select_excited(answer.values)
         numbers = [attrs.evolve(n, start=float(value)) for n, value in zip(numbers, answer.values, strict=True)]
     return estimate(problem, numbers, stated=False), problem
-
-
-def _variances(problem: LinearResiduals, at: np.ndarray) -> np.ndarray:
-    """Variances (2, k, d) of displacement and force by which |e|^2 (n, d) is likeliest: exponential with the mean s^2."""
-    z2, e2 = np.abs(problem.stiffness(at)) ** 2, np.abs(problem.unweighted(at)) ** 2
-    n, d = e2.shape
-    both = np.stack([z2, np.broadcast_to(np.eye(d), (n, d, d))])
-    regressors = np.einsum("cnab,cnk->nackb", both, problem.colours).reshape(n, d, -1)
-    shares = regressors.mean(axis=(0, 1))
-    variances = np.full(shares.size, float(e2.mean())) / shares / shares.size
-    for _ in range(_STEPS):
-        mean = regressors @ variances
-        # Multiplicative steps of the likelihood's gradient: variances stay positive.
-        up = np.einsum("nak,na->k", regressors, e2 / mean**2)
-        down = np.einsum("nak,na->k", regressors, 1.0 / mean)
-        step = np.sqrt(up / down)
-        variances = variances * step
-        if np.abs(step - 1.0).max() < _CONVERGED:
-            break
-    return np.asarray(variances.reshape(2, _COLOURS, d))
 
 
 def _without_nuisance(answer: Estimate, count: int, problem: LinearResiduals) -> Estimate:
@@ -381,8 +377,8 @@ def _without_nuisance(answer: Estimate, count: int, problem: LinearResiduals) ->
         f"the force is not over at half the sampling rate ({0.5 / spectra.time[1]:.4g} Hz), where it has {100.0 * share:.2g} % of its "
         "largest line: without a filter, higher frequencies are aliased. Filter the signal, or sample faster"
     )
-    moved = force[spectra.indices][:, None, :] * np.array([1.0, 1j])[:, None] * np.sqrt(2.0 / variance)[:, None, :]
-    columns = np.einsum("nkb,ab->nakb", moved, np.eye(d)).reshape(len(hz), d, -1)
+    alias_shift = force[spectra.indices][:, None, :] * np.array([1.0, 1j])[:, None] * np.sqrt(2.0 / variance)[:, None, :]
+    columns = np.einsum("nkb,ab->nakb", alias_shift, np.eye(d)).reshape(len(hz), d, -1)
     return alone.with_shifts("aliasing", _real_and_imaginary(columns))
 
 
@@ -419,26 +415,20 @@ def fit_record(record: Signals | FrequencyResponse, names: list[str], mass: floa
             question = "check the signs of force and displacement, and the mass"
             notes.append(f"{number.name} is negative: {question}")
     title = f"F = K x + C x' + m x'', {spectra.omega[0] / 2.0 / np.pi:.4g} to {spectra.omega[-1] / 2.0 / np.pi:.4g} Hz"
-    series = _series(model, answer, residuals)
-    measured = 1.0 / (series[0].measured + 1j * series[1].measured)
-    response = FrequencyResponse(record.source, series[0].x, measured) if isinstance(record, Signals) else record
-    return Fitted(title, record.source, "record", False, answer, series, (), tuple(notes), response)
-
-
-def _series(model: LinearResiduals, answer: Estimate, residuals: np.ndarray) -> tuple[Series, ...]:
-    """Real and imaginary part of F / x over frequency beside the model's, per axis, where there is force.
-
-    Of two axes the force that moves the other one is taken off, and so is what beginning and end of the record add.
-    """
-    spectra, excited, series = model.spectra, model.excited, []
-    hz, variance = spectra.omega[excited] / 2.0 / np.pi, model.variance(answer.values)[excited]
-    stiffness, slopes = model.stiffness(answer.values)[excited], model.slopes[excited]
+    # F / x over frequency beside the model's, per axis. Of two axes the force that moves the other one is taken off, and so
+    # is what beginning and end of the record add.
+    spectra, visible = model.spectra, model.excited
+    series: list[Series] = []
+    hz, variance = spectra.omega[visible] / 2.0 / np.pi, model.variance(answer.values)[visible]
+    stiffness, slopes = model.stiffness(answer.values)[visible], model.slopes[visible]
     for k, axis in enumerate(spectra.axes):
-        displacement = spectra.displacement[excited, k]
-        measured = stiffness[:, k, k] - residuals[excited, k] / displacement
+        displacement = spectra.displacement[visible, k]
+        data = stiffness[:, k, k] - residuals[visible, k] / displacement
         error = np.sqrt(0.5 * variance[:, k]) / np.abs(displacement)
-        for word, part in (("real", np.real), ("imaginary", np.imag)):
-            name, band = f"F / x along {axis}, {word} part", answer.half_widths(part(slopes[:, k, k]))
-            fitted = part(stiffness[:, k, k])
-            series.append(Series(name, "N/m", "frequency", "Hz", hz, part(measured), fitted, error, band))
-    return tuple(series)
+        for word, component in (("real", np.real), ("imaginary", np.imag)):
+            name, band = f"F / x along {axis}, {word} part", answer.half_widths(component(slopes[:, k, k]))
+            model_values = component(stiffness[:, k, k])
+            series.append(Series(name, "N/m", "frequency", "Hz", hz, component(data), model_values, error, band))
+    dynamic_stiffness = 1.0 / (series[0].measured + 1j * series[1].measured)
+    response = FrequencyResponse(record.source, series[0].x, dynamic_stiffness) if isinstance(record, Signals) else record
+    return Fitted(title, record.source, "record", False, answer, tuple(series), (), tuple(notes), response)

@@ -26,8 +26,50 @@ def draw(content: ReadTables) -> Figure:
     figure = new_figure(1.0 + 2.9 * columns, 5.2)
     panels = figure.subplots(2, columns, squeeze=False, height_ratios=(3, 1.4))
     for k, quantity in enumerate(series):
-        _draw_quantity(panels[0][k], panels[1][k], quantity)
-    _region(panels[0][-1], content)
+        # Data and fit, and residuals below them
+        panel = panels[0][k]
+        below = panels[1][k]
+        factor, unit = read_in(1.0, quantity["unit"])
+        x, fit, band, data, error = (np.array(quantity[name]) for name in ("x", "fitted", "band", "measured", "error"))
+        order, few = np.argsort(x), len(x) <= _DENSE
+        low, high = factor * (fit - band)[order], factor * (fit + band)[order]
+        panel.fill_between(x[order], low, high, color=_BLUE, alpha=0.22, linewidth=0)
+        panel.plot(x[order], factor * fit[order], color=_BLUE, label="fit, with its 95 %")
+        fmt, size, bars = ("o", 4, 1.96 * factor * error) if few else (".", 1, None)
+        panel.errorbar(x, factor * data, bars, fmt=fmt, ms=size, color=_BLACK, elinewidth=0.8, label="data")
+        panel.set_ylabel(_with_unit(quantity["name"], unit))
+        panel.legend(frameon=False, fontsize=8)
+        for level, style in ((0.0, "-"), (-_MARKED, ":"), (_MARKED, ":")):
+            below.axhline(level, color=_GREY, linewidth=0.8, linestyle=style)
+        below.plot(x, (data - fit) / np.where(error > 0.0, error, 1.0), fmt, ms=size, color=_BLACK)
+        below.set_xlabel(_with_unit(quantity["over"], quantity["over_unit"]))
+        below.set_ylabel("residual over\nstandard error")
+    # The ellipse of two numbers at 95 %; of one number its interval
+    panel = panels[0][-1]
+    known_numbers = [k for k, number in enumerate(content["free"]) if number["determined"]][:2]
+    panel.set_title("confidence region, 95 %", fontsize=10)
+    if not known_numbers:
+        words = "the data determine\nno number by itself"
+        panel.text(0.5, 0.5, words, ha="center", va="center", transform=panel.transAxes, fontsize=9)
+        panel.set_axis_off()
+    else:
+        free = [content["free"][k] for k in known_numbers]
+        if len(free) == 1:
+            panel.errorbar([free[0]["value"]], [0.0], xerr=[free[0]["error"]], fmt="o", color=_RED, capsize=4)
+            panel.set_yticks([])
+            panel.set_ylim(-0.4, 1.1)
+        else:
+            covariance = np.array(content["covariance"])[np.ix_(known_numbers, known_numbers)]
+            errors = np.sqrt(np.diag(covariance))
+            size = np.sqrt(5.991)  # chi squared of two numbers at 95 %
+            s, vectors = np.linalg.eigh(covariance / np.outer(errors, errors))
+            circle = np.linspace(0.0, 2.0 * np.pi, 181)
+            path = vectors @ (np.sqrt(np.maximum(s, 0.0))[:, None] * size * np.array([np.cos(circle), np.sin(circle)]))
+            path = path * errors[:, None] + np.array([[number["value"]] for number in free])
+            panel.plot(path[0], path[1], color=_RED)
+            panel.plot([free[0]["value"]], [free[1]["value"]], "o", ms=4, color=_RED)
+            panel.set_ylabel(_with_unit(free[1]["key"], free[1]["unit"]), fontsize=9)
+        panel.set_xlabel(_with_unit(free[0]["key"], free[0]["unit"]), fontsize=9)
     panels[1][-1].set_axis_off()
     lines = []
     for number in content["free"][:4]:
@@ -36,53 +78,6 @@ def draw(content: ReadTables) -> Figure:
     panels[1][-1].text(0.0, 0.9, "\n".join(lines), va="top", transform=panels[1][-1].transAxes, fontsize=8)
     figure.suptitle(wrapped(content["title"]), fontsize=11)
     return figure
-
-
-def _draw_quantity(panel: Axes, below: Axes, quantity: ReadTables) -> None:
-    """Data and fit, and residuals below them."""
-    factor, unit = read_in(1.0, quantity["unit"])
-    x, fitted, band, measured, error = (np.array(quantity[name]) for name in ("x", "fitted", "band", "measured", "error"))
-    order, few = np.argsort(x), len(x) <= _DENSE
-    low, high = factor * (fitted - band)[order], factor * (fitted + band)[order]
-    panel.fill_between(x[order], low, high, color=_BLUE, alpha=0.22, linewidth=0)
-    panel.plot(x[order], factor * fitted[order], color=_BLUE, label="fit, with its 95 %")
-    fmt, size, bars = ("o", 4, 1.96 * factor * error) if few else (".", 1, None)
-    panel.errorbar(x, factor * measured, bars, fmt=fmt, ms=size, color=_BLACK, elinewidth=0.8, label="data")
-    panel.set_ylabel(_with_unit(quantity["name"], unit))
-    panel.legend(frameon=False, fontsize=8)
-    for level, style in ((0.0, "-"), (-_MARKED, ":"), (_MARKED, ":")):
-        below.axhline(level, color=_GREY, linewidth=0.8, linestyle=style)
-    below.plot(x, (measured - fitted) / np.where(error > 0.0, error, 1.0), fmt, ms=size, color=_BLACK)
-    below.set_xlabel(_with_unit(quantity["over"], quantity["over_unit"]))
-    below.set_ylabel("residual over\nstandard error")
-
-
-def _region(panel: Axes, content: ReadTables) -> None:
-    """The ellipse of two numbers at 95 %; of one number its interval."""
-    determined = [k for k, number in enumerate(content["free"]) if number["determined"]][:2]
-    panel.set_title("confidence region, 95 %", fontsize=10)
-    if not determined:
-        words = "the data determine\nno number by itself"
-        panel.text(0.5, 0.5, words, ha="center", va="center", transform=panel.transAxes, fontsize=9)
-        panel.set_axis_off()
-        return
-    free = [content["free"][k] for k in determined]
-    if len(free) == 1:
-        panel.errorbar([free[0]["value"]], [0.0], xerr=[free[0]["error"]], fmt="o", color=_RED, capsize=4)
-        panel.set_yticks([])
-        panel.set_ylim(-0.4, 1.1)
-    else:
-        covariance = np.array(content["covariance"])[np.ix_(determined, determined)]
-        errors = np.sqrt(np.diag(covariance))
-        size = np.sqrt(5.991)  # chi squared of two numbers at 95 %
-        s, vectors = np.linalg.eigh(covariance / np.outer(errors, errors))
-        circle = np.linspace(0.0, 2.0 * np.pi, 181)
-        path = vectors @ (np.sqrt(np.maximum(s, 0.0))[:, None] * size * np.array([np.cos(circle), np.sin(circle)]))
-        path = path * errors[:, None] + np.array([[number["value"]] for number in free])
-        panel.plot(path[0], path[1], color=_RED)
-        panel.plot([free[0]["value"]], [free[1]["value"]], "o", ms=4, color=_RED)
-        panel.set_ylabel(_with_unit(free[1]["key"], free[1]["unit"]), fontsize=9)
-    panel.set_xlabel(_with_unit(free[0]["key"], free[0]["unit"]), fontsize=9)
 
 
 def _with_unit(name: str, unit: str) -> str:
@@ -97,23 +92,23 @@ def figures(answer: Identified) -> dict[str, Figure]:
     RacewayError
         matplotlib is missing.
     """
-    drawn = {"signals": new_figure(8.0, 4.4), "spectrum": new_figure(8.0, 3.4), "orbits": new_figure(5.6, 5.4)}
-    first, means = drawn["signals"].subplots(
+    drawings = {"signals": new_figure(8.0, 4.4), "spectrum": new_figure(8.0, 3.4), "orbits": new_figure(5.6, 5.4)}
+    first, means = drawings["signals"].subplots(
         2, 1, height_ratios=(3, 2)
     )  # the first turns; the full record as its means over turns
     rotation, record = answer.rotation, answer.rotation.recording
-    shown = rotation.angle < 2.0 * np.pi * _TURNS_SHOWN
-    turns, time = rotation.angle[shown] / (2.0 * np.pi), rotation.means(record.time)
+    early = rotation.angle < 2.0 * np.pi * _TURNS_SHOWN
+    turns, time = rotation.angle[early] / (2.0 * np.pi), rotation.means(record.time)
     for name, values, colour in (("y", record.y, _BLUE), ("z", record.z, _RED)):
-        first.plot(turns, _MICRO * values[shown], color=colour, label=f"gap {name}", linewidth=1.2)
+        first.plot(turns, _MICRO * values[early], color=colour, label=f"gap {name}", linewidth=1.2)
         means.plot(time, _MICRO * rotation.means(values), color=colour)
     _finish(first, "turns", "gap [µm]")
     _finish(means, "time [s]", "mean of a turn [µm]")
     first.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
-    draw_spectrum(answer, drawn["spectrum"].subplots())
-    draw_orbits(answer, drawn["orbits"].subplots())
-    drawn["orbits"].legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
-    return drawn
+    draw_spectrum(answer, drawings["spectrum"].subplots())
+    draw_orbits(answer, drawings["orbits"].subplots())
+    drawings["orbits"].legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    return drawings
 
 
 def draw_spectrum(answer: Identified, axes: Axes) -> None:
@@ -124,9 +119,9 @@ def draw_spectrum(answer: Identified, axes: Axes) -> None:
     plane = np.interp(grid, angle, record.y) + 1j * np.interp(grid, angle, record.z)
     amplitudes = np.abs(np.fft.fft(plane - plane.mean())) / len(plane)
     order = np.fft.fftfreq(len(plane), 1.0 / per_turn)
-    shown = np.flatnonzero(np.abs(order) <= _ORDERS_SHOWN)
-    shown = shown[np.argsort(order[shown])]
-    axes.semilogy(order[shown], _MICRO * np.maximum(amplitudes[shown], 1e-14), color=_BLUE, linewidth=0.9)
+    visible = np.flatnonzero(np.abs(order) <= _ORDERS_SHOWN)
+    visible = visible[np.argsort(order[visible])]
+    axes.semilogy(order[visible], _MICRO * np.maximum(amplitudes[visible], 1e-14), color=_BLUE, linewidth=0.9)
     axes.set_xticks(range(-int(_ORDERS_SHOWN), int(_ORDERS_SHOWN) + 1))
     _finish(axes, "order, positive: forward", "amplitude [µm]")
 

@@ -118,7 +118,7 @@ def response_of(path: str | Path, columns: Mapping[str, str] | None = None) -> F
     """
     import pyuff
 
-    path, meant = Path(path), {str(number): name for number, name in (columns or {}).items()}
+    path, columns_map = Path(path), {str(number): name for number, name in (columns or {}).items()}
     try:
         with memory_for(size_of(path, LARGEST)):
             file = pyuff.UFF(str(path))
@@ -131,54 +131,54 @@ def response_of(path: str | Path, columns: Mapping[str, str] | None = None) -> F
     every = [table for table in sets if table["type"] == 58]
     kind = 4 if any(table["func_type"] == 4 for table in every) else 1
     functions = [table for table in every if table["func_type"] == kind]
-    words = {str(k + 1): _words(table) for k, table in enumerate(functions)}
+    words = {str(k + 1): _function_words(table) for k, table in enumerate(functions)}
     try:
         if not functions:
-            held = Counter(map(_held, every)) or Counter(f"dataset {number}" for number in types) or {"dataset": 0}
+            kinds = Counter(map(_content_words, every)) or Counter(f"dataset {number}" for number in types) or {"dataset": 0}
             raise ValueError(
-                f"holds {', '.join(f'{count} x {text}' for text, count in held.items())}: a frequency response (function type 4), or time "
+                f"holds {', '.join(f'{count} x {text}' for text, count in kinds.items())}: a frequency response (function type 4), or time "
                 "histories (type 1) of force and response, are needed. Export one of them"
             )
-        if unknown := next((k for k in meant if k not in words), None):
+        if unknown := next((k for k in columns_map if k not in words), None):
             raise ValueError(
                 f"no function {unknown} for --map; there are {'; '.join(f'{k}: {text}' for k, text in words.items())}"
             )
-        used = {k: table for k, table in zip(words, functions, strict=True) if meant.get(k) != IGNORE}
+        tables = {k: table for k, table in zip(words, functions, strict=True) if columns_map.get(k) != IGNORE}
         factors = next((units for units in sets if units["type"] == 164), None)
         if kind == 1:
-            return _histories(str(path), used, factors, meant)
-        points = {k: table for k, table in used.items() if _at_one_point(table)} or used
+            return _histories(str(path), tables, factors, columns_map)
+        points = {k: table for k, table in tables.items() if _at_one_point(table)} or tables
         if len(points) != 1:
-            shown = "; ".join(f"{k}: {words[k]}" for k in points)
+            names = "; ".join(f"{k}: {words[k]}" for k in points)
             raise ValueError(
-                f'one frequency response function is fitted, there are {shown}: leave others out with --map "NUMBER={IGNORE}"'
+                f'one frequency response function is fitted, there are {names}: leave others out with --map "NUMBER={IGNORE}"'
             )
         ((number, table),) = points.items()
-        return _read(str(path), table, factors, number, meant.get(number, ""))
+        return _read_function(str(path), table, factors, number, columns_map.get(number, ""))
     except SceneError as why:
-        shown = "; ".join(f"{k}: {_held(table)}, {words[k]}" for k, table in zip(words, functions, strict=True))
-        raise SceneError.at(str(path), None, f"{why.mistakes[0].message}; functions: {shown}") from None
+        names = "; ".join(f"{k}: {_content_words(table)}, {words[k]}" for k, table in zip(words, functions, strict=True))
+        raise SceneError.at(str(path), None, f"{why.mistakes[0].message}; functions: {names}") from None
     except ValueError as why:
         raise SceneError.at(str(path), None, str(why)) from None
 
 
-def _held(table: _Set) -> str:
+def _content_words(table: _Set) -> str:
     """What a function is, in words."""
     quantity = _QUANTITIES.get(table["ordinate_spec_data_type"], "an unknown quantity")
     return f"{dict(enumerate(_FUNCTIONS)).get(table['func_type'], 'other function')} of {quantity}"
 
 
-def _histories(source: str, used: Mapping[str, _Set], factors: _Set | None, meant: Mapping[str, str]) -> Signals:
+def _histories(source: str, tables: Mapping[str, _Set], factors: _Set | None, meanings: Mapping[str, str]) -> Signals:
     """Time histories as a record: responses at the point of the force where there are such."""
-    kinds = {k: 13 if (kind := table["ordinate_spec_data_type"]) in _FORCES else kind for k, table in used.items()}
-    forces = [k for k in used if kinds[k] == 13 or meant.get(k, "").startswith("force")]
-    points = {k: (table["rsp_node"], abs(table["rsp_dir"])) for k, table in used.items()}
-    near = {k for k in used if points[k] in [points[force] for force in forces]}
+    kinds = {k: 13 if (kind := table["ordinate_spec_data_type"]) in _FORCES else kind for k, table in tables.items()}
+    forces = [k for k in tables if kinds[k] == 13 or meanings.get(k, "").startswith("force")]
+    points = {k: (table["rsp_node"], abs(table["rsp_dir"])) for k, table in tables.items()}
+    near = {k for k in tables if points[k] in [points[force] for force in forces]}
     if near - {*forces}:
-        used = {k: used[k] for k in used if k in near}
+        tables = {k: tables[k] for k in tables if k in near}
     columns: dict[str, np.ndarray] = {}
-    names, notes = {k: name for k, name in meant.items() if k in used}, []
-    for k, table in used.items():
+    names, notes = {k: name for k, name in meanings.items() if k in tables}, []
+    for k, table in tables.items():
         clock, values = evened(np.asarray(table["x"], float)), np.asarray(table["data"])
         over = table["abscissa_spec_data_type"], table["abscissa_axis_units_lab"].strip().lower()
         if over[0] not in (0, _TIME) or over[1] not in ("", "none", "s", "sec") or np.iscomplexobj(values):
@@ -187,10 +187,10 @@ def _histories(source: str, used: Mapping[str, _Set], factors: _Set | None, mean
         if len(first) != len(clock) or (np.abs(first - clock) > _SAME * np.ptp(clock) / len(clock)).any():
             raise ValueError(f"function {k} has other times than those before it: export the channels of one measurement")
         columns[k] = values
-        if k in meant or (name := _COLUMNS.get(kinds[k])) is None:
+        if k in meanings or (name := _COLUMNS.get(kinds[k])) is None:
             continue
-        size, unit = _unit(table, "ordinate", kinds[k], factors, k, name)
-        if kinds[k] != 13 and forces and table["rsp_dir"] * used[forces[0]]["rsp_dir"] < 0:
+        size, unit = _data_unit(table, "ordinate", kinds[k], factors, k, name)
+        if kinds[k] != 13 and forces and table["rsp_dir"] * tables[forces[0]]["rsp_dir"] < 0:
             size, unit = -size, f"{unit}, against the direction of the force"
         names[k] = f"{name}*{float(size)!r}"
         notes.append(f"function {k} is read as {_QUANTITIES[kinds[k]]} in {unit}")
@@ -198,7 +198,7 @@ def _histories(source: str, used: Mapping[str, _Set], factors: _Set | None, mean
     return attrs.evolve(record, source=source, notes=(*record.notes, *notes))
 
 
-def _words(table: _Set) -> str:
+def _function_words(table: _Set) -> str:
     return f"{table['id1'].strip()}, response {table['rsp_node']}:{table['rsp_dir']}, force {table['ref_node']}:{table['ref_dir']}"
 
 
@@ -206,20 +206,20 @@ def _at_one_point(table: _Set) -> bool:
     return bool(table["rsp_node"] == table["ref_node"] and abs(table["rsp_dir"]) == abs(table["ref_dir"]))
 
 
-def _read(source: str, table: _Set, factors: _Set | None, number: str, meant: str) -> FrequencyResponse:
+def _read_function(source: str, table: _Set, factors: _Set | None, number: str, meaning: str) -> FrequencyResponse:
     """One function as receptance; ``ValueError`` with the remedy."""
     notes = []
     kinds = tuple(13 if (kind := table[f"{axis}_spec_data_type"]) in _FORCES else kind for axis in ("ordinate", "orddenom"))
-    form, scale = unscaled(meant)
+    form, scale = unscaled(meaning)
     form = form or next((name for name, pair in _FORMS.items() if pair == kinds), "")
     if form not in _FORMS:
         raise ValueError(
-            f"function {number} states no known form ({meant or f'data types {kinds[0]} over {kinds[1]}'}): "
+            f"function {number} states no known form ({meaning or f'data types {kinds[0]} over {kinds[1]}'}): "
             f'--map "{number}=FORM", one of {", ".join(_FORMS)}'
         )
     if scale is None:
         upper, lower = (
-            _unit(table, axis, kind, factors, number, form)
+            _data_unit(table, axis, kind, factors, number, form)
             for axis, kind in zip(("ordinate", "orddenom"), _FORMS[form], strict=True)
         )
         scale = upper[0] / lower[0]
@@ -247,12 +247,12 @@ def _read(source: str, table: _Set, factors: _Set | None, number: str, meant: st
         notes.append("force and response are counted in opposite directions: the sign is reversed")
     if not _at_one_point(table):
         notes.append(
-            f"force and response are of two points ({_words(table)}): K is a transfer stiffness, not that of the drive point"
+            f"force and response are of two points ({_function_words(table)}): K is a transfer stiffness, not that of the drive point"
         )
     return FrequencyResponse(source, hz, values, tuple(notes))
 
 
-def _unit(table: _Set, axis: str, kind: int, factors: _Set | None, number: str, form: str) -> tuple[float, str]:
+def _data_unit(table: _Set, axis: str, kind: int, factors: _Set | None, number: str, form: str) -> tuple[float, str]:
     """Factor to SI and words of a unit: by its label, else by the file's dataset 164, else SI."""
     label = table[f"{axis}_axis_units_lab"].strip()
     plain = label.lower().replace("µ", "u").replace("²", "2").replace("^", "").replace("**", "").replace(" ", "")

@@ -43,7 +43,7 @@ def refuse_no_load(scene: Scene) -> None:
         raise SceneError.at("load.axial", scene.load.axial, message)
 
 
-def invert(shaft: Rotor, tested: Bearing, sensor: complex) -> State:
+def invert(shaft: Rotor, bearing: Bearing, sensor: complex) -> State:
     """State of the bearing from the deflection at the sensor [m], its phase against the unbalance.
 
     Raises
@@ -57,16 +57,16 @@ def invert(shaft: Rotor, tested: Bearing, sensor: complex) -> State:
 
     def difference(moment: np.ndarray) -> np.ndarray:
         load = force(moment[0])
-        return tested.answer(shaft.speed, load, moment[0])[1:] - shaft.at_ring(load, moment[0])[1:]
+        return bearing.answer(shaft.speed, load, moment[0])[1:] - shaft.at_ring(load, moment[0])[1:]
 
     # With the tilts' tangent at rest the difference is linear in the moment.
     step = -shaft.sensor[2] / shaft.sensor[1]
-    gain = (tested.compliance[1] - shaft.ring[1, 1:]) @ np.array([step, 1.0])
-    at_zero = tested.compliance[1, 0] * force(0.0) - shaft.at_ring(force(0.0), 0.0)[1]
+    gain = (bearing.compliance[1] - shaft.ring[1, 1:]) @ np.array([step, 1.0])
+    at_zero = bearing.compliance[1, 0] * force(0.0) - shaft.at_ring(force(0.0), 0.0)[1]
     start = np.array([-at_zero / gain])
-    size = np.abs(tested.compliance[1]) @ np.abs([force(start[0]), start[0]])
+    size = np.abs(bearing.compliance[1]) @ np.abs([force(start[0]), start[0]])
     (moment,), runs = find_root(difference, start, np.array([[gain]]), np.array([size]))
-    return _state(shaft, force(moment), moment, tested, runs)
+    return _state(shaft, force(moment), moment, bearing, runs)
 
 
 def with_tilt_of(shaft: Rotor, state: State, sensor: complex, stiffer: float = 1.0) -> State:
@@ -91,16 +91,16 @@ def with_tilt_of(shaft: Rotor, state: State, sensor: complex, stiffer: float = 1
     return _state(shaft, load[0], load[1], state, 0)
 
 
-def with_moment(shaft: Rotor, sensor: complex, moment: complex, tested: State | Bearing) -> State:
+def with_moment(shaft: Rotor, sensor: complex, moment: complex, bearing: State | Bearing) -> State:
     """State of the bearing by the deflection at the sensor under a moment [N m]."""
     force = (sensor - shaft.at_sensor(0.0, moment)) / shaft.sensor[1]
-    return _state(shaft, force, moment, tested, 0)
+    return _state(shaft, force, moment, bearing, 0)
 
 
-def _state(shaft: Rotor, force: complex, moment: complex, tested: State | Bearing, runs: int) -> State:
+def _state(shaft: Rotor, force: complex, moment: complex, bearing: State | Bearing, runs: int) -> State:
     deflection, slope = shaft.at_ring(force, moment)
     sensor = shaft.at_sensor(force, moment)
-    return State(shaft.speed, force, moment, deflection, slope, sensor, tested.mass, tested.coupling, runs)
+    return State(shaft.speed, force, moment, deflection, slope, sensor, bearing.mass, bearing.coupling, runs)
 
 
 def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:
@@ -118,7 +118,7 @@ def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:
         rigs["sensor 0.5 mm farther from the bearing"] = farther
     except ValueError:  # it sits at the end already
         rigs["sensor 0.5 mm nearer to the bearing"] = attrs.evolve(rig, sensor_distance=rig.sensor_distance - 5e-4)
-    return {change: rotor(changed, speed) for change, changed in rigs.items()}
+    return {change: rotor(other_rig, speed) for change, other_rig in rigs.items()}
 
 
 @attrs.frozen(eq=False)
@@ -168,8 +168,8 @@ class _RigResiduals:
         return 2 if self.component.marked else 1
 
     def residuals(self, at: np.ndarray) -> np.ndarray:
-        self.last = self._balanced(self.scene, at)
-        return self._weighted(self.last.computed - self.last.measured)
+        self.last = self._balance_at(self.scene, at)
+        return self._weigh(self.last.computed - self.last.measured)
 
     def jacobian(self, at: np.ndarray) -> np.ndarray:
         steps = [_STEP * key.size * axis for key, axis in zip(self.free, np.eye(len(at)), strict=True)]
@@ -188,19 +188,19 @@ class _RigResiduals:
 
     def _slope(self, before: tuple[Scene, np.ndarray], after: tuple[Scene, np.ndarray], step: float) -> _Slope:
         """Between two scenes with numbers."""
-        low, high = self._balanced(*before), self._balanced(*after)
+        low, high = self._balance_at(*before), self._balance_at(*after)
         # Of the run-out, too: the response to the unbalance in a slow roll depends on the bearing.
-        column = self._weighted(high.computed - high.measured, low.computed - low.measured) / step
+        column = self._weigh(high.computed - high.measured, low.computed - low.measured) / step
         stiffness, damping = high.state.stiffness - low.state.stiffness, high.state.damping - low.state.damping
         return _Slope(column, np.array([stiffness, damping]) / step, (high.computed - low.computed) / step)
 
-    def _weighted(self, residual: complex, less: complex = 0.0) -> np.ndarray:
+    def _weigh(self, residual: complex, less: complex = 0.0) -> np.ndarray:
         """A difference of two responses along the measured one and across it, over the errors."""
-        rotated = (residual - less) * np.conj(self.last.measured) / abs(self.last.measured)
+        in_phase = (residual - less) * np.conj(self.last.measured) / abs(self.last.measured)
         along, across = self.last.errors
-        return np.array([rotated.real / along, rotated.imag / across][: self.count])
+        return np.array([in_phase.real / along, in_phase.imag / across][: self.count])
 
-    def _balanced(self, scene: Scene, at: np.ndarray) -> _Balanced:
+    def _balance_at(self, scene: Scene, at: np.ndarray) -> _Balanced:
         """The rig with the bearing of such numbers, and the measured response less the run-out that this bearing leaves."""
         scene = with_free(scene, self.free, at)
         tested = bearing(scene, scene.load.axial, self.registry)
@@ -258,18 +258,18 @@ def fit_rig(
         answer = answer.with_shifts(cause, slope.residuals[:, None])
     slopes = np.array([slope.coefficients for slope in problem.slopes]).T
     halves = answer.half_widths(slopes, {cause: slope.coefficients[:, None] for cause, slope in causes.items()})
-    derived = [Derived("K", "N/m", last.state.stiffness, float(halves[0]))]
+    derivatives = [Derived("K", "N/m", last.state.stiffness, float(halves[0]))]
     if component.marked and any(word in key.name for key in free for word in _DAMPING):
-        derived.append(Derived("C", "N s/m", last.state.damping, float(halves[1])))
-    measured = last.measured if component.marked else abs(last.measured)
+        derivatives.append(Derived("C", "N s/m", last.state.damping, float(halves[1])))
+    sensor_signal = last.measured if component.marked else abs(last.measured)
     parts = [("real", np.real), ("imaginary", np.imag)][: problem.count]
     responses = np.array([slope.response for slope in problem.slopes])
     directly = {cause: np.array([[part(slope.response)] for _, part in parts]) for cause, slope in causes.items()}
     series = Series(
         f"line at the sensor ({' and '.join(name for name, _ in parts)} part)", "m", "part", "", np.arange(1.0, len(parts) + 1.0),
-        np.array([part(measured) for _, part in parts]), np.array([part(last.computed) for _, part in parts]),
+        np.array([part(sensor_signal) for _, part in parts]), np.array([part(last.computed) for _, part in parts]),
         np.full(len(parts), answer.widened * last.errors[0]),
         answer.half_widths(np.array([part(responses) for _, part in parts]), directly),
     )  # fmt: skip
     title, notes = f"{scene.title}, {component.speed * 30.0 / np.pi:.1f} r/min", tuple(problem.notes())
-    return Fitted(title, signals.source, "rig", True, answer, (series,), tuple(derived), notes)
+    return Fitted(title, signals.source, "rig", True, answer, (series,), tuple(derivatives), notes)

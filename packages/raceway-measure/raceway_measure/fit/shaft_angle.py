@@ -146,10 +146,10 @@ def _angle_error(time: np.ndarray, pulses: _Pulses, spline: PPoly) -> float:
     fraction = (smooth - time[after - 1]) / (time[after] - time[after - 1])
     together = max(float(abs(np.exp(2j * pi * fraction).mean())), len(times) ** -0.5)
     speed = 2.0 * pi * (len(times) - 1) / float(times[-1] - times[0])
-    shared = 0.5 * speed * float(np.median(np.diff(time))) * pulses.jump**2 * together
+    common_error = 0.5 * speed * float(np.median(np.diff(time))) * pulses.jump**2 * together
     freedom = len(times) - len(spline.c)
     mean = float(stdtrit(freedom, 0.975)) * float(np.sqrt(deviation @ deviation / freedom / len(times)))
-    return float(np.sqrt(shared**2 + mean**2 + (1.96 * speed * pulses.middle_error) ** 2))
+    return float(np.sqrt(common_error**2 + mean**2 + (1.96 * speed * pulses.middle_error) ** 2))
 
 
 def _by_speed(recording: Recording) -> Rotation:
@@ -201,7 +201,20 @@ def pulses_of(time: np.ndarray, key: np.ndarray) -> _Pulses:
     times, slopes = _crossings(time, (key - low) / (high - low), noise / (high - low))
     error = 0.0
     if len(times) > 1 and noise > 0.0:
-        low, high, error, noise = _plateaus(time, key, times)
+        # The plateaus of the mean turn, and the standard error of the middle between them.
+        inside = (time >= times[0]) & (time < times[-1])
+        part = np.interp(time[inside], times, np.arange(len(times))) % 1.0
+        turn = key[inside][np.argsort(part, kind="stable")]
+        # Of neighbours in angle: in time a voltage that is never flat would count as noise.
+        noise = float(np.median(np.abs(np.diff(turn)))) / _FIRST
+        size = np.ceil((noise / (_QUIET * np.ptp(turn))) ** 2)
+        size = int(np.clip(size, 1, max(len(turn) // _FEWEST, 1)))
+        count = len(turn) // size
+        means = turn[: count * size].reshape(count, size).mean(axis=1)
+        error = noise / np.sqrt(size)
+        plateaus = [means[np.abs(means - end) <= _PLATEAU * error] for end in (means.min(), means.max())]
+        error = float(0.5 * error * np.hypot(len(plateaus[0]) ** -0.5, len(plateaus[1]) ** -0.5))
+        low, high = (float(plateau.mean()) for plateau in plateaus)
         times, slopes = _crossings(time, (key - low) / (high - low), noise / (high - low))
     if not len(times):
         return _Pulses(times, 0.0, 0.0)
@@ -224,23 +237,3 @@ def _crossings(time: np.ndarray, level: np.ndarray, noise: float) -> tuple[np.nd
         times.append(t.mean() + (t @ deviation) / (deviation @ deviation) * (0.5 - y.mean()))
         slopes.append((y[-1] - y[0]) / (t[-1] - t[0]))
     return np.array(times), np.array(slopes)
-
-
-def _plateaus(time: np.ndarray, key: np.ndarray, times: np.ndarray) -> tuple[float, float, float, float]:
-    """Lowest and highest voltage of the mean turn, standard error of the middle between them, and the noise of a sample.
-
-    times : first estimate of those of the pulses [s]
-    """
-    inside = (time >= times[0]) & (time < times[-1])
-    part = np.interp(time[inside], times, np.arange(len(times))) % 1.0
-    turn = key[inside][np.argsort(part, kind="stable")]
-    # Of neighbours in angle: in time a voltage that is never flat would count as noise.
-    noise = float(np.median(np.abs(np.diff(turn)))) / _FIRST
-    size = np.ceil((noise / (_QUIET * np.ptp(turn))) ** 2)
-    size = int(np.clip(size, 1, max(len(turn) // _FEWEST, 1)))
-    count = len(turn) // size
-    means = turn[: count * size].reshape(count, size).mean(axis=1)
-    error = noise / np.sqrt(size)
-    low, high = (means[np.abs(means - end) <= _PLATEAU * error] for end in (means.min(), means.max()))
-    middle = 0.5 * error * np.hypot(len(low) ** -0.5, len(high) ** -0.5)
-    return float(low.mean()), float(high.mean()), float(middle), noise

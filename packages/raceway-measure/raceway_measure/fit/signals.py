@@ -109,7 +109,7 @@ def table_of(
         judge(list(arrays))
         if not arrays:
             raise ValueError("is empty: column headers and numbers are needed")
-        columns = {header: _numbers(header, values, word) for header, values in arrays.items()}
+        columns = {header: _file_numbers(header, values, word) for header, values in arrays.items()}
         sizes = {header: len(values) for header, values in columns.items()}
         if len(set(sizes.values())) > 1:
             raise ValueError(
@@ -134,7 +134,7 @@ def _arrays(data: Any, name: str) -> dict[str, ArrayLike]:
     raise SceneError.at(name, type(data).__name__, message)
 
 
-def _numbers(header: str, array: ArrayLike, word: str) -> np.ndarray:
+def _file_numbers(header: str, array: ArrayLike, word: str) -> np.ndarray:
     try:
         values = np.atleast_1d(np.asarray(array, dtype=float))
     except (OverflowError, TypeError, ValueError):
@@ -171,20 +171,20 @@ class Signals:
         for name, half in {
             name: 0.5 * float(np.ptp(values)) for name, values in self.columns.items() if name != "time"
         }.items():
-            moved = f" (+- {1e6 * half:.4g} µm)" if name in ("y", "z") else ""
-            signals.append(name + (f" (+- {half:.4g} N)" if name.startswith("force") else moved))
+            uncertainty = f" (+- {1e6 * half:.4g} µm)" if name in ("y", "z") else ""
+            signals.append(name + (f" (+- {half:.4g} N)" if name.startswith("force") else uncertainty))
         return f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {', '.join(signals) or 'nothing but time'}"
 
 
 def signals_of(
-    data: Data, columns: Mapping[str, str] | None = None, needed: Mapping[str, str] = ORBIT, where: str = ""
+    data: Data, columns: Mapping[str, str] | None = None, required: Mapping[str, str] = ORBIT, where: str = ""
 ) -> Signals:
     """The record in data of any form that ``table_of`` takes.
 
     Parameters
     ----------
     columns : header -> name in ``column_headers.COLUMNS``, for headers that are not understood; "ignore" leaves a column out
-    needed : quantities that the record must have, and their words;  where : prefix of messages about arrays from a file
+    required : quantities that the record must have, and their words;  where : prefix of messages about arrays from a file
 
     Raises
     ------
@@ -198,16 +198,16 @@ def signals_of(
             heading = read_heading(Path(data))
         where, notes = f"line {heading.line}: ", "".join(f"; {note}" for note in heading.notes)
 
-    def recognised(headers: list[str]) -> dict[str, tuple[int, float]]:
+    def columns_in(headers: list[str]) -> dict[str, tuple[int, float]]:
         try:
-            return columns_of(headers, columns, where, needed)
+            return columns_of(headers, columns, where, required)
         except ValueError as why:
             raise ValueError(f"{why}{notes}") from None
 
-    table, source = table_of(data, str(path) or "signals", "sample", recognised)
+    table, source = table_of(data, str(path) or "signals", "sample", columns_in)
     if len(table.values) < _LEAST:
         raise SceneError.at(source, None, f"{len(table.values)} samples; at least {_LEAST} are needed")
-    quantities = {name: table.values[:, k] * factor for name, (k, factor) in recognised(table.header).items()}
+    quantities = {name: table.values[:, k] * factor for name, (k, factor) in columns_in(table.header).items()}
     try:
         for name, values in quantities.items():
             for row in table.lines[~(np.abs(values) < NONE)][:1]:

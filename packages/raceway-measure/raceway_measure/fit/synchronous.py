@@ -73,7 +73,7 @@ def synchronous(rotation: Rotation) -> Synchronous:
     forward, backward, speeds, residual = _blocks(rotation)
     if max(np.abs(forward).max(), np.abs(backward).max()) <= _ROUNDING * np.abs(rotation.recording.plane).max():
         raise RacewayError("the sensor shows no synchronous motion: y and z are nearly constant. Check its connection")
-    aligned = rotation
+    whole_turns = rotation
     if not rotation.marked:
         # Angles without a pulse, shifted so that the blocks' components (m,) have no phase: an integrated speed wanders.
         edges = np.round(np.linspace(0, rotation.turns, len(forward) + 1))
@@ -84,8 +84,8 @@ def synchronous(rotation: Rotation) -> Synchronous:
             slope = (phase[low + 1] - phase[low]) / (middles[low + 1] - middles[low])
             shift[end] = phase[low] + slope * (rotation.angle[end] - middles[low])
         angle = rotation.angle + shift - shift[0]
-        aligned = attrs.evolve(rotation, angle=angle, turns=max(int((angle[-1] + 1e-6) / (2.0 * pi)), 1))
-        forward, backward, speeds, residual = _blocks(aligned)
+        whole_turns = attrs.evolve(rotation, angle=angle, turns=max(int((angle[-1] + 1e-6) / (2.0 * pi)), 1))
+        forward, backward, speeds, residual = _blocks(whole_turns)
     # Component at the mean speed and its standard error.
     relative = speeds / speeds.mean() - 1.0
     span = float(np.ptp(relative))
@@ -97,7 +97,7 @@ def synchronous(rotation: Rotation) -> Synchronous:
     variance = float(np.vdot(residuals, residuals).real) / freedom * np.linalg.inv(basis.T @ basis)[0, 0]
     value, error = complex(solution[0]), float(np.sqrt(variance))
     if len(forward) > 1:  # white noise within the blocks; the spread of a few blocks alone may be small by chance
-        error = max(error, residual / np.sqrt(len(aligned.angle)))
+        error = max(error, residual / np.sqrt(len(whole_turns.angle)))
     return Synchronous(
         forward=value,
         error=error,
@@ -105,7 +105,7 @@ def synchronous(rotation: Rotation) -> Synchronous:
         speed=float(np.mean(speeds)),
         lowest=float(speeds.min()),
         highest=float(speeds.max()),
-        fourier=_fourier(aligned),
+        fourier=_fourier(whole_turns),
         residual=residual / abs(value) if value else np.inf,
         angle_error=rotation.angle_error,
         turns=rotation.turns,

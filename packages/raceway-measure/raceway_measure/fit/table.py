@@ -17,7 +17,7 @@ from raceway.extend import (
     number_in, quantity_of, read_in, resolved, solve_equilibrium, stated_columns, with_number,
 )  # fmt: skip
 from raceway_measure.fit.column_headers import IGNORE
-from raceway_measure.fit.estimate import COVERAGE, Estimate, Free, estimate, free_keys, uncertain, with_free
+from raceway_measure.fit.estimate import COVERAGE, Free, estimate, free_keys, uncertain, with_free
 from raceway_measure.fit.fitted import Fitted, Series, refuse_few
 
 #: Index of displacements across the axis in the coordinates at rest.
@@ -89,7 +89,7 @@ def measurements_in(
         The fault, with its column or row.
     """
     try:
-        kinds = _columns(table.header, scene, columns or {})
+        kinds = _column_kinds(table.header, scene, columns or {})
         if not len(table.values):
             raise ValueError("has no measurements: rows of numbers are needed below the column headers")
         parts: dict[str, dict[str, np.ndarray]] = {"key": {}, "value": {}, "error": {}, IGNORE: {}}
@@ -104,27 +104,42 @@ def measurements_in(
                 f"errors are stated of {', '.join(parts['error'])}, none of {', '.join(missing)}: state all of them or none"
             )
         standard_errors = {name: numbers / COVERAGE for name, numbers in parts["error"].items()}
-        measured = _Measurements(source, parts["key"], parts["value"], standard_errors)
-        _refuse_contradictions(measured)
-        return measured
+        measurements = _Measurements(source, parts["key"], parts["value"], standard_errors)
+        # Measurements under the same keys that their stated errors hold apart
+        if measurements.errors:
+            keys = np.column_stack([*measurements.keys.values(), np.zeros(measurements.count)])
+            _, groups = np.unique(keys, axis=0, return_inverse=True)
+            for name, numbers in measurements.values.items():
+                for group in range(int(groups.max()) + 1):
+                    rows = np.flatnonzero(groups.ravel() == group)
+                    low, high = rows[np.argmin(numbers[rows])], rows[np.argmax(numbers[rows])]
+                    distance = (numbers[high] - numbers[low]) / np.hypot(
+                        measurements.errors[name][low], measurements.errors[name][high]
+                    )
+                    if distance > _CONTRADICT:
+                        raise ValueError(
+                            f"measurements {min(low, high) + 1} and {max(low, high) + 1} contradict each other: under the same keys {name} is "
+                            f"{numbers[low]:.6g} and {numbers[high]:.6g} {_quantity_unit(name)}, {distance:.3g} of their stated standard errors apart"
+                        )
+        return measurements
     except ValueError as why:
         raise SceneError.at(source, None, str(why)) from None
 
 
-def _columns(header: Sequence[str], scene: Scene, meant: Mapping[str, str]) -> list[tuple[str, str, float]]:
+def _column_kinds(header: Sequence[str], scene: Scene, meanings: Mapping[str, str]) -> list[tuple[str, str, float]]:
     """Kind ("key", "value", "error" or "ignore"), name and factor of each column."""
-    if unknown := next((text for text in meant if text not in header), None):
+    if unknown := next((text for text in meanings if text not in header), None):
         raise ValueError(f"no column '{unknown}' for --map; there are {', '.join(map(repr, header))}")
     keys = {key.path: key for key in continuous_keys(scene)}
-    measured = [*DIFFERENTIABLE, *_ACROSS, *stated_columns(scene, default_registry())]
-    columns = [_column(meant.get(text, text), text, keys, measured) for text in header]
+    quantities = [*DIFFERENTIABLE, *_ACROSS, *stated_columns(scene, default_registry())]
+    columns = [_column(meanings.get(text, text), text, keys, quantities) for text in header]
     names = [(kind, name) for kind, name, _ in columns if kind != IGNORE]
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise ValueError(f"'{twice[1]}' stands there twice: leave one of its columns out with --map \"HEADER={IGNORE}\"")
     values = [name for kind, name in names if kind == "value"]
     if not values:
         raise ValueError(
-            f"no measured quantity among {', '.join(map(repr, header))}: name one of {', '.join(measured)}, such as K [N/µm]"
+            f"no measured quantity among {', '.join(map(repr, header))}: name one of {', '.join(quantities)}, such as K [N/µm]"
         )
     if "kyy_tilts_follow" in values and scene.supports.tilt == "locked":
         raise ValueError(
@@ -135,56 +150,38 @@ def _columns(header: Sequence[str], scene: Scene, meant: Mapping[str, str]) -> l
     return columns
 
 
-def _unit(name: str) -> str:
+def _quantity_unit(name: str) -> str:
     """SI unit of a quantity that may be measured: those of sensitivities and of plug-ins, and displacements across the axis at rest."""
     return X.unit if name in _ACROSS else quantity_of(name).unit
 
 
-def _column(text: str, header: str, keys: Mapping[str, Key], measured: Sequence[str]) -> tuple[str, str, float]:
+def _column(text: str, header: str, keys: Mapping[str, Key], quantities: Sequence[str]) -> tuple[str, str, float]:
     if text.strip() == IGNORE:
         return IGNORE, header, 0.0
     match = _HEADER.match(text)
     name, unit = (match["name"], match["unit"]) if match else (text, None)
     quantity = "_".join(name.removesuffix(" error").split())
-    if quantity in measured:
+    if quantity in quantities:
         if not unit:
-            raise ValueError(f"'{header}' has no unit: write {name} [{read_in(1.0, _unit(quantity))[1]}]")
-        return "error" if name.endswith(" error") else "value", quantity, _factor(header, _unit(quantity), unit)
+            raise ValueError(f"'{header}' has no unit: write {name} [{read_in(1.0, _quantity_unit(quantity))[1]}]")
+        return "error" if name.endswith(" error") else "value", quantity, _factor(header, _quantity_unit(quantity), unit)
     # A key by its path, or by its last word where one key of the scene ends so.
     paths = [name] if name in keys else [path for path in keys if path.rpartition(".")[2] == name]
     if len(paths) != 1:
         raise ValueError(
-            f"unknown column '{header}'{nearest(name, [*measured, *keys])}. Known are {', '.join(measured)}, each with a unit, '... error', "
+            f"unknown column '{header}'{nearest(name, [*quantities, *keys])}. Known are {', '.join(quantities)}, each with a unit, '... error', "
             f'keys of the scene; --map "{header}=NAME" names it, or {IGNORE}'
         )
     return "key", paths[0], _factor(header, keys[paths[0]].unit, unit) if unit else 1.0
 
 
-def _factor(header: str, unit: str, written: str) -> float:
-    if written.strip() == unit or not unit and written.strip() in ("", "1", "-"):
+def _factor(header: str, unit: str, unit_text: str) -> float:
+    if unit_text.strip() == unit or not unit and unit_text.strip() in ("", "1", "-"):
         return 1.0
     try:
-        return number_in(unit, f"1 {written}")
+        return number_in(unit, f"1 {unit_text}")
     except ValueError as why:
         raise ValueError(f"'{header}': {why}") from None
-
-
-def _refuse_contradictions(measured: _Measurements) -> None:
-    """Two measurements under the same keys whose stated errors do not explain their difference."""
-    if not measured.errors:
-        return
-    keys = np.column_stack([*measured.keys.values(), np.zeros(measured.count)])
-    _, groups = np.unique(keys, axis=0, return_inverse=True)
-    for name, numbers in measured.values.items():
-        for group in range(int(groups.max()) + 1):
-            rows = np.flatnonzero(groups.ravel() == group)
-            low, high = rows[np.argmin(numbers[rows])], rows[np.argmax(numbers[rows])]
-            distance = (numbers[high] - numbers[low]) / np.hypot(measured.errors[name][low], measured.errors[name][high])
-            if distance > _CONTRADICT:
-                raise ValueError(
-                    f"measurements {min(low, high) + 1} and {max(low, high) + 1} contradict each other: under the same keys {name} is "
-                    f"{numbers[low]:.6g} and {numbers[high]:.6g} {_unit(name)}, {distance:.3g} of their stated standard errors apart"
-                )
 
 
 @attrs.define(eq=False)
@@ -226,7 +223,7 @@ class TableResiduals:
             raise RacewayError(f"measurement {row + 1}: {answer['reason'][row]}")
         if C.symbol in self.measured.values and not resolved(answer["z_real"], answer["z_imag"]).all():
             raise SceneError.at(C.symbol, None, "is not a number of this scene: its motion has too little of it")
-        return {name: _measured(answer, name) for name in self.measured.values}
+        return {name: _quantity_values(answer, name) for name in self.measured.values}
 
     def _function(self, more: Iterable[str] = ()) -> Function:
         """The scene as a function of the table's keys, the free ones, and more."""
@@ -262,7 +259,7 @@ class TableResiduals:
         """Derivatives (k, n) of the weighted residuals by keys, times sizes (k, rows)."""
         slopes, weights = self._function(paths).slopes(self._columns(paths), paths), self.measured.weights
         by_keys = [{output: by_key[path] for output, by_key in slopes.items()} for path in paths]
-        out = [sizes * np.array([_measured(slope, name) for slope in by_keys]) / weights[name] for name in weights]
+        out = [sizes * np.array([_quantity_values(slope, name) for slope in by_keys]) / weights[name] for name in weights]
         for k, path in enumerate(paths):
             if not all(np.isfinite(part[k]).all() for part in out):
                 raise SceneError.at(path, None, "has no derivative: near a measurement the scene has no answer")
@@ -278,47 +275,48 @@ class TableResiduals:
         return [f"{name} is taken as {words[name]}" for name in names if name in self.measured.values]
 
 
-def _measured(columns: Mapping[str, np.ndarray], name: str) -> np.ndarray:
+def _quantity_values(columns: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """(n,) of a quantity that may be measured, among outputs of a function."""
     return columns["displacement"][:, _ACROSS[name]] if name in _ACROSS else columns[quantity_of(name).name]
 
 
-def fit_table(measured: _Measurements, scene: Scene, names: list[str]) -> Fitted:
+def fit_table(measurements: _Measurements, scene: Scene, names: list[str]) -> Fitted:
     """Free keys of a scene from a table."""
     free = free_keys(scene, names)
-    refuse_few(measured.count * len(measured.values), len(free), measured.source)
-    if both := next((key.name for key in free if key.name in measured.keys), None):
+    refuse_few(measurements.count * len(measurements.values), len(free), measurements.source)
+    if both := next((key.name for key in free if key.name in measurements.keys), None):
         raise SceneError.at(
             "--free", both, "is a column of the data, too: a key is either free or known in each measurement"
         )
-    moving = [name for name in measured.values if name in _MOTION]
+    moving = [name for name in measurements.values if name in _MOTION]
     if moving and scene.excitation is None:
         raise SceneError.at("excitation", None, f"is missing: {', '.join(moving)} are those of a motion under an excitation")
-    problem = TableResiduals(measured, free, scene)
-    answer = estimate(problem, free, measured.stated)
-    fitted = problem.answers(answer.values)
+    problem = TableResiduals(measurements, free, scene)
+    answer = estimate(problem, free, measurements.stated)
+    answers = problem.answers(answer.values)
     causes, left_out = problem.uncertain()
     notes = [*problem.notes(), *left_out]
-    if "conformit" not in " ".join([*causes, *names, *left_out, *measured.keys]):
+    if "conformit" not in " ".join([*causes, *names, *left_out, *measurements.keys]):
         notes.append("groove conformities are taken as exact: state their uncertainty in [tolerances]")
     for cause, columns in causes.items():
         answer = answer.with_shifts(cause, columns)
-    series = _series(measured, scene, answer, fitted, causes)
-    return Fitted(scene.title, measured.source, "table", measured.stated, answer, series, (), tuple(notes))
-
-
-def _series(
-    measured: _Measurements, scene: Scene, answer: Estimate, fitted: dict[str, np.ndarray], causes: dict[str, np.ndarray]
-) -> tuple[Series, ...]:
-    key = next((path for path, numbers in measured.keys.items() if np.ptp(numbers) > 0.0), None)
-    x = measured.keys[key] if key else np.arange(1.0, measured.count + 1.0)
+    key = next((path for path, numbers in measurements.keys.items() if np.ptp(numbers) > 0.0), None)
+    x = measurements.keys[key] if key else np.arange(1.0, measurements.count + 1.0)
     unit = key_of(scene, key).unit if key else ""
-    band = answer.half_widths(answer.jacobian, causes).reshape(-1, measured.count)
-    noise = answer.widened if measured.stated else (answer.scatter or 0.0)
-    return tuple(
+    band = answer.half_widths(answer.jacobian, causes).reshape(-1, measurements.count)
+    noise = answer.widened if measurements.stated else (answer.scatter or 0.0)
+    series = tuple(
         Series(
-            name, _unit(name), key or "measurement", unit, x, numbers, fitted[name],
-            noise * measured.weights[name], band[k] * measured.weights[name],
+            name,
+            _quantity_unit(name),
+            key or "measurement",
+            unit,
+            x,
+            numbers,
+            answers[name],
+            noise * measurements.weights[name],
+            band[k] * measurements.weights[name],
         )
-        for k, (name, numbers) in enumerate(measured.values.items())
-    )  # fmt: skip
+        for k, (name, numbers) in enumerate(measurements.values.items())
+    )
+    return Fitted(scene.title, measurements.source, "table", measurements.stated, answer, series, (), tuple(notes))

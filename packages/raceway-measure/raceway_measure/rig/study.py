@@ -62,7 +62,7 @@ class _Point:
         return f"{self.state.speed * 30.0 / pi:.0f}rpm-{self.axial:.0f}N"
 
     def to_dict(self) -> Tables:
-        state, true, identified = self.state, self.state.stiffness, self.identified.content()
+        state, true, identification = self.state, self.state.stiffness, self.identified.content()
         return {
             "speed_rpm": state.speed * 30.0 / pi,
             "axial_n": self.axial,
@@ -84,9 +84,9 @@ class _Point:
                 for row in self.readings
             ],
             "identified": {
-                **identified,
+                **identification,
                 "error": self.identified.state.stiffness / true - 1.0,
-                "relative_uncertainty": K_ERROR.of(identified) / true,
+                "relative_uncertainty": K_ERROR.of(identification) / true,
             },
             "split": [attrs.asdict(cause) for cause in self.causes],
         }
@@ -96,8 +96,6 @@ class _Point:
 class _RigStudy(Answer):
     """All points, with the rig and its critical speeds [r/min] by axial load.
 
-    Attributes
-    ----------
     failed : points without a motion, and why;  fault : why points could not be stored
     signals : whether ``save`` writes the records
     """
@@ -155,10 +153,7 @@ class _RigStudy(Answer):
     def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
         """Write rig.json, the page with its figures where ``pictures`` asks for them, and the records as CSV files.
 
-        Raises
-        ------
-        RacewayError
-            A folder that cannot be written, or matplotlib is missing.
+        RacewayError: a folder that cannot be written, or matplotlib is missing.
         """
 
         folder, files = Path(folder), super().save(folder)
@@ -216,7 +211,7 @@ def _point_name(row: ReadTables) -> str:
 
 
 def _point_row(row: ReadTables) -> Tables:
-    true, identified = row["true"], row["identified"]["identification"]
+    true, identification = row["true"], row["identified"]["identification"]
     return {
         "point": _point_name(row),
         "force N": f"{true['force_n']:.4g}",
@@ -224,8 +219,8 @@ def _point_row(row: ReadTables) -> Tables:
         "bearing µm": f"{1e6 * true['deflection_m']:.4g}",
         "sensor µm": f"{1e6 * true['sensor_m']:.4g}",
         "true K N/µm": f"{1e-6 * true[K.name]:.3f}",
-        "identified": f"{1e-6 * identified[K.name]:.3f}",
-        "±": f"{1e-6 * identified[K_ERROR.name]:.3f}",
+        "identified": f"{1e-6 * identification[K.name]:.3f}",
+        "±": f"{1e-6 * identification[K_ERROR.name]:.3f}",
         "off %": f"{100 * row['identified']['error']:.3f}",
     }
 
@@ -270,51 +265,51 @@ def rig(
         for k, point in grid
     ]
     if plan:
-        count, stored = len(items), stored_rows(kept, [item.key for item in items])
-        seconds, _ = run_times(_RUNS * (count - stored), lambda _: scene.to_dict(), registry, planned=1)
+        count, stored_count = len(items), stored_rows(kept, [item.key for item in items])
+        seconds, _ = run_times(_RUNS * (count - stored_count), lambda _: scene.to_dict(), registry, planned=1)
         seconds, why = seconds + _SIGNALS_S * count, f"about {_RUNS} of each point"
-        return Workload(scene.title, count, seconds, runs=count - stored, stored=stored, why_runs=why)
+        return Workload(scene.title, count, seconds, runs=count - stored_count, stored=stored_count, why_runs=why)
     bearings = {axial: bearing(scene, axial, registry) for axial in inputs.axial_loads}
-    supports = {"rigid supports": None, **{f"bearings under {axial:g} N": tested for axial, tested in bearings.items()}}
-    critical = {name: critical_speed(inputs, tested) * 30.0 / pi for name, tested in supports.items()}
+    supports = {"rigid supports": None, **{f"bearings under {axial:g} N": specimen for axial, specimen in bearings.items()}}
+    critical = {name: critical_speed(inputs, specimen) * 30.0 / pi for name, specimen in supports.items()}
     points = dict[int, _Point]()
 
-    def compute(numbered: tuple[int, tuple[float, float]], _registry: Registry) -> Tables:
+    def compute(item: tuple[int, tuple[float, float]], _registry: Registry) -> Tables:
         """The bearing's answers: nearly all of the time; signals, and what is read from them, follow again from those."""
-        k, (axial, rpm) = numbered
-        tested = bearings[axial].anew()
+        k, (axial, rpm) = item
+        specimen = bearings[axial].anew()
         try:
-            points[k] = _point(inputs, tested, rpm, k)
+            points[k] = _point(inputs, specimen, rpm, k)
         except (ConvergenceError, BeyondPlanError) as why:
             return {"answers": [], "reason": str(why)}
-        return {"answers": tested.answers, "reason": ""}
+        return {"answers": specimen.answers, "reason": ""}
 
     with written(kept) as store:
         rows, _ = work_through(compute, items, store, local(registry, 0), registry, on_progress=progress)
     if all(row["reason"] for row in rows):
         raise ConvergenceError(rows[-1]["reason"])
-    failed = list[Tables]()
+    failures = list[Tables]()
     for (k, (axial, rpm)), row in zip((item.task for item in items), rows, strict=True):
         if row["reason"]:
-            failed.append({"speed_rpm": rpm, "axial_n": axial, "reason": row["reason"]})
+            failures.append({"speed_rpm": rpm, "axial_n": axial, "reason": row["reason"]})
         elif k not in points:
             points[k] = _point(inputs, bearings[axial].anew(row["answers"]), rpm, k)
-    solved = [points[k] for k in sorted(points)]
-    return _RigStudy(scene.title, scene, inputs, critical, solved, failed, store.fault, signals)
+    ordering = [points[k] for k in sorted(points)]
+    return _RigStudy(scene.title, scene, inputs, critical, ordering, failures, store.fault, signals)
 
 
-def _point(rig: Rig, tested: Bearing, rpm: float, number: int) -> _Point:
+def _point(rig: Rig, specimen: Bearing, rpm: float, number: int) -> _Point:
     """One speed: the true motion, its signals with noise of their ``number``, and what is read from them."""
     free, seed = rotor(rig, rpm * pi / 30.0), rig.signals.seed + 2 * number
-    state = balance(free, tested)
-    answer = response(rig, tested, state, rig.signals)
+    state = balance(free, specimen)
+    answer = response(rig, specimen, state, rig.signals)
     signals = record(rig, answer, rig.signals, seed)
-    slow = slow_roll_record(rig, tested, rig.signals, seed + 1, white_noise(answer, rig.signals))
-    identified = identify_recording(signals, rig, tested, slow_roll(slow))
+    slow = slow_roll_record(rig, specimen, rig.signals, seed + 1, white_noise(answer, rig.signals))
+    identification = identify_recording(signals, rig, specimen, slow_roll(slow))
     component = amplitude(rotation_of(signals)) * exp(-1j * radians(rig.unbalance_angle_deg))
-    by_article = readings(rig, tested, state.speed, component)
-    causes = split(rig, tested, state)
-    return _Point(tested.scene.load.axial, state, free.unbalance_force, signals, slow, identified, by_article, causes)
+    by_article = readings(rig, specimen, state.speed, component)
+    causes = split(rig, specimen, state)
+    return _Point(specimen.scene.load.axial, state, free.unbalance_force, signals, slow, identification, by_article, causes)
 
 
 _COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3")
@@ -331,8 +326,8 @@ def _procedures(study: _RigStudy) -> Figure:
         points = [point for point in study.points if point.axial == axial]
         speeds = [30.0 / np.pi * point.state.speed for point in points]
         panel.plot(speeds, [1e-6 * p.state.stiffness for p in points], color="#1c2733", marker="o", label="true")
-        inverted = [1e-6 * p.identified.state.stiffness for p in points]
-        panel.plot(speeds, inverted, color=_COLOURS[2], marker="x", markersize=9, linestyle="", label="beam inverted")
+        by_inversion = [1e-6 * p.identified.state.stiffness for p in points]
+        panel.plot(speeds, by_inversion, color=_COLOURS[2], marker="x", markersize=9, linestyle="", label="beam inverted")
         for k, style in ((0, "--"), (3, ":"), (5, "-.")):
             name = points[0].readings[k].correction
             values = [1e-6 * p.readings[k].stiffness for p in points]
@@ -379,8 +374,8 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
     RacewayError: matplotlib is missing, or a folder that cannot be written.
     """
     record = figures(study.points[0].identified)
-    drawn = {"procedures": _procedures(study), **record, "error-split": _causes(study)}
-    files = [save_figure(figure, folder / f"{name}.png", 110) for name, figure in drawn.items()]
+    drawings = {"procedures": _procedures(study), **record, "error-split": _causes(study)}
+    files = [save_figure(figure, folder / f"{name}.png", 110) for name, figure in drawings.items()]
     # Words, tables and figures.
     content, rig, signals = study.to_dict(), study.rig, study.rig.signals
     worst, rows = content["worst"], content["rows"]
@@ -403,7 +398,7 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
         list(map(_point_row, rows)), "The tested bearing in the rig, and K as it is identified; ±: its uncertainty at 95 %"
     )
     alternative = "K over speed for each axial load, true and by each procedure"
-    out.figures([(drawn["procedures"], alternative, "K by each procedure")])
+    out.figures([(drawings["procedures"], alternative, "K by each procedure")])
     for point in study.failed:
         out.text(f"Failed: {_failure_words(point)}", kind="note")
     out.section("The article's procedure")
@@ -417,7 +412,22 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
     ratios = zip(*(row["printed"] for row in rows), strict=True)
     lines = [[readings[0]["correction"], *(f"{reading['over_true']:.3f}" for reading in readings)] for readings in ratios]
     out.table(["correction", *names], lines, "K over the true K, by the correction for the shaft")
-    _signals(out, rows, drawn, study.points[0].name)
+    out.section("Signals")
+    out.figures([
+        (drawings["signals"], "gaps along y and z over four turns, and their drift", f"The sensor at {study.points[0].name}"),
+        (drawings["spectrum"], "amplitude over orders, one peak at 1x forward", "Spectrum over orders"),
+        (drawings["orbits"], "orbits as circles: sensor, bow, bearing", "Orbits: most of the sensor signal is the bow of the shaft"),
+    ])  # fmt: skip
+    out.section("Where the error comes from")
+    out.text("One cause at a time is switched on. Dashed: 1 % and 3 %; a dot for each speed and load.")
+    alternative = "dots of error for each cause on a logarithmic scale"
+    out.figures([(drawings["error-split"], alternative, "Error of K by its causes")], wide=True)
+    causes_of_points = zip(*(row["split"] for row in rows), strict=True)
+    lines = [
+        [f"{cause[0]['kind']}: {cause[0]['what']}", *(f"{100 * row['error']:.3g}" for row in cause)]
+        for cause in causes_of_points
+    ]
+    out.table(["cause", *map(_point_name, rows)], lines, "Error of K [%] by one cause at a time")
     out.section("What is assumed")
     out.listing(_ASSUMED)
     return [out.write(folder / "rig.html"), *files]
@@ -430,23 +440,3 @@ _ASSUMED = [
     "agree. Motion at other orders than 1x is left out of the signals.",
     "The inversion takes the bearing's tilt under the identified force from the scene; its deflection is the signal's.",
 ]
-
-
-def _signals(out: Page, rows: list[Tables], drawn: dict[str, Figure], point: str) -> None:
-    """Signals, spectrum and orbits of a point; the error by its causes."""
-    out.section("Signals")
-    out.figures([
-        (drawn["signals"], "gaps along y and z over four turns, and their drift", f"The sensor at {point}"),
-        (drawn["spectrum"], "amplitude over orders, one peak at 1x forward", "Spectrum over orders"),
-        (drawn["orbits"], "orbits as circles: sensor, bow, bearing", "Orbits: most of the sensor signal is the bow of the shaft"),
-    ])  # fmt: skip
-    out.section("Where the error comes from")
-    out.text("One cause at a time is switched on. Dashed: 1 % and 3 %; a dot for each speed and load.")
-    alternative = "dots of error for each cause on a logarithmic scale"
-    out.figures([(drawn["error-split"], alternative, "Error of K by its causes")], wide=True)
-    causes_of_points = zip(*(row["split"] for row in rows), strict=True)
-    lines = [
-        [f"{cause[0]['kind']}: {cause[0]['what']}", *(f"{100 * row['error']:.3g}" for row in cause)]
-        for cause in causes_of_points
-    ]
-    out.table(["cause", *map(_point_name, rows)], lines, "Error of K [%] by one cause at a time")

@@ -121,13 +121,13 @@ _NUMBERS = int64[:, ::1]
 
 
 @jit(void(int64, int64, _NUMBERS, CUBE, VECTOR, CUBE), releases=True)
-def _gather_copies(first, last, numbers, turns, u, moved):  # type: ignore[no-untyped-def]
-    """Displacements of nodes ``first`` to ``last - 1`` of every copy, turned back to the first: moved (n, 3, c)."""
+def _gather_copies(first, last, numbers, turns, u, displacement):  # type: ignore[no-untyped-def]
+    """Displacements of nodes ``first`` to ``last - 1`` of every copy, turned back to the first: displacement (n, 3, c)."""
     for i in range(first, last):
         for c in range(turns.shape[0]):
             at = 3 * numbers[c, i]
             for a in range(3):
-                moved[i, a, c] = turns[c, 0, a] * u[at] + turns[c, 1, a] * u[at + 1] + turns[c, 2, a] * u[at + 2]
+                displacement[i, a, c] = turns[c, 0, a] * u[at] + turns[c, 1, a] * u[at + 1] + turns[c, 2, a] * u[at + 2]
 
 
 @jit(void(int64, int64, int64[::1], _NUMBERS, CUBE, CUBE, VECTOR), releases=True)
@@ -196,10 +196,10 @@ class CopiedStiffness:
             self.multiply(part, out)
         return out
 
-    def times(self, moved: np.ndarray) -> np.ndarray:
+    def times(self, displacement: np.ndarray) -> np.ndarray:
         """(3 n, m) forces on the first copy of displacements (3 n, m), of a body that is one copy."""
-        columns = np.ascontiguousarray(moved.reshape(len(self._moved), 3, -1))
-        return self.rows.times(self._own, columns).reshape(moved.shape)
+        columns = np.ascontiguousarray(displacement.reshape(len(self._moved), 3, -1))
+        return self.rows.times(self._own, columns).reshape(displacement.shape)
 
 
 def _bed_blocks(body: Body) -> tuple[np.ndarray, np.ndarray]:
@@ -265,7 +265,7 @@ class BodyForces:
         ranges = [(int(n), body, r) for body in sorted(alone) for r, n in enumerate(operators[body].range_sizes)]
         #: Body and range, the largest first: what comes last shall not keep one thread busy alone.
         self._queue = [(body, r) for _, body, r in sorted(ranges, key=lambda job: -job[0])]
-        self._products = [(copied, part) for copied in self._copied.values() for part in range(copied.parts)]
+        self._products = [(copies, part) for copies in self._copied.values() for part in range(copies.parts)]
         self._parts = [
             (body, first, min(first + _NODES, len(operator.points)), body in alone)
             for body, operator in enumerate(operators)
@@ -285,8 +285,8 @@ class BodyForces:
                 body, r = self._queue[number - ahead]
                 jobs[body](r)
             else:
-                copied, part = products[number - ahead - len(self._queue)]
-                copied.gather(part, u)
+                copies, part = products[number - ahead - len(self._queue)]
+                copies.gather(part, u)
 
         pool.do(ahead + len(self._queue) + len(products), work)
         pool.do(len(products), lambda number: products[number][0].multiply(products[number][1], self._force))
@@ -307,16 +307,16 @@ class BodyForces:
 
     def of_body(self, body: int, u: np.ndarray) -> np.ndarray:
         """(3 n,) forces of one body at u (3 nodes,)."""
-        copied = self._copied.get(body)
-        if copied is None:
+        copies = self._copied.get(body)
+        if copies is None:
             return self._operators[body].internal_force(self._of(u, body)).reshape(-1)
-        return self._of(copied.apply(u), body)
+        return self._of(copies.apply(u), body)
 
-    def of_mesh(self, body: int, moved: np.ndarray) -> np.ndarray:
+    def of_mesh(self, body: int, displacement: np.ndarray) -> np.ndarray:
         """(3 n, m) forces of one body at displacements (3 n, m) of its own."""
         if body in self._copied:
-            return self._copied[body].times(moved)
-        force = [self._operators[body].internal_force(column).reshape(-1) for column in moved.T]
+            return self._copied[body].times(displacement)
+        force = [self._operators[body].internal_force(column).reshape(-1) for column in displacement.T]
         return np.stack(force, axis=1)
 
     def hourglass_energy(self, u: np.ndarray, pool: ThreadPool) -> float:
@@ -368,8 +368,8 @@ class Assembly:
         frames = [(index, body.frame) for index, body in enumerate(bodies) if body.frame is not None]
         #: Number of the frames' unknowns.
         self.frame_size = sum(len(frame.motions) for _, frame in frames)
-        held = np.concatenate([body.held for body in bodies]).reshape(-1)
-        tied = np.zeros(3 * self.nodes, dtype=bool)
+        fixed_dofs = np.concatenate([body.held for body in bodies]).reshape(-1)
+        frame_dofs = np.zeros(3 * self.nodes, dtype=bool)
         self.frame_mass = np.zeros((self.frame_size, self.frame_size))
         self.frame_damping, self.frame_stiffness = self.frame_mass.copy(), self.frame_mass.copy()
         self.frame_free = np.ones(self.frame_size, dtype=bool)
@@ -381,12 +381,12 @@ class Assembly:
             begin = part.stop
             self.carried[self.part(index), part] = frame.basis(bodies[index].points)
             if bodies[index].foundation is None:
-                tied[of_nodes(frame.nodes + self.starts[index])] = True
+                frame_dofs[of_nodes(frame.nodes + self.starts[index])] = True
             self.frame_mass[part, part], self.frame_damping[part, part] = frame.mass, frame.damping
             self.frame_stiffness[part, part], self.frame_free[part] = frame.stiffness, frame.free
-        self.carried[held] = 0.0
-        self.tied = np.flatnonzero(tied & ~held)
-        self.free = np.flatnonzero(~held & ~tied)
+        self.carried[fixed_dofs] = 0.0
+        self.tied = np.flatnonzero(frame_dofs & ~fixed_dofs)
+        self.free = np.flatnonzero(~fixed_dofs & ~frame_dofs)
         self.size = self.frame_size + len(self.free)
         #: (size,) which unknowns are to be solved for.
         self.unknown = np.concatenate([self.frame_free, np.ones(len(self.free), dtype=bool)])
@@ -444,10 +444,10 @@ class Assembly:
         beside : work that is done at the same time
         """
         means = self._means
-        moved = np.empty(0 if means is None else means.count)
+        mean_displacement = np.empty(0 if means is None else means.count)
         first = [beside] if beside else []
-        self.body_forces.compute(u, self.threads, first + ([] if means is None else means.jobs(u, moved)))
-        amounts = moved if self.cage is None else self.cage.stiffness * moved
+        self.body_forces.compute(u, self.threads, first + ([] if means is None else means.jobs(u, mean_displacement)))
+        amounts = mean_displacement if self.cage is None else self.cage.stiffness * mean_displacement
         out = np.empty(self.size)
         values = out[self.frame_size :]
 
@@ -521,9 +521,11 @@ class Assembly:
         """
         sentences = []
         touching = {i for pair in contacts for i in pair}
-        caged = set() if self.cage is None else {int(i) for i in np.unique(self._owners(self.cage.rows))}
+        caged_bodies = set[int]()
+        if self.cage is not None:
+            caged_bodies |= set((np.searchsorted(3 * self.starts, self.cage.rows.tocoo().col, side="right") - 1).tolist())
         for index, body in enumerate(self.bodies):
-            if body.held.any() or body.foundation is not None or body.frame is not None or index in caged:
+            if body.held.any() or body.foundation is not None or body.frame is not None or index in caged_bodies:
                 continue
             why = "it touches nothing" if index not in touching else "frictionless contact does not constrain them"
             free = ", ".join(MOTIONS if index not in touching else MOTIONS[3:])
@@ -531,9 +533,6 @@ class Assembly:
                 f"{body.name}: {free} ({why}); constrain it by the cage, fixed nodes, or an elastic foundation under one of its surfaces"
             )
         return sentences
-
-    def _owners(self, rows: csr_matrix) -> np.ndarray:
-        return np.asarray(np.searchsorted(3 * self.starts, rows.tocoo().col, side="right") - 1)
 
     def _seat(self, foundation: csr_matrix, ride: np.ndarray) -> tuple[csr_matrix, np.ndarray, Selection]:
         """A bed at its own entries alone: matrix (k, k), the frame's motion (k, frame_size), and the entries."""

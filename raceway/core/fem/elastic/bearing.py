@@ -55,15 +55,15 @@ class ElasticSystem:
         contact: Contact | None,
         modulus: float,
         load: np.ndarray,
-        condensed: CondensedSolver | None = None,
+        condensed_solver: CondensedSolver | None = None,
         look: Callable[[np.ndarray, np.ndarray], Seen] | None = None,
     ) -> None:
         self.assembly, self.contact, self.load = assembly, contact, np.array(load, dtype=float)
         self.excitation: Callable[[float], np.ndarray] | None = None
         #: Called with the relative residual of every iteration of ``solve_equilibrium``.
         self.on_residual: Callable[[float], None] | None = None
-        self.condensed, self._look = condensed, look
-        self.solver: LinearSolver | CondensedSolver = condensed or LinearSolver(assembly, contact, modulus)
+        self.condensed, self._look = condensed_solver, look
+        self.solver: LinearSolver | CondensedSolver = condensed_solver or LinearSolver(assembly, contact, modulus)
         self.size: int = assembly.size
         self.ball_count = 0 if contact is None else (len(contact.counts) + 1) // 2
         m = assembly.frame_size
@@ -75,7 +75,16 @@ class ElasticSystem:
         #: Velocities (size,) and step with which contact forces were evaluated last.
         self._at: tuple[np.ndarray | None, float] = (None, 0.0)
         self._element_step: float | None = None
-        self._refuse_overlap()
+        # Surfaces that overlap by more than an element before loading are in the wrong place
+        if self.contact is not None:
+            self.contact.evaluate(0.0, self._u)
+            for index in range(len(self.contact.counts)):
+                name, depth, size = self.contact.overlap(index)
+                if depth > size:
+                    raise MeshError(
+                        f"{name}: the surfaces overlap by {1e6 * depth:.3g} um before loading, more than an "
+                        f"element there or a hundredth of a ball ({1e6 * size:.3g} um): check the places of the bodies, radial_clearance, preload and radial_expansion"
+                    )
 
     # Forces
 
@@ -282,8 +291,8 @@ class ElasticSystem:
         """Look up where the points lie on the second surfaces at a state; whether that changed anything."""
         if self.contact is None:
             return False
-        moved = self.contact.move @ self.assembly.nodal(y)
-        return self.contact.update(self.contact.place + moved.reshape(-1, 3))
+        surface = self.contact.move @ self.assembly.nodal(y)
+        return self.contact.update(self.contact.place + surface.reshape(-1, 3))
 
     def energies(self, y: np.ndarray, v: np.ndarray) -> dict[str, float]:
         """Energies [J] at the last ``internal``."""
@@ -302,19 +311,6 @@ class ElasticSystem:
         assert self.contact is not None
         first, second = np.searchsorted(self.assembly.starts, self.contact.nodes_of(pair), side="right") - 1
         return int(first), int(second)
-
-    def _refuse_overlap(self) -> None:
-        """Surfaces that overlap by more than an element before anything has moved were put in the wrong place."""
-        if self.contact is None:
-            return
-        self.contact.evaluate(0.0, self._u)
-        for index in range(len(self.contact.counts)):
-            name, depth, size = self.contact.overlap(index)
-            if depth > size:
-                raise MeshError(
-                    f"{name}: the surfaces overlap by {1e6 * depth:.3g} um before loading, more than an "
-                    f"element there or a hundredth of a ball ({1e6 * size:.3g} um): check the places of the bodies, radial_clearance, preload and radial_expansion"
-                )
 
 
 #: Stiffness of the cage's springs over that of a Hertz contact: it only has to be there.
@@ -385,8 +381,8 @@ class ElasticBearing:
         bodies = [self._ring(meshes["inner_ring"], True), self._ring(meshes["outer_ring"], False)]
         for name in names:
             mesh = meshes[name]
-            held = np.zeros((len(mesh.points), 3), dtype=bool)
-            bodies.append(Body(name, HexOperator(mesh.points, mesh.cells, *setup.balls, *self._formulation), held))
+            fixed_dofs = np.zeros((len(mesh.points), 3), dtype=bool)
+            bodies.append(Body(name, HexOperator(mesh.points, mesh.cells, *setup.balls, *self._formulation), fixed_dofs))
         assembly = Assembly(bodies)
         rings = [Group(_ring_parts(assembly, index, setup.azimuth), [index]) for index in (0, 1)]
         parts = [(body.points, np.asarray(body.operator.cells)) for body in assembly.bodies[2:]]
@@ -403,11 +399,22 @@ class ElasticBearing:
         self._centrifugal = assembly.reduced(outward)
         load = self._centrifugal.copy()
         load[:5] += setup.load
-        condensed = None
+        condensed_solver = None
         if isinstance(contact, NodalContact):
-            _refuse_held_grooves(assembly, touchable(contact, assembly.nodes), (setup.seat_inner, setup.seat_outer))
-            condensed = CondensedSolver(assembly, contact)
-        self.system = ElasticSystem(assembly, contact, setup.modulus, load, condensed, self.look)
+            # Each ring needs a free node among those that contacts may touch
+            under = touchable(contact, assembly.nodes)
+            seats = (setup.seat_inner, setup.seat_outer)
+            for index, (name, seat) in enumerate(zip(("inner", "outer"), seats, strict=True)):
+                groove = under[assembly.starts[index] : assembly.starts[index + 1]]
+                if groove.any() and not (groove & free_nodes(assembly, index)).any():
+                    raise MeshError.at(
+                        f"supports.{name}_seat",
+                        seat,
+                        f"it holds the set 'seat' of the {name} ring, and that has every node of the groove below the contacts: none is free. "
+                        f'Take the groove out of the set in mesh.{name}_ring, or name the right one: [mesh.sets.{name}_ring] seat = "..."',
+                    )
+            condensed_solver = CondensedSolver(assembly, contact)
+        self.system = ElasticSystem(assembly, contact, setup.modulus, load, condensed_solver, self.look)
 
     @property
     def ball_count(self) -> int:
@@ -426,9 +433,9 @@ class ElasticBearing:
         a, centre = self.system.assembly, self.setup.offsets[1]
         u = a.carried @ q
         for k in range(self.ball_count):
-            moved = ball[k, :2] + centre - [0.0, 0.5 * self.setup.geometry.pitch_diameter]
+            shift = ball[k, :2] + centre - [0.0, 0.5 * self.setup.geometry.pitch_diameter]
             u[a.part(k + 2)] = np.tile(
-                moved[0] * np.array([1.0, 0.0, 0.0]) + moved[1] * self.setup.radial(k), len(self._mass[k])
+                shift[0] * np.array([1.0, 0.0, 0.0]) + shift[1] * self.setup.radial(k), len(self._mass[k])
             )
         return np.concatenate([q, u[a.free]])
 
@@ -473,17 +480,17 @@ class ElasticBearing:
     def _ring(self, mesh: HexMesh, inner: bool) -> Body:
         s = self.setup
         operator = HexOperator(mesh.points, mesh.cells, *s.rings, *self._formulation)
-        held = np.zeros((len(mesh.points), 3), dtype=bool)
+        fixed_dofs = np.zeros((len(mesh.points), 3), dtype=bool)
         seat = s.seat_inner if inner else s.seat_outer
         foundation = None if isinstance(seat, str) else (mesh.facet_nodes("seat"), float(seat))
         if not inner:
             if foundation is None:
-                held[mesh.nodes("seat")] = True
-            return Body("outer_ring", operator, held, None, foundation)
+                fixed_dofs[mesh.nodes("seat")] = True
+            return Body("outer_ring", operator, fixed_dofs, None, foundation)
         reference = np.array([s.offsets[0][0], 0.0, 0.0])
         free = np.asarray(s.free, dtype=float) > 0.0
         frame = Frame(mesh.nodes("seat"), reference, (0, 1, 2, 4, 5), s.mass, s.damping, s.stiffness, free)
-        return Body("inner_ring", operator, held, frame, foundation)
+        return Body("inner_ring", operator, fixed_dofs, frame, foundation)
 
     def _cage(self, assembly: Assembly) -> Cage:
         from scipy.sparse import coo_array
@@ -506,16 +513,3 @@ class ElasticBearing:
         shape = (4 * len(s.azimuth), 3 * assembly.nodes)
         matrix = coo_array((np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
         return Cage(matrix, np.tile(springs, len(s.azimuth)), nodal)
-
-
-def _refuse_held_grooves(assembly: Assembly, under: np.ndarray, seats: tuple[float | str, float | str]) -> None:
-    """Rings without any free node among those that contacts may touch, ``under`` (nodes,) bool, before anything is factored."""
-    for index, (name, seat) in enumerate(zip(("inner", "outer"), seats, strict=True)):
-        groove = under[assembly.starts[index] : assembly.starts[index + 1]]
-        if groove.any() and not (groove & free_nodes(assembly, index)).any():
-            raise MeshError.at(
-                f"supports.{name}_seat",
-                seat,
-                f"it holds the set 'seat' of the {name} ring, and that has every node of the groove below the contacts: none is free. "
-                f'Take the groove out of the set in mesh.{name}_ring, or name the right one: [mesh.sets.{name}_ring] seat = "..."',
-            )

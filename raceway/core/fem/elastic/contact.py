@@ -40,10 +40,10 @@ class Near:
         """Of B (3 n, 3 nodes)."""
         from scipy.sparse import csr_array
 
-        met = np.zeros(move.shape[1], dtype=bool)
-        met[move.indices] = True
-        entries = np.flatnonzero(met)
-        number = np.cumsum(met) - 1
+        reach = np.zeros(move.shape[1], dtype=bool)
+        reach[move.indices] = True
+        entries = np.flatnonzero(reach)
+        number = np.cumsum(reach) - 1
         short = csr_array((move.data, number[move.indices], move.indptr), shape=(move.shape[0], len(entries)))
         return cls(entries, short)
 
@@ -217,7 +217,7 @@ class Contact(ABC):
         """(n, 3) where the places lay when B was last made [m]."""
         return self.place
 
-    def restore(self, projected: np.ndarray, memory: np.ndarray) -> None:
+    def restore(self, where: np.ndarray, memory: np.ndarray) -> None:
         """B and the law's memory as another contact had them."""
         self.memory[:] = memory
 
@@ -273,8 +273,8 @@ class Contact(ABC):
 
     def _respond(self, dt: float, u: np.ndarray, v: np.ndarray | None, share: float) -> None:
         """Forces and tangents of the places, from their displacements and velocities (3 n,) against the second bodies."""
-        moved = u.reshape(-1, 3)
-        where = self.where = self.place + moved
+        displacement = u.reshape(-1, 3)
+        where = self.where = self.place + displacement
         surface_gaps(where, self.pair, self.surfaces, self.gap, self.normal, self.bend)
         gap = self.gap
         if share > 0.0:
@@ -295,7 +295,7 @@ class Contact(ABC):
             across = self.normal[:, :, None] * self.normal[:, None, :]
             self.stiffness = -(self.area * self.d_gap)[:, None, None] * across
         if self.friction is not None:
-            traction, tangent = self.friction.evaluate(moved, self.normal, self.pressure, self.d_gap)
+            traction, tangent = self.friction.evaluate(displacement, self.normal, self.pressure, self.d_gap)
             self.force += self.area[:, None] * traction
             self.stiffness += self.area[:, None, None] * tangent
 
@@ -323,8 +323,8 @@ class Contact(ABC):
         n = len(self.gap)
         out = np.empty(n)
         stored_energy(self.law, self.params, self.memory, self._trial.copy(), self.gap, np.zeros((6, n)), out)
-        stored = 0.0 if self.friction is None else float(self.area @ self.friction.stored())
-        return float(self.area @ out) + stored
+        friction_energy = 0.0 if self.friction is None else float(self.area @ self.friction.stored())
+        return float(self.area @ out) + friction_energy
 
     def friction_energy(self) -> float:
         """Work of friction up to the last commit [J]."""
@@ -404,10 +404,10 @@ class NodalContact(Contact):
     def projected(self) -> np.ndarray:
         return self._projected
 
-    def restore(self, projected: np.ndarray, memory: np.ndarray) -> None:
+    def restore(self, where: np.ndarray, memory: np.ndarray) -> None:
         self._projected[:] = np.inf
-        self.update(projected)
-        super().restore(projected, memory)
+        self.update(where)
+        super().restore(where, memory)
 
     def nodes_of(self, pair: int) -> tuple[int, int]:
         contact = self.pairs[pair]

@@ -33,7 +33,7 @@ _ACROSS, _ALONG, _COUPLING = range(3)
 
 
 @jit(void(VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, float64, VECTOR, MATRIX, MATRIX, MATRIX, VECTOR), releases=True)
-def _return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resistance, direction, factors, lost):  # type: ignore[no-untyped-def]
+def _return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resistance, direction, factors, dissipation):  # type: ignore[no-untyped-def]
     """Resistances of n points, their tangents and what they lost.
 
     pressure, d_gap : (n,) normal pressure [Pa] and its derivative by the gap [N/m3];  normal : (n, 3) unit normals
@@ -41,7 +41,7 @@ def _return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resi
     coefficient : of friction;  stick : (n,) stiffness of sticking points [N/m3]
     resistance : (n, 3) out: what the partner pulls the points back with [Pa]
     direction, factors : (n, 3) out: unit directions of slip, and the columns ``_ACROSS``, ``_ALONG``, ``_COUPLING``
-    lost : (n,) out: energy lost since the commit [J/m2], by the mean resistance over the step
+    dissipation : (n,) out: energy lost since the commit [J/m2], by the mean resistance over the step
     """
     for i in range(pressure.size):
         k = stick[i]
@@ -61,13 +61,13 @@ def _return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resi
         if size > limit:
             share = limit / size
             factors[i, 0], factors[i, 1], factors[i, 2] = k * share, 0.0, coefficient * d_gap[i]
-        dissipated = 0.0
+        work = 0.0
         for c in range(3):
             trial = resistance[i, c]
             direction[i, c] = trial / size if size > 0.0 else 0.0
             resistance[i, c] = share * trial
-            dissipated += 0.5 * (resistance[i, c] + before[i, c]) * (1.0 - share) * trial
-        lost[i] = dissipated / k
+            work += 0.5 * (resistance[i, c] + before[i, c]) * (1.0 - share) * trial
+        dissipation[i] = work / k
 
 
 @jit(void(MATRIX, MATRIX, MATRIX, boolean, CUBE), releases=True)
@@ -107,16 +107,16 @@ class CoulombFriction:
         self._place, self._lost = np.zeros((n, 3)), np.zeros(n)
 
     def evaluate(
-        self, moved: np.ndarray, normal: np.ndarray, pressure: np.ndarray, d_gap: np.ndarray
+        self, displacement: np.ndarray, normal: np.ndarray, pressure: np.ndarray, d_gap: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Traction on the points (n, 3) [Pa] and minus its derivative by ``moved`` (n, 3, 3) [N/m3].
+        """Traction on the points (n, 3) [Pa] and minus its derivative by ``displacement`` (n, 3, 3) [N/m3].
 
         Parameters
         ----------
-        moved : (n, 3) displacement of the points against the other surface [m]
+        displacement : (n, 3) displacement of the points against the other surface [m]
         normal : (n, 3);  pressure : (n,) [Pa];  d_gap : (n,) its derivative by the gap [N/m3]
         """
-        self._place = np.array(moved)
+        self._place = np.array(displacement)
         _return_map(
             pressure, d_gap, normal, self._place - self.place, self.committed, self.coefficient, self.stick,
             self._trial, self._direction, self._factors, self._lost,
@@ -134,10 +134,10 @@ class CoulombFriction:
         """(n,) energy in the sticking springs at the last place [J/m2]."""
         return np.asarray(0.5 * (self._trial**2).sum(axis=1) / self.stick)
 
-    def begin(self, moved: np.ndarray) -> None:
+    def begin(self, displacement: np.ndarray) -> None:
         """No point carries anything or has lost anything where it is now, displaced by (n, 3) [m]."""
-        self.committed, self.place = np.zeros_like(moved), np.array(moved)
-        self.dissipated = np.zeros(len(moved))
+        self.committed, self.place = np.zeros_like(displacement), np.array(displacement)
+        self.dissipated = np.zeros(len(displacement))
 
     def commit(self) -> None:
         """The last place becomes history."""

@@ -85,20 +85,20 @@ def dissect(points: np.ndarray, cells: np.ndarray, interface: np.ndarray) -> _Di
     uses[interface] = len(numbers) + 1
     domains: list[_Domain] = []
     leaves: list[Nodes] = []
-    placed = 0
+    position = 0
 
     def visit(part: Nodes) -> int:
-        nonlocal placed
+        nonlocal position
         nodes, local = np.unique(numbers[part], return_inverse=True)
         local = local.reshape(-1, 8)
         inside = np.bincount(local.ravel()) >= uses[nodes]
         border = nodes[~inside]
         if len(part) <= _LEAF:
             leaves.append(part)
-            domains.append(_Domain(nodes[inside], border, (), (placed, placed + len(part))))
-            placed += len(part)
+            domains.append(_Domain(nodes[inside], border, (), (position, position + len(part))))
+            position += len(part)
             return len(domains) - 1
-        _, first, second = min((_cut(x[part], local, len(nodes)) for x in measures), key=lambda cut: cut[0])
+        _, first, second = min((_bisect(x[part], local, len(nodes)) for x in measures), key=lambda cut: cut[0])
         children = visit(part[first]), visit(part[second])
         both = np.union1d(domains[children[0]].border, domains[children[1]].border)
         domains.append(_Domain(np.setdiff1d(both, border, assume_unique=True), border, children, None))
@@ -108,7 +108,7 @@ def dissect(points: np.ndarray, cells: np.ndarray, interface: np.ndarray) -> _Di
     return _Dissection(domains, np.concatenate(leaves))
 
 
-def _cut(along: np.ndarray, local: np.ndarray, nodes: int) -> tuple[float, Nodes, Nodes]:
+def _bisect(along: np.ndarray, local: np.ndarray, nodes: int) -> tuple[float, Nodes, Nodes]:
     """Cost of the best cut across a measure of the cells (m,), and the cells of both sides; ``local`` (m, 8) nodes from 0."""
     count = len(along)
     order = np.argsort(along, kind="stable")
@@ -120,11 +120,11 @@ def _cut(along: np.ndarray, local: np.ndarray, nodes: int) -> tuple[float, Nodes
     np.maximum.at(last, local.ravel(), ranks)
     # A node lies in the cut after k cells where first < k <= last.
     change = np.bincount(first + 1, minlength=count + 2) - np.bincount(last + 1, minlength=count + 2)
-    shared = np.cumsum(change)
+    overlap = np.cumsum(change)
     low = max(1, int(_SMALLEST * count))
     places = np.arange(low, count - low + 1)
     larger = np.maximum(places, count - places) / count
-    cost = shared[places] * (1.0 + _UNBALANCED * (2.0 * larger - 1.0))
+    cost = overlap[places] * (1.0 + _UNBALANCED * (2.0 * larger - 1.0))
     best = int(np.argmin(cost))
     return float(cost[best]), order[: places[best]], order[places[best] :]
 
@@ -181,8 +181,8 @@ class Fronts:
     kept : (k,) unknowns that were not eliminated;  schur : (k, k) what A is for them, None where it is not known any more
     """
 
-    def __init__(self, fronts: list[_Front], kept: np.ndarray, schur: np.ndarray | None = None) -> None:
-        self.fronts, self.kept, self.schur = fronts, kept, schur
+    def __init__(self, fronts: list[_Front], outer: np.ndarray, schur: np.ndarray | None = None) -> None:
+        self.fronts, self.kept, self.schur = fronts, outer, schur
 
     @classmethod
     def of_arrays(cls, arrays: Mapping[str, np.ndarray]) -> Fronts:
@@ -206,10 +206,10 @@ class Fronts:
             factors[begin + s * s : begin + s * (s + b)] = front.across.ravel(order="F")
             begin += s * (s + b)
         unknowns = [np.concatenate([front.inner, front.border]) for front in self.fronts]
-        joined = np.concatenate([np.zeros(0, dtype=np.int64), *unknowns])
+        every = np.concatenate([np.zeros(0, dtype=np.int64), *unknowns])
         return {
             "sizes": np.array(sizes, dtype=np.int64).reshape(-1, 2),
-            "unknowns": joined,
+            "unknowns": every,
             "factors": factors,
             "kept": self.kept,
         }
@@ -302,8 +302,8 @@ def _eliminate(front: np.ndarray, s: int, inner: np.ndarray, border: np.ndarray,
     if not s:
         return front
     diagonal = np.diagonal(front)[:s].copy()
-    lower, failed = dpotrf(np.asfortranarray(front[:s, :s]), lower=1, clean=0, overwrite_a=1)
-    if failed or (np.diagonal(lower) ** 2 < _ROUNDING * diagonal).any():
+    lower, info = dpotrf(np.asfortranarray(front[:s, :s]), lower=1, clean=0, overwrite_a=1)
+    if info or (np.diagonal(lower) ** 2 < _ROUNDING * diagonal).any():
         raise ConvergenceError("the stiffness of a body is singular: a part is unconstrained")
     across = dtrsm(1.0, lower, np.asfortranarray(front[s:, :s].T), lower=1, overwrite_b=1)
     complement = np.asfortranarray(front[s:, s:])

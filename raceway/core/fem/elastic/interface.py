@@ -48,7 +48,7 @@ class _Ring:
             for k in range(ride.shape[1]):
                 force = np.zeros(size)
                 force[part] = inertia * ride[:, k]
-                behind[:, k] = self._solved(force, apply)[part]
+                behind[:, k] = self._solution(force, apply)[part]
         self.follow = ride - behind
         self.carried = self.follow[of_nodes(element.nodes.ravel()) - part.start]
         #: (m, m) what the ring's free nodes add to the frame's matrix: R^T M (R - W) d / c.
@@ -65,20 +65,20 @@ class _Ring:
 
     def forward(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray, Any]:
         """Displacements (3 k,) under nodal forces (3 nodes,) with the frame held, forces (m,) on it, and what ``backward`` needs."""
-        loads, carried = self.element.forward(force)
-        return self.element.respond(loads).ravel(), self.follow.T @ force[self.part], carried
+        loads, interior = self.element.forward(force)
+        return self.element.respond(loads).ravel(), self.follow.T @ force[self.part], interior
 
-    def backward(self, carried: Any, moved: np.ndarray, frame: np.ndarray, out: np.ndarray) -> None:
+    def backward(self, interior: Any, displacement: np.ndarray, frame: np.ndarray, out: np.ndarray) -> None:
         """Displacements of all nodes, into ``out`` (3 nodes,), of those of the contacts (3 k,) and of the frame (m,)."""
-        deformed = moved - self.carried @ frame
-        self.element.backward(carried, deformed.reshape(len(self.element.nodes), -1), out)
+        deformation = displacement - self.carried @ frame
+        self.element.backward(interior, deformation.reshape(len(self.element.nodes), -1), out)
         out[self.part] += self.follow @ frame
 
-    def _solved(self, force: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    def _solution(self, force: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
         solution = np.zeros_like(force)
         for _ in range(REFINED):
-            loads, carried = self.element.forward(force - apply(solution))
-            back: Any = carried
+            loads, interior = self.element.forward(force - apply(solution))
+            back: Any = interior
             step = np.zeros_like(force)
             self.element.backward(back, self.element.respond(loads), step)
             solution += step
@@ -107,16 +107,16 @@ class _Balls:
     def __init__(self, loose: Loose, rows: np.ndarray, stiffness: np.ndarray, response: np.ndarray, inert: bool) -> None:
         self.loose, self.response = loose, response
         places = loose.unknowns
-        size, held, caged = len(places), loose.motions.shape[1], len(rows)
-        outputs = np.zeros((size, held + caged))
-        outputs[:, :held] = loose.flexibility @ loose.motions
-        outputs[:, held:] = self.response[places]
-        corner = np.zeros((held + caged, held + caged))
-        corner[:held] = loose.motions.T @ outputs
-        corner[held:, :held] = corner[:held, held:].T
-        corner[held:, held:] = rows @ self.response
+        size, rigid_count, cage_count = len(places), loose.motions.shape[1], len(rows)
+        outputs = np.zeros((size, rigid_count + cage_count))
+        outputs[:, :rigid_count] = loose.flexibility @ loose.motions
+        outputs[:, rigid_count:] = self.response[places]
+        corner = np.zeros((rigid_count + cage_count, rigid_count + cage_count))
+        corner[:rigid_count] = loose.motions.T @ outputs
+        corner[rigid_count:, :rigid_count] = corner[:rigid_count, rigid_count:].T
+        corner[rigid_count:, rigid_count:] = rows @ self.response
         self.flexibility = np.block([[loose.flexibility, outputs], [outputs.T, corner]])
-        self.springs = np.concatenate([np.full(held, -loose.hold), stiffness])
+        self.springs = np.concatenate([np.full(rigid_count, -loose.hold), stiffness])
         self.alone = self.springs if inert else np.maximum(self.springs, 0.0)
         self.size = size
 
@@ -126,26 +126,26 @@ class _Balls:
 
     def forward(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Motions (copies, 3 k + e) under nodal forces (3 nodes,) alone, and what ``backward`` needs."""
-        loads, carried = self.loose.forward(force)
+        loads, interior = self.loose.forward(force)
         out = np.empty((self.count, len(self.flexibility)))
         local = self.loose.to_first(loads)
-        moved = local @ self.flexibility[: self.size, : self.size]
-        out[:, : self.size] = self.loose.to_copies(moved)
-        held = self.loose.motions.shape[1]
-        out[:, self.size : self.size + held] = moved @ self.loose.motions
-        out[:, self.size + held :] = self.loose.part.gathered(force, float).T @ self.response
-        return out, carried
+        displacement = local @ self.flexibility[: self.size, : self.size]
+        out[:, : self.size] = self.loose.to_copies(displacement)
+        rigid_count = self.loose.motions.shape[1]
+        out[:, self.size : self.size + rigid_count] = displacement @ self.loose.motions
+        out[:, self.size + rigid_count :] = self.loose.part.gathered(force, float).T @ self.response
+        return out, interior
 
-    def backward(self, carried: np.ndarray, moved: np.ndarray, forces: np.ndarray, out: np.ndarray) -> None:
+    def backward(self, interior: np.ndarray, displacement: np.ndarray, forces: np.ndarray, out: np.ndarray) -> None:
         """Displacements of all nodes, into ``out`` (3 nodes,).
 
-        moved : (copies, 3 k) of the contacts' nodes;  forces : (copies, e) on the other motions
+        displacement : (copies, 3 k) of the contacts' nodes;  forces : (copies, e) on the other motions
         """
-        held = self.loose.motions.shape[1]
-        cage = forces[:, held:] @ self.response.T  # (copies, 3 n)
+        rigid_count = self.loose.motions.shape[1]
+        cage = forces[:, rigid_count:] @ self.response.T  # (copies, 3 n)
         places = self.loose.unknowns
-        local = self.loose.to_first(moved) + cage[:, places]
-        self.loose.part.spread(self.loose.inner(carried, local) - cage.T, out)
+        local = self.loose.to_first(displacement) + cage[:, places]
+        self.loose.part.spread(self.loose.inner(interior, local) - cage.T, out)
 
 
 #: Cells of a part from which factors take seconds, and reading them pays.
@@ -187,19 +187,19 @@ class _Substructure:
             "turns": copies.turns,
             "planes": [copies.before, copies.behind],
         }
-        return kind.of_arrays(copies, self.contact, self._stored(inputs, lambda: kind.of(self._part()).arrays()))
+        return kind.of_arrays(copies, self.contact, self._from_store(inputs, lambda: kind.of(self._part()).arrays()))
 
-    def ball(self, caged: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> tuple[Loose, np.ndarray]:
+    def ball(self, cage_rows: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> tuple[Loose, np.ndarray]:
         """A ball, held by springs on its mean motions, which the caller takes off again, and its answers (3 n, c) to its cage.
 
-        caged : (3 n, c) forces of the cage;  apply : function of displacements (3 n, m) -> forces, those springs left out
+        cage_rows : (3 n, c) forces of the cage;  apply : function of displacements (3 n, m) -> forces, those springs left out
         """
 
         def make() -> Arrays:
             loose = Loose.of(self._part(), held=True)
-            return loose.arrays() | {"response": loose.solved(caged, apply)}
+            return loose.arrays() | {"response": loose.solved(cage_rows, apply)}
 
-        arrays = self._stored({"held": True, "caged": caged}, make)
+        arrays = self._from_store({"held": True, "caged": cage_rows}, make)
         return Loose.of_arrays(self.copies, self.contact, arrays), arrays["response"]
 
     @property
@@ -213,7 +213,7 @@ class _Substructure:
             on_front = partial(self.on_progress, f"factoring {sector}{self._title}, {len(self.copies.cells)} elements")
         return Part.of(self.copies, self.operator, self.contact, self.free, self.mass, self.bed, on_front)
 
-    def _stored(self, inputs: dict[str, object], make: Callable[[], Arrays]) -> Arrays:
+    def _from_store(self, inputs: dict[str, object], make: Callable[[], Arrays]) -> Arrays:
         cells, operator, mass = len(self.copies.cells), self.operator, self.mass
         if cells < LEAST_CELLS:
             return make()
@@ -375,41 +375,41 @@ class Interface:
         -----
         Contacts move little from iteration to iteration: what was asked for before stays, up to twice of what is asked.
         """
-        covered = np.union1d(self._flexibility.nodes, nodes) if self._flexibility else nodes
-        if len(covered) > 2 * len(nodes):
-            covered = nodes
-        if self._flexibility is None or not np.array_equal(covered, self._flexibility.nodes):
-            self._flexibility = self._among(covered)
+        reach = np.union1d(self._flexibility.nodes, nodes) if self._flexibility else nodes
+        if len(reach) > 2 * len(nodes):
+            reach = nodes
+        if self._flexibility is None or not np.array_equal(reach, self._flexibility.nodes):
+            self._flexibility = self._among(reach)
         return self._flexibility
 
     def _among(self, nodes: np.ndarray) -> _RingFlexibility:
-        carried = np.zeros((3 * len(nodes), self.frame_size))
+        frame_motion = np.zeros((3 * len(nodes), self.frame_size))
         blocks, ends = [], 3 * np.searchsorted(nodes, self._first)
         for k, ring in enumerate(self.rings):
             rows = slice(int(ends[k]), int(ends[k + 1]))
             local = nodes[rows.start // 3 : rows.stop // 3] - self._first[k]
             blocks.append((rows, ring.element.among(local)))
-            carried[rows, : ring.carried.shape[1]] = ring.carried[of_nodes(local)]
-        return _RingFlexibility(nodes, blocks, carried)
+            frame_motion[rows, : ring.carried.shape[1]] = ring.carried[of_nodes(local)]
+        return _RingFlexibility(nodes, blocks, frame_motion)
 
 
 #: Facets of the rings beyond those under a ball's points: bodies move by tens of micrometres, their facets there are as large.
 _FURTHER = 1
 
 
-def interface_of(assembly: Assembly, touched: np.ndarray, mass: float, on_progress: OnProgress | None = None) -> Interface:
+def interface_of(assembly: Assembly, contacts: np.ndarray, mass: float, on_progress: OnProgress | None = None) -> Interface:
     """Superelements of c K + d M.
 
     Parameters
     ----------
     assembly : inner ring, outer ring, balls, with its groups of equal parts
-    touched : (nodes,) bool, those that contacts may touch
+    contacts : (nodes,) bool, those that contacts may touch
     mass : d / c [1/s2]
     on_progress : told of every body that is factored, optional
     """
-    rings = [_ring(assembly, group, touched, mass, on_progress) for group in assembly.groups[:2]]
+    rings = [_ring(assembly, group, contacts, mass, on_progress) for group in assembly.groups[:2]]
     balls = [
-        (_balls(assembly, group, touched, mass, on_progress), [ball - 2 for ball in group.members])
+        (_balls(assembly, group, contacts, mass, on_progress), [ball - 2 for ball in group.members])
         for group in assembly.groups[2:]
     ]
     return Interface(rings, balls, assembly.nodes)
@@ -428,12 +428,12 @@ def touchable(contact: NodalContact, nodes: int) -> np.ndarray:
     return under
 
 
-def _ring(assembly: Assembly, group: Group, touched: np.ndarray, mass: float, on_progress: OnProgress | None) -> _Ring:
+def _ring(assembly: Assembly, group: Group, contacts: np.ndarray, mass: float, on_progress: OnProgress | None) -> _Ring:
     (index,), copies = group.members, group.copies
     body, rows, first = assembly.bodies[index], assembly.part(index), int(assembly.starts[index])
     free = free_nodes(assembly, index)
     cells = np.asarray(body.operator.cells, dtype=np.int64)
-    mine = touched[rows.start // 3 : rows.stop // 3]
+    mine = contacts[rows.start // 3 : rows.stop // 3]
     contact = np.unique(np.concatenate([np.flatnonzero(mine[part - first]) for part in copies.nodes]))
     cut = np.concatenate([copies.before, copies.behind])
     if np.isin(contact, cut).any():
@@ -450,10 +450,10 @@ def _ring(assembly: Assembly, group: Group, touched: np.ndarray, mass: float, on
     inertia = mass * np.repeat(body.operator.lumped_mass() * free, 3)
     ride = assembly.carried[rows] if body.frame is not None else np.zeros((rows.stop - rows.start, 0))
 
-    def apply(moved: np.ndarray) -> np.ndarray:
-        out = np.zeros_like(moved)
-        local = moved[rows]
-        force = assembly.body_forces.of_body(index, moved) + inertia * local
+    def apply(displacement: np.ndarray) -> np.ndarray:
+        out = np.zeros_like(displacement)
+        local = displacement[rows]
+        force = assembly.body_forces.of_body(index, displacement) + inertia * local
         for foundation, _ in assembly.foundations:
             force += (foundation[rows][:, rows]) @ local
         out[rows] = force * np.repeat(free, 3)
@@ -471,21 +471,21 @@ def _of_part(
     return np.array([k for k, _ in matrices], dtype=np.int64), np.array([matrix for _, matrix in matrices])
 
 
-def _balls(assembly: Assembly, group: Group, touched: np.ndarray, mass: float, on_progress: OnProgress | None) -> _Balls:
+def _balls(assembly: Assembly, group: Group, contacts: np.ndarray, mass: float, on_progress: OnProgress | None) -> _Balls:
     copies, index = group.copies, group.members[0]
     body, rows = assembly.bodies[index], assembly.part(index)
-    contact = np.unique(np.concatenate([np.flatnonzero(touched[nodes]) for nodes in copies.nodes]))
-    caged, stiffness = np.zeros((0, rows.stop - rows.start)), np.zeros(0)
+    contact = np.unique(np.concatenate([np.flatnonzero(contacts[nodes]) for nodes in copies.nodes]))
+    cage_rows, stiffness = np.zeros((0, rows.stop - rows.start)), np.zeros(0)
     if assembly.cage is not None:
         motions = slice(4 * (index - 2), 4 * (index - 2) + 4)
-        caged, stiffness = assembly.cage.rows[motions, rows].toarray(), assembly.cage.stiffness[motions]
+        cage_rows, stiffness = assembly.cage.rows[motions, rows].toarray(), assembly.cage.stiffness[motions]
     inertia = mass * np.repeat(body.operator.lumped_mass(), 3)[:, None]
 
-    def apply(moved: np.ndarray) -> np.ndarray:
-        return assembly.body_forces.of_mesh(index, moved) + inertia * moved
+    def apply(displacement: np.ndarray) -> np.ndarray:
+        return assembly.body_forces.of_mesh(index, displacement) + inertia * displacement
 
-    forces = np.ascontiguousarray(caged.T)
+    forces = np.ascontiguousarray(cage_rows.T)
     free = np.ones(len(copies.points), dtype=bool)
     ball = _Substructure(body.name, copies, body.operator, contact, free, mass, None, on_progress)
     loose, response = ball.ball(forces, apply)
-    return _Balls(loose, caged, stiffness, response, mass > 0.0)
+    return _Balls(loose, cage_rows, stiffness, response, mass > 0.0)

@@ -35,10 +35,10 @@ class _Factorised:
     ConvergenceError: a singular matrix: a motion that nothing holds.
     """
 
-    def __init__(self, matrix: csr_matrix, held: np.ndarray) -> None:
+    def __init__(self, matrix: csr_matrix, fixed_dofs: np.ndarray) -> None:
         from scipy.sparse.linalg import splu
 
-        rows = np.flatnonzero(~held)
+        rows = np.flatnonzero(~fixed_dofs)
         inner = matrix[rows][:, rows].tocsc()
         try:
             self._factors = splu(inner, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -109,7 +109,7 @@ def nodal_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assembly)
     """Pressures at points; ``meshes``: inner ring, outer ring, balls."""
     s, g, pairs = setup, setup.geometry, []
     for race, word in enumerate(("inner", "outer")):
-        surface = _groove(s, race)
+        surface = _groove_nodes(s, race)
         facets = Facets(meshes[race].points, meshes[race].facet_nodes("raceway"))
         ellipse = g.ellipses(s.modulus)[race]
         often = (_STATIC / float(ellipse.peak_pressure(1.0))) ** 3  # the pressure grows with the load's cube root
@@ -141,16 +141,16 @@ def resultant_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assem
     s, g = setup, setup.geometry
     assert s.angles is not None
     balls = [Facets(ball.points, ball.facet_nodes("surface")) for ball in meshes[2:]]
-    loaded = _loaded_balls(s, meshes, assembly)
+    answers = _loaded_balls(s, meshes, assembly)
     beyond = np.zeros(2 * s.ball_count) if s.beyond is None else s.beyond
     touches = []
     for race, word in enumerate(("inner", "outer")):
         conformity = g.conformity_inner if race == 0 else g.conformity_outer
-        surface = _groove(s, race)
+        surface = _groove_nodes(s, race)
         surface[5] -= 0.5 * g.ball_diameter
         facets = Facets(meshes[race].points, meshes[race].facet_nodes("raceway"))
         seat = float(np.hypot(*meshes[race].points[meshes[race].nodes("seat"), 1:].T).mean())
-        ring = _loaded(assembly, race, s.rings)
+        ring = _load_answers(assembly, race, s.rings)
         semi_axes = (float(x) for x in g.ellipses(s.modulus)[race].semi_axes(s.reference_load))
         sphere = ball_compliance(0.5 * g.ball_diameter, *s.balls[:2], *semi_axes)[0]
         for k in range(s.ball_count):
@@ -167,14 +167,14 @@ def resultant_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assem
             wide = _ON_BALL[0] * radius, _ON_BALL[1] * radius
             on_ball = footprint(balls[k], middle + radius * normal, -normal, along, middle, wide)
             # Balls that are the same mesh know each other's answers.
-            turned = s.turn(k) @ s.turn(loaded[k][0]).T
-            above = loaded[k][1].replaced(on_ball, turned.T @ -normal, sphere)
+            rotation = s.turn(k) @ s.turn(answers[k][0]).T
+            above = answers[k][1].replaced(on_ball, rotation.T @ -normal, sphere)
             name, first = f"ball {k}, {word} race", int(assembly.starts[k + 2])
             touches.append(
                 Touch(
                     name,
-                    _moved(on_ball, first),
-                    _moved(on_ring, int(assembly.starts[race])),
+                    _renumbering(on_ball, first),
+                    _renumbering(on_ring, int(assembly.starts[race])),
                     middle,
                     surface,
                     below.local + above - beyond[race * s.ball_count + k],
@@ -192,30 +192,32 @@ def _loaded_balls(setup: BearingData, meshes: list[HexMesh], assembly: Assembly)
     for k, ball in enumerate(meshes[2:]):
         for first, answers in out:
             earlier = meshes[first + 2]
-            expected = earlier.points @ setup.turn(first)
+            reference = earlier.points @ setup.turn(first)
             same = earlier.points.shape == ball.points.shape and np.array_equal(earlier.cells, ball.cells)
-            if same and np.abs(ball.points @ setup.turn(k) - expected).max() < _SAME * setup.geometry.ball_diameter:
+            if same and np.abs(ball.points @ setup.turn(k) - reference).max() < _SAME * setup.geometry.ball_diameter:
                 out.append((first, answers))
                 break
         else:
-            out.append((k, _loaded(assembly, k + 2, setup.balls, floating=True)))
+            out.append((k, _load_answers(assembly, k + 2, setup.balls, floating=True)))
     return out
 
 
-def _loaded(assembly: Assembly, index: int, material: tuple[float, float, float], floating: bool = False) -> LoadedBody:
+def _load_answers(
+    assembly: Assembly, index: int, material: tuple[float, float, float], floating: bool = False
+) -> LoadedBody:
     rows, body = assembly.part(index), assembly.bodies[index]
-    held = np.ones(3 * assembly.nodes, dtype=bool)
-    held[assembly.free] = False
+    clamp = np.ones(3 * assembly.nodes, dtype=bool)
+    clamp[assembly.free] = False
     stiffness = assembly.stiffness()[rows][:, rows]
     mass = body.operator.lumped_mass() if floating else None
-    return LoadedBody(body.points, body.operator.cells, stiffness, held[rows].reshape(-1, 3), mass, material)
+    return LoadedBody(body.points, body.operator.cells, stiffness, clamp[rows].reshape(-1, 3), mass, material)
 
 
-def _moved(contact: Footprint, first: int) -> Footprint:
+def _renumbering(contact: Footprint, first: int) -> Footprint:
     return Footprint(contact.nodes + first, contact.weights, contact.share)
 
 
-def _groove(setup: BearingData, race: int) -> np.ndarray:
+def _groove_nodes(setup: BearingData, race: int) -> np.ndarray:
     g, centre = setup.geometry, setup.offsets[race]
     radius = (g.conformity_outer if race else g.conformity_inner) * g.ball_diameter
     return groove(np.array([centre[0], 0.0, 0.0]), centre[1] + (0.0 if race else setup.growth), radius)
@@ -311,27 +313,26 @@ class LinearSolver:
             extra += (1.0 if cage is None else _HARDLY) * a.cage.nodal
         from scipy.sparse import diags_array
 
-        held = np.ones(3 * a.nodes, dtype=bool)
-        held[a.free] = False
+        fixed_dofs = np.ones(3 * a.nodes, dtype=bool)
+        fixed_dofs[a.free] = False
         sprung = (matrix + diags_array(extra)).tocsr()
-        self._multigrid = _Factorised(sprung, held) if small else Preconditioner(sprung, a.points, held, _FEWEST_NODES)
+        self._multigrid = (
+            _Factorised(sprung, fixed_dofs) if small else Preconditioner(sprung, a.points, fixed_dofs, _FEWEST_NODES)
+        )
         self._whole = LowRankContacts(contact, cage, self._multigrid, a.free) if contact is not None and resultants else None
         self._built, self._fresh, self._extra = c_m / c_k, True, 0
         self.setups += 1
-        self._extend(c_k, c_m)
-
-    def _extend(self, c_k: float, c_m: float) -> None:
-        """Displacement of the free nodes with each frame: the solution of the whole for a unit motion of the frame."""
+        # Displacement of the free nodes with each frame
         a, m = self.assembly, self.assembly.frame_size
         self._follow = self._ride.copy()
         apply, multigrid = self.image(c_k, 0.0, c_m), self._inverse(c_k, 0.0)
         for k in np.flatnonzero(a.frame_free):
             start = np.concatenate([np.eye(m)[k], self._ride[:, k]])
-            more, used = _conjugate_gradients(
+            more, count = _conjugate_gradients(
                 lambda w: apply(np.concatenate([np.zeros(m), w]))[m:], -apply(start)[m:], multigrid, _FOLLOW_TOLERANCE
             )
             self._follow[:, k] += more
-            self.iterations += used
+            self.iterations += count
 
     def image(self, c_k: float, c_c: float, c_m: float) -> Callable[[np.ndarray], np.ndarray]:
         """The matrix' product with unknowns (size,), with the tangents of the last contact forces."""
@@ -345,7 +346,7 @@ class LinearSolver:
             blocks = c_k * contact.stiffness + c_c * contact.rate_stiffness
             touching = np.flatnonzero(blocks.any(axis=(1, 2)))
             move = contact.move[of_nodes(touching)]
-            transposed, blocks = move.T.tocsr(), blocks[touching]
+            back, blocks = move.T.tocsr(), blocks[touching]
         frame = c_k * a.frame_stiffness + c_c * 0.5 * (a.frame_damping + a.frame_damping.T) + c_m * a.frame_mass
 
         def apply(y: np.ndarray) -> np.ndarray:
@@ -353,16 +354,16 @@ class LinearSolver:
             force = matrix.times(u)
             if a.cage is not None:
                 force += a.cage.internal(u)
-            pulled = np.zeros(m)
+            frame_force = np.zeros(m)
             for foundation, ride in a.foundations:
                 pull = foundation @ (ride @ q)
                 force -= pull
-                pulled += ride.T @ (pull - foundation @ u)
+                frame_force += ride.T @ (pull - foundation @ u)
             force *= c_k
             if blocks is not None and len(blocks):
-                force += transposed @ np.einsum("iab,ib->ia", blocks, (move @ u).reshape(-1, 3)).ravel()
+                force += back @ np.einsum("iab,ib->ia", blocks, (move @ u).reshape(-1, 3)).ravel()
             out = a.reduced(force)
-            out[:m] += c_k * pulled + frame @ q
+            out[:m] += c_k * frame_force + frame @ q
             out[m:] += c_m * a.free_mass * y[m:]
             out[~a.unknown] = 0.0
             return out
@@ -409,21 +410,21 @@ def _conjugate_gradients(
     solution, residual = np.zeros_like(right), right.copy()
     direction, before, goal = np.zeros_like(right), 1.0, 0.0
     for iteration in range(MOST_ITERATIONS):
-        corrected = precondition(residual)
-        now = float(residual @ corrected)
+        correction = precondition(residual)
+        now = float(residual @ correction)
         if iteration == 0:
             goal = tolerance**2 * now
         if now < 0.0:  # a preconditioner that is indefinite here: along the residual, or with what was found so far
             if iteration:
                 return solution, iteration
-            corrected, now, goal = residual.copy(), float(residual @ residual), 0.0
+            correction, now, goal = residual.copy(), float(residual @ residual), 0.0
         elif now <= goal:
             return solution, iteration
-        direction = corrected + (now / before if iteration else 0.0) * direction
+        direction = correction + (now / before if iteration else 0.0) * direction
         image = apply(direction)
         curvature = float(direction @ image)
         if curvature <= 0.0:  # a free motion or a buckled state: what was found so far still descends
-            return (solution if iteration else corrected), iteration
+            return (solution if iteration else correction), iteration
         step = now / curvature
         solution += step * direction
         residual -= step * image

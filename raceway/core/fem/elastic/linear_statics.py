@@ -16,8 +16,6 @@ from raceway.core.jit import jit
 from raceway.errors import ConvergenceError, RacewayError
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
     from numba.core.typing.templates import Signature
     from scipy.sparse import csr_matrix
     from scipy.sparse.linalg import SuperLU
@@ -44,7 +42,7 @@ class _Levels:
     aggregates: list[csr_matrix]
 
 
-def _aggregated(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> _Levels:
+def _aggregates(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> _Levels:
     """Aggregates of nodes, of these aggregates, and so on.
 
     graph : (n, n) CSR, not zero where two nodes share a cell
@@ -134,15 +132,15 @@ def rigid_motions(points: np.ndarray, centre: np.ndarray | None = None) -> np.nd
     return motions.reshape(-1, 6)
 
 
-def _free_motions(points: np.ndarray, held: np.ndarray) -> list[int]:
+def _free_motions(points: np.ndarray, fixed_dofs: np.ndarray) -> list[int]:
     """Indices into ``MOTIONS`` of what the supports leave free; rotations are those about the middle of the held points.
 
     points : (n, 3) float [m]
-    held : (n, 3) bool
+    fixed_dofs : (n, 3) bool
     """
-    somewhere = held.any(axis=1)
+    somewhere = fixed_dofs.any(axis=1)
     centre = points[somewhere].mean(axis=0) if somewhere.any() else None
-    rows = rigid_motions(points, centre)[held.reshape(-1)]
+    rows = rigid_motions(points, centre)[fixed_dofs.reshape(-1)]
     if not len(rows):
         return list(range(6))
     _, sizes, directions = np.linalg.svd(rows.T @ rows)  # 6 x 6; its values are squares of the singular values
@@ -280,7 +278,7 @@ def solve_static(
     stiffness: csr_matrix,
     points: np.ndarray,
     load: np.ndarray,
-    held: np.ndarray,
+    fixed_dofs: np.ndarray,
     values: np.ndarray | float = 0.0,
     tolerance: float = 1e-8,
 ) -> _Solution:
@@ -291,7 +289,7 @@ def solve_static(
     stiffness : (3 n, 3 n) CSR, symmetric positive semi-definite [N/m]
     points : (n, 3) float [m]
     load : (n, 3) float [N]
-    held : (n, 3) bool, prescribed degrees of freedom
+    fixed_dofs : (n, 3) bool, prescribed degrees of freedom
     values : (n, 3) float or one number, what is prescribed there [m]
     tolerance : of the residual relative to the right-hand side
 
@@ -300,13 +298,13 @@ def solve_static(
     ConvergenceError
         A rigid motion that nothing holds, a load or matrix that is not finite, or iterations that end too early.
     """
-    mask = np.asarray(held, dtype=bool)
-    prescribed = np.where(mask, np.broadcast_to(values, held.shape), 0.0)
+    mask = np.asarray(fixed_dofs, dtype=bool)
+    displacement = np.where(mask, np.broadcast_to(values, fixed_dofs.shape), 0.0)
     matrix = stiffness.tocsr()
-    if not (np.isfinite(load).all() and np.isfinite(prescribed).all() and np.isfinite(matrix.data).all()):
+    if not (np.isfinite(load).all() and np.isfinite(displacement).all() and np.isfinite(matrix.data).all()):
         raise ConvergenceError("the static system has loads, prescribed displacements or stiffness that are not finite")
     _refuse_free_motion(matrix, points, mask.reshape(-1))
-    return StaticSolver(matrix, points, mask).solve(load, prescribed, tolerance)
+    return StaticSolver(matrix, points, mask).solve(load, displacement, tolerance)
 
 
 class StaticSolver:
@@ -318,10 +316,10 @@ class StaticSolver:
     points : (n, 3) float [m];  held : (n, 3) bool
     """
 
-    def __init__(self, stiffness: csr_matrix, points: np.ndarray, held: np.ndarray) -> None:
+    def __init__(self, stiffness: csr_matrix, points: np.ndarray, fixed_dofs: np.ndarray) -> None:
         from scipy.sparse.linalg import splu
 
-        mask = np.asarray(held, dtype=bool).reshape(-1)
+        mask = np.asarray(fixed_dofs, dtype=bool).reshape(-1)
         self._matrix, self._free = stiffness, np.flatnonzero(~mask)
         self._inner = stiffness[self._free][:, self._free]
         self._factors: SuperLU = None
@@ -369,31 +367,36 @@ class Preconditioner:
     matrix : (3 n, 3 n) CSR, symmetric, positive definite on the free degrees of freedom
     points : (n, 3) float [m]
     held : (3 n,) bool
-    fewest : nodes of an aggregate, see ``_aggregated``
+    fewest : nodes of an aggregate, see ``_aggregates``
 
     References
     ----------
     P. Vanek, J. Mandel, M. Brezina, Computing 56 (1996) 179-196: algebraic multigrid by smoothed aggregation.
     """
 
-    def __init__(self, matrix: csr_matrix, points: np.ndarray, held: np.ndarray, fewest: float = 1.0) -> None:
+    def __init__(self, matrix: csr_matrix, points: np.ndarray, fixed_dofs: np.ndarray, fewest: float = 1.0) -> None:
         import scipy.sparse as sp
 
-        pyamg = _pyamg()
+        try:
+            import pyamg
+        except ImportError:
+            raise RacewayError(
+                "large elastic bodies need pyamg: pip install '.[elastic]' in a checkout of Raceway"
+            ) from None
         # Whole nodes, so that aggregates are made of nodes: a node that is held in part keeps unit rows for what is held.
-        free = np.repeat(~held.reshape(-1, 3).all(axis=1), 3)
-        loose = ~held[free]
+        free = np.repeat(~fixed_dofs.reshape(-1, 3).all(axis=1), 3)
+        loose = ~fixed_dofs[free]
         self._rows = np.flatnonzero(loose)
         inner = matrix[free][:, free]
         scale = np.where(loose, 1.0 / np.sqrt(inner.diagonal()), 0.0)
-        scaled = sp.diags(scale) @ inner @ sp.diags(scale) + sp.diags((~loose).astype(float))
+        unit_diagonal = sp.diags(scale) @ inner @ sp.diags(scale) + sp.diags((~loose).astype(float))
         motions = rigid_motions(points)[free]
         candidates = np.divide(motions, scale[:, None], out=np.zeros_like(motions), where=loose[:, None])
         self.scale = scale[loose]
         self._size = len(loose)
-        blocks = scaled.tobsr((3, 3))
+        blocks = unit_diagonal.tobsr((3, 3))
         graph = sp.csr_matrix((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr), (len(loose) // 3,) * 2)
-        nodes = _aggregated(graph, points[free[::3]], fewest)
+        nodes = _aggregates(graph, points[free[::3]], fewest)
         state = np.random.get_state()  # pyamg starts its spectral estimates at random: the same start, the same answer
         np.random.seed(0)
         try:
@@ -416,9 +419,9 @@ class Preconditioner:
     def __call__(self, residual: np.ndarray) -> np.ndarray:
         """Approximate solution (m,) or (m, k) for a residual, both on the m free degrees of freedom."""
         if residual.ndim == 1:
-            padded = np.zeros(self._size)
-            padded[self._rows] = self.scale * residual
-            correction: np.ndarray = self.scale * self._cycle.matvec(padded)[self._rows]
+            right = np.zeros(self._size)
+            right[self._rows] = self.scale * residual
+            correction: np.ndarray = self.scale * self._cycle.matvec(right)[self._rows]
             return correction
         return np.column_stack([self(column) for column in residual.T])
 
@@ -433,9 +436,9 @@ def _conjugate_gradients(
     for iteration in range(MOST_ITERATIONS):
         if np.linalg.norm(residual) <= goal:
             return solution, iteration
-        corrected = precondition(residual)
-        now = float(residual @ corrected)
-        direction = corrected + (now / before if iteration else 0.0) * direction
+        correction = precondition(residual)
+        now = float(residual @ correction)
+        direction = correction + (now / before if iteration else 0.0) * direction
         image = matrix @ direction
         step = now / float(direction @ image)
         solution += step * direction
@@ -460,11 +463,3 @@ def _refuse_free_motion(matrix: csr_matrix, points: np.ndarray, mask: np.ndarray
             raise ConvergenceError(
                 f"no support against the rigid motion{where or ' of the body'}: {names}. Prescribe displacements that stop it"
             )
-
-
-def _pyamg() -> ModuleType:
-    try:
-        import pyamg
-    except ImportError:
-        raise RacewayError("large elastic bodies need pyamg: pip install '.[elastic]' in a checkout of Raceway") from None
-    return pyamg

@@ -77,26 +77,23 @@ def footprint(
     circle = max(semi_axes) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     facet_around, weights_around, _ = facets.locate(pole + circle @ axes)
     nodes = np.unique(np.concatenate([facets.quads[facet].ravel(), facets.quads[facet_around].ravel()]))
-    pressed = np.zeros(len(nodes))
-    np.add.at(pressed, np.searchsorted(nodes, facets.quads[facet]).ravel(), (force[:, None] * weights).ravel())
+    pressure_share = np.zeros(len(nodes))
+    np.add.at(pressure_share, np.searchsorted(nodes, facets.quads[facet]).ravel(), (force[:, None] * weights).ravel())
     moved = np.zeros((_AROUND, len(nodes)))
     rows = np.repeat(np.arange(_AROUND), 4)
     np.add.at(moved, (rows, np.searchsorted(nodes, facets.quads[facet_around]).ravel()), weights_around.ravel())
-    fit = _rigid_fit(moved @ facets.points[nodes], centre)
-    inward = np.outer(normal, normal)
-    across = np.einsum("ab,bjc,jk->akc", np.eye(3) - inward, fit, moved)
-    return Footprint(nodes, pressed, across + inward[:, None, :] * pressed[None, :, None])
-
-
-def _rigid_fit(places: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """(3, n, 3) what displacements of points (n, 3) say of that of a centre (3,), as one rigid body, by least squares."""
+    # What displacements of the nodes say of that of the centre, as one rigid body
+    places = moved @ facets.points[nodes]
     arm = places - centre
     size = np.linalg.norm(arm, axis=1).max()
     columns = np.zeros((len(places), 3, 6))
     columns[:, :, :3] = np.eye(3)
     for a in range(3):
         columns[:, :, 3 + a] = np.cross(np.eye(3)[a], arm / size)
-    return np.linalg.pinv(columns.reshape(-1, 6))[:3].reshape(3, len(places), 3)
+    fit = np.linalg.pinv(columns.reshape(-1, 6))[:3].reshape(3, len(places), 3)
+    inward = np.outer(normal, normal)
+    across = np.einsum("ab,bjc,jk->akc", np.eye(3) - inward, fit, moved)
+    return Footprint(nodes, pressure_share, across + inward[:, None, :] * pressure_share[None, :, None])
 
 
 #: Newton's iterations of the law with the mesh's compliance, and their tolerance over the deepest gap.
@@ -171,7 +168,14 @@ class ResultantContact(Contact):
         move.eliminate_zeros()
         self.move = move
         self._mobility: np.ndarray | None = None
-        self._last = self._last_gap()
+        # The deepest gap of the law [m] that leaves it some compliance, at rest and without history
+        deep, shallow = np.full(len(self.local), -_DEEPEST), np.zeros(len(self.local))
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (deep + shallow)
+            super().press(middle, np.zeros_like(middle), 0.0)
+            stays = 1.0 + self.local * self.d_gap >= _LEFT
+            deep, shallow = np.where(stays, deep, middle), np.where(stays, middle, shallow)
+        self._last = shallow
 
     def nodes_of(self, pair: int) -> tuple[int, int]:
         touch = self.touches[pair]
@@ -226,16 +230,6 @@ class ResultantContact(Contact):
                 f"{touch.name}: under {self.pressure[worst]:.3g} N the contact is stiffer than the mesh below it, which gives "
                 f"{1e9 * touch.local:.3g} nm/N that the law replaces. Use a smaller load, a softer law, or contact.discretisation = 'nodal'; check clearance and radial_expansion."
             )
-
-    def _last_gap(self) -> np.ndarray:
-        """(n,) the deepest gap of the law [m] that leaves it some compliance, at rest and without history."""
-        deep, shallow = np.full(len(self.local), -_DEEPEST), np.zeros(len(self.local))
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (deep + shallow)
-            super().press(middle, np.zeros_like(middle), 0.0)
-            stays = 1.0 + self.local * self.d_gap >= _LEFT
-            deep, shallow = np.where(stays, deep, middle), np.where(stays, middle, shallow)
-        return shallow
 
     def energy(self) -> float:
         """Energy stored by the law at the last gaps, less the local energy of the meshes [J]."""
@@ -306,7 +300,7 @@ class LoadedBody:
         points: np.ndarray,
         cells: np.ndarray,
         stiffness: csr_matrix,
-        held: np.ndarray,
+        fixed_dofs: np.ndarray,
         mass: np.ndarray | None,
         material: tuple[float, float, float],
     ) -> None:
@@ -318,7 +312,7 @@ class LoadedBody:
             size = np.ptp(points, axis=0).max()
             slow = (_SLOW / size) ** 2 * material[0] / material[2]
             stiffness = stiffness + diags_array(slow * np.repeat(mass, 3))
-        self._solver = StaticSolver(stiffness.tocsr(), points, held)
+        self._solver = StaticSolver(stiffness.tocsr(), points, fixed_dofs)
 
     def along(self, contact: Footprint, normal: np.ndarray) -> np.ndarray:
         """(n,) displacements of the nodes along a unit force on a footprint, into the body along ``normal`` (3,) [m/N]."""

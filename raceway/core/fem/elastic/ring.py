@@ -189,9 +189,9 @@ class ElasticRing(SteppedRing):
                 compliance = system.solver.frame_compliance()
             else:
                 forces = np.eye(5, system.size)
-                moved = np.stack([system.solve(1.0, 0.0, 0.0, force, tolerance=_LINEAR) for force in forces])
+                motions = np.stack([system.solve(1.0, 0.0, 0.0, force, tolerance=_LINEAR) for force in forces])
                 image = system.solver.image(1.0, 0.0, 0.0)
-                compliance = moved[:, :5] + moved[:, :5].T - moved @ np.stack([image(u) for u in moved], axis=1)
+                compliance = motions[:, :5] + motions[:, :5].T - motions @ np.stack([image(u) for u in motions], axis=1)
         stiffness = np.linalg.inv(0.5 * (compliance + compliance.T)) - self.stiffness
         return np.asarray(0.5 * (stiffness + stiffness.T))
 
@@ -223,14 +223,14 @@ def from_orbit(ring: ElasticRing, orbit: Orbit) -> Motion:
 
     now, _ = ring.equilibrium_under(still, load(0.0, 1.0))
     rigid = ring.surrogate.solve_equilibrium(still[:5])[0]
-    moved, rigidly = now[1:3] - still[1:3], orbit.displacement[0, 1:3] - rigid[1:3]
-    scale = float(np.linalg.norm(moved) / max(float(np.linalg.norm(rigidly)), 1e-300)) if rigidly.any() else 1.0
+    shift, rigidly = now[1:3] - still[1:3], orbit.displacement[0, 1:3] - rigid[1:3]
+    scale = float(np.linalg.norm(shift) / max(float(np.linalg.norm(rigidly)), 1e-300)) if rigidly.any() else 1.0
     now, _ = ring.equilibrium_under(now, load(0.0, scale))
     before, _ = ring.equilibrium_under(now, load(-step, scale))
     after, _ = ring.equilibrium_under(now, load(step, scale))
     v = (after - before) * speed / (2.0 * np.sin(_ANGLE))
     a = (after - 2.0 * now + before) * speed**2 / (2.0 * (1.0 - np.cos(_ANGLE)))
-    return _motion(ring, now, v, a)
+    return _ring_motion(ring, now, v, a)
 
 
 def standstill(ring: ElasticRing, ramped: bool) -> Motion:
@@ -239,7 +239,7 @@ def standstill(ring: ElasticRing, ramped: bool) -> Motion:
     outer, still = np.zeros_like(y), np.zeros_like(y)
     if not ramped:
         outer[:5] = ring.outer_force(0.0)
-    return _motion(ring, y, still, ring.stepped().accelerations(outer, np.zeros_like(y), still, 0.0))
+    return _ring_motion(ring, y, still, ring.stepped().accelerations(outer, np.zeros_like(y), still, 0.0))
 
 
 def static_orbit(ring: ElasticRing, ramped: bool) -> Motion:
@@ -247,13 +247,13 @@ def static_orbit(ring: ElasticRing, ramped: bool) -> Motion:
     y = ring.equilibrium
     if not ramped:
         y, _ = ring.equilibrium_under(y, ring.load + ring.outer_force(0.0))
-    return _motion(ring, y, np.zeros_like(y), np.zeros_like(y))
+    return _ring_motion(ring, y, np.zeros_like(y), np.zeros_like(y))
 
 
-def _motion(ring: ElasticRing, y: np.ndarray, v: np.ndarray, a: np.ndarray) -> Motion:
+def _ring_motion(ring: ElasticRing, y: np.ndarray, v: np.ndarray, a: np.ndarray) -> Motion:
     """A motion whose contacts carry no friction yet: the balls have rolled into place."""
     ring.in_place(y)
-    stepped, contact = ring.stepped(), ring.bodies.system.contact
+    time_system, contact = ring.stepped(), ring.bodies.system.contact
     if contact is not None and contact.friction is not None:
         contact.friction.begin((contact.move @ ring.bodies.system.assembly.nodal(y)).reshape(-1, 3))
-    return stepped.motion_of(y, v, a)
+    return time_system.motion_of(y, v, a)

@@ -54,11 +54,11 @@ def contact_axes(
     if not total > 0.0:
         return None
     share = force / total
-    middle, moved = share @ contact.place[part], share @ contact.projected[part]
+    middle, surface = share @ contact.place[part], share @ contact.projected[part]
     outward = (middle - centre) / np.linalg.norm(middle - centre)
     pole = centre + float(np.linalg.norm(contact.place[part] - centre, axis=1).mean()) * outward
     facets = contact.pairs[pair].facets
-    facet, weights, _ = facets.locate((pole + moved - middle)[None])
+    facet, weights, _ = facets.locate((pole + surface - middle)[None])
     partner = weights[0] @ facets.points[facets.quads[facet[0]]]
     return ContactAxis(pole, _axes(-outward, rolling)), ContactAxis(np.asarray(partner), _axes(outward, rolling))
 

@@ -79,8 +79,8 @@ def same_bodies(
             first_points, first_cells = bodies[group[0]]
             if points.shape != first_points.shape or not np.array_equal(cells, first_cells):
                 continue
-            turned = first_points @ turn(azimuth[k] - azimuth[group[0]]).T
-            if np.abs(points - turned).max() <= SAME * np.abs(points).max():
+            rotation = first_points @ turn(azimuth[k] - azimuth[group[0]]).T
+            if np.abs(points - rotation).max() <= SAME * np.abs(points).max():
                 group.append(k)
                 break
         else:
@@ -113,7 +113,11 @@ def sectors(points: np.ndarray, cells: np.ndarray, azimuth: np.ndarray, marks: n
         return None
     middle = points[numbers].mean(axis=1)
     away = np.mod(np.arctan2(middle[:, 2], middle[:, 1]) - azimuth[0], 2.0 * np.pi)
-    sector = np.floor(np.mod(away + step - _cut(away, step), 2.0 * np.pi) / step).astype(np.int64) % count
+    # Sectors are cut behind a ball, where the middles of cells leave room.
+    places = np.unique(np.round(np.mod(away, step) / step, 9)) * step
+    between = 0.5 * (places + np.append(places[1:], places[0] + step))
+    cut = float(between[np.argmin(np.abs(between - 0.5 * step))])
+    sector = np.floor(np.mod(away + step - cut, 2.0 * np.pi) / step).astype(np.int64) % count
     cell_of = np.flatnonzero(sector == 0)
     if (np.bincount(sector, minlength=count) != len(cell_of)).any():
         return None
@@ -136,13 +140,6 @@ def sectors(points: np.ndarray, cells: np.ndarray, azimuth: np.ndarray, marks: n
     if not np.array_equal(nodes[0][behind], nodes[1][before]) or np.isin(before, behind).any():
         return None
     return Copies(points[nodes_of_sector], local, first + nodes, turns, before, behind)
-
-
-def _cut(away: np.ndarray, step: float) -> float:
-    """Azimuth of the cut behind a ball: between two layers of cells, nearest to the middle between balls [rad]."""
-    places = np.unique(np.round(np.mod(away, step) / step, 9)) * step
-    between = 0.5 * (places + np.append(places[1:], places[0] + step))
-    return float(between[np.argmin(np.abs(between - 0.5 * step))])
 
 
 #: Called with the work done and that of all.
@@ -191,26 +188,26 @@ class Part:
         """
         interface = np.unique(np.concatenate([contact, copies.before, copies.behind]))
         dissection = dissect(copies.points, copies.cells, interface[free[interface]])
-        ordered = operator.of_mesh(copies.points, copies.cells[dissection.order])
-        added: dict[int, np.ndarray] = {}
+        of_cells = operator.of_mesh(copies.points, copies.cells[dissection.order])
+        additions: dict[int, np.ndarray] = {}
         if bed is not None:
             position = np.empty(len(dissection.order), dtype=np.int64)
             position[dissection.order] = np.arange(len(position))
             for cell, matrix in zip(position[bed[0]], bed[1], strict=True):
-                added[int(cell)] = added.get(int(cell), 0.0) + matrix
+                additions[int(cell)] = additions.get(int(cell), 0.0) + matrix
         diagonal = np.arange(24)
 
         def matrices(part: slice) -> np.ndarray:
-            out = ordered.element_stiffness(part)
+            out = of_cells.element_stiffness(part)
             if mass:
-                out[:, diagonal, diagonal] += mass * np.repeat(ordered.element_masses[part], 3, axis=1)
-            if added:
+                out[:, diagonal, diagonal] += mass * np.repeat(of_cells.element_masses[part], 3, axis=1)
+            if additions:
                 for cell in range(part.start, part.stop):
-                    if cell in added:
-                        out[cell - part.start] += added[cell]
+                    if cell in additions:
+                        out[cell - part.start] += additions[cell]
             return out
 
-        return cls(copies, contact, factored(dissection, ordered.cells, matrices, np.repeat(free, 3), on_front))
+        return cls(copies, contact, factored(dissection, of_cells.cells, matrices, np.repeat(free, 3), on_front))
 
     @property
     def size(self) -> int:
@@ -234,13 +231,13 @@ class Part:
 
     def gathered(self, force: np.ndarray, kind: type = np.float32) -> np.ndarray:
         """(3 n, copies) of nodal forces (3 nodes,), each copy in the frame of the first."""
-        turned = np.einsum("cna,cab->cnb", force.reshape(-1, 3)[self.copies.nodes], self.copies.turns) * self.own[:, None]
-        return np.ascontiguousarray(turned.reshape(len(turned), -1).T, dtype=kind)
+        local = np.einsum("cna,cab->cnb", force.reshape(-1, 3)[self.copies.nodes], self.copies.turns) * self.own[:, None]
+        return np.ascontiguousarray(local.reshape(len(local), -1).T, dtype=kind)
 
     def spread(self, values: np.ndarray, out: np.ndarray) -> None:
         """Write displacements (3 n, copies) to the nodes of all copies in ``out`` (3 nodes,)."""
-        moved = values.T.reshape(len(self.copies.turns), -1, 3)
-        out.reshape(-1, 3)[self.copies.nodes] = np.einsum("cnb,cab->cna", moved, self.copies.turns)
+        displacement = values.T.reshape(len(self.copies.turns), -1, 3)
+        out.reshape(-1, 3)[self.copies.nodes] = np.einsum("cnb,cab->cna", displacement, self.copies.turns)
 
 
 #: Solutions in single precision, each with the residual of those before: five digits more each.
@@ -323,15 +320,15 @@ class Loose:
         self.part.fronts.forward(values)
         return self.to_copies(values[self.unknowns].T.astype(float)), values
 
-    def backward(self, carried: np.ndarray, moved: np.ndarray, out: np.ndarray) -> None:
+    def backward(self, interior: np.ndarray, displacement: np.ndarray, out: np.ndarray) -> None:
         """Displacements of all nodes, into ``out`` (3 nodes,), of those of the contacts (copies, 3 k)."""
-        self.part.spread(self.inner(carried, self.to_first(moved)), out)
+        self.part.spread(self.inner(interior, self.to_first(displacement)), out)
 
-    def inner(self, carried: np.ndarray, moved: np.ndarray) -> np.ndarray:
+    def inner(self, interior: np.ndarray, displacement: np.ndarray) -> np.ndarray:
         """(3 n, copies) displacements in the frame of the first copy, of those of the contacts (copies, 3 k) there."""
-        carried[self.unknowns] = moved.T
-        self.part.fronts.backward(carried)
-        return carried
+        interior[self.unknowns] = displacement.T
+        self.part.fronts.backward(interior)
+        return interior
 
     def solved(self, force: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
         """(3 n, m) displacements of the first copy under forces (3 n, m), refined with ``apply``, which knows no springs."""
@@ -341,8 +338,8 @@ class Loose:
             residual[places] -= self.hold * self.motions @ (self.motions.T @ solution[places])
             values = np.ascontiguousarray(residual, dtype=np.float32)
             self.part.fronts.forward(values)
-            moved = self.flexibility @ values[places].astype(float)
-            solution += self.inner(values, moved.T)
+            displacement = self.flexibility @ values[places].astype(float)
+            solution += self.inner(values, displacement.T)
         return solution
 
 
@@ -442,12 +439,12 @@ class Closed:
         harmonics = np.empty((most, part.size, part.size), dtype=complex)
         for h in range(most):
             phase = np.exp(2j * np.pi * h / count)
-            half = _folded(planes, phase, onward)
-            matrix = _folded(half.conj().T, phase, onward).conj().T
-            mixed = _folded(across, phase, onward)
+            half = _fold(planes, phase, onward)
+            matrix = _fold(half.conj().T, phase, onward).conj().T
+            mixture = _fold(across, phase, onward)
             lower = cholesky(0.5 * (matrix + matrix.conj().T), lower=True)
-            factors[h], mixed_all[h] = lower, mixed
-            half = ztrsm(1.0, lower, mixed, lower=1)
+            factors[h], mixed_all[h] = lower, mixture
+            half = ztrsm(1.0, lower, mixture, lower=1)
             harmonics[h] = _inverse(contacts - half.conj().T @ half)
         return cls(part, factors, mixed_all, np.fft.irfft(harmonics, count, axis=0))
 
@@ -481,14 +478,14 @@ class Closed:
             out += np.roll(few @ rows[-away], away, axis=0)
         return _turned_vectors(out, turns)
 
-    def _under(self, loaded: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _under(self, load_places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Loaded columns (3 k,) bool, and their rows of the blocks: few in a contact, held until others are loaded."""
-        if 2 * loaded.sum() > len(loaded):
-            return np.ones_like(loaded), self.blocks
-        cached = self._loaded
-        if cached is None or (loaded & ~cached[0]).any() or 2 * loaded.sum() < cached[0].sum():
-            cached = self._loaded = loaded, self.blocks[:, loaded]
-        return cached
+        if 2 * load_places.sum() > len(load_places):
+            return np.ones_like(load_places), self.blocks
+        cache = self._loaded
+        if cache is None or (load_places & ~cache[0]).any() or 2 * load_places.sum() < cache[0].sum():
+            cache = self._loaded = load_places, self.blocks[:, load_places]
+        return cache
 
     def among(self, nodes: np.ndarray) -> np.ndarray:
         """(3 m, 3 m) flexibility of some of the contacts' nodes (m,), numbered through all sectors [m/N]."""
@@ -503,25 +500,25 @@ class Closed:
         self.part.fronts.forward(values)
         on_interface = values[self.part.fronts.kept].astype(float)
         rows = np.concatenate([self._before, self._behind])
-        transformed = np.fft.rfft(on_interface[rows], axis=1)
+        spectrum = np.fft.rfft(on_interface[rows], axis=1)
         contact = np.fft.rfft(on_interface[self._order], axis=1)
         count = on_interface.shape[1]
-        solved = np.empty((len(self._before), transformed.shape[1]), dtype=complex)
+        interior_spectrum = np.empty((len(self._before), spectrum.shape[1]), dtype=complex)
         for h in range(len(self._factors)):
-            folded = _folded(transformed[:, h : h + 1], np.exp(2j * np.pi * h / count), self._next)
-            solved[:, h] = self._on_planes(h, folded[:, 0])
-            contact[:, h] -= self._across[h].conj().T @ solved[:, h].astype(np.complex64)
-        return _turned_vectors(np.fft.irfft(contact, count, axis=1).T, self.part.copies.turns), (values, solved)
+            fold = _fold(spectrum[:, h : h + 1], np.exp(2j * np.pi * h / count), self._next)
+            interior_spectrum[:, h] = self._on_planes(h, fold[:, 0])
+            contact[:, h] -= self._across[h].conj().T @ interior_spectrum[:, h].astype(np.complex64)
+        return _turned_vectors(np.fft.irfft(contact, count, axis=1).T, self.part.copies.turns), (values, interior_spectrum)
 
-    def backward(self, carried: tuple[np.ndarray, np.ndarray], moved: np.ndarray, out: np.ndarray) -> None:
+    def backward(self, interior: tuple[np.ndarray, np.ndarray], displacement: np.ndarray, out: np.ndarray) -> None:
         """Displacements of all nodes, into ``out`` (3 nodes,), of those of the contacts (copies, 3 k)."""
-        values, solved = carried
+        values, interior_spectrum = interior
         turns, interface = self.part.copies.turns, self.part.fronts.kept
-        contact = _turned_vectors(moved, turns.transpose(0, 2, 1)).T
+        contact = _turned_vectors(displacement, turns.transpose(0, 2, 1)).T
         images = np.fft.rfft(contact, axis=1)
-        plane = np.empty_like(solved)
+        plane = np.empty_like(interior_spectrum)
         for h in range(len(self._factors)):
-            plane[:, h] = solved[:, h] - self._on_planes(h, self._across[h] @ images[:, h].astype(np.complex64))
+            plane[:, h] = interior_spectrum[:, h] - self._on_planes(h, self._across[h] @ images[:, h].astype(np.complex64))
         before = np.fft.irfft(plane, len(turns), axis=1)
         values[interface[self._order]] = contact
         values[interface[self._before]] = before
@@ -546,7 +543,7 @@ def _places(part: Part) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return before, behind, contact
 
 
-def _folded(rows: np.ndarray, phase: complex, onward: np.ndarray) -> np.ndarray:
+def _fold(rows: np.ndarray, phase: complex, onward: np.ndarray) -> np.ndarray:
     """P^H rows: of rows on both cut planes those of the first, P = (1; Q exp(i theta)), Q ``onward`` (3, 3)."""
     half = len(rows) // 2
     second = np.conj(phase) * (onward.T @ rows[half:].reshape(-1, 3, rows.shape[1])).reshape(half, -1)

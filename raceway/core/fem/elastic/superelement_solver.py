@@ -47,16 +47,16 @@ class _Pressing:
         self._follow()
         return self._on_nodes(-(self._near.move.T @ self._contact.force.reshape(-1)))
 
-    def forces_at(self, moved: np.ndarray) -> np.ndarray:
+    def forces_at(self, displacement: np.ndarray) -> np.ndarray:
         """The same at motions (n, 3) on top of u."""
         self._follow()
-        rate = None if self._near_v is None else self._with(self._near_v, self._rate * moved)
-        return self._on_nodes(self._contact.evaluate_near(self._dt, self._with(self._near_u, moved), rate))
+        rate = None if self._near_v is None else self._with(self._near_v, self._rate * displacement)
+        return self._on_nodes(self._contact.evaluate_near(self._dt, self._with(self._near_u, displacement), rate))
 
-    def locate(self, moved: np.ndarray) -> bool:
+    def locate(self, displacement: np.ndarray) -> bool:
         """Look up where the points lie on the second surfaces at motions (n, 3); whether anything changed."""
         self._follow()
-        where = self._near.move @ self._with(self._near_u, moved)
+        where = self._near.move @ self._with(self._near_u, displacement)
         return self._contact.update(self._contact.place + where.reshape(-1, 3))
 
     def _follow(self) -> None:
@@ -72,9 +72,9 @@ class _Pressing:
         self._near_u = self._u[near.entries]
         self._near_v = None if self._v is None else self._v[near.entries]
 
-    def _with(self, values: np.ndarray, moved: np.ndarray) -> np.ndarray:
+    def _with(self, values: np.ndarray, displacement: np.ndarray) -> np.ndarray:
         out = values.copy()
-        out[self._inside] += moved.ravel()[self._at]
+        out[self._inside] += displacement.ravel()[self._at]
         return out
 
     def _on_nodes(self, forces: np.ndarray) -> np.ndarray:
@@ -147,15 +147,15 @@ class LinearisedContacts:
 
     def __init__(self, face: Interface, tangents: dict[int, BallTangent], frame: np.ndarray, unknown: np.ndarray) -> None:
         self._face, self._tangents, self._frame, self._unknown = face, tangents, frame, unknown
-        used = [tangent.rings for tangent in tangents.values()]
-        nodes = np.unique(np.concatenate(used)) if used else np.zeros(0, dtype=np.int64)
+        ring_places = [tangent.rings for tangent in tangents.values()]
+        nodes = np.unique(np.concatenate(ring_places)) if ring_places else np.zeros(0, dtype=np.int64)
         self._rings = face.of_rings(nodes)
         self._nodes, self._carried = self._rings.nodes, self._rings.carried
         self._size = 3 * len(self._nodes)
         self._balls = {k: _Ball(face, k, tangent) for k, tangent in tangents.items()}
         self._places = {k: of_nodes(np.searchsorted(self._nodes, tangent.rings)) for k, tangent in tangents.items()}
-        shared = sum(map(len, used)) > len(nodes)
-        self._inverse = self._factored() if shared or self._size <= _FACTORED else self._iterated()
+        overlap = sum(map(len, ring_places)) > len(nodes)
+        self._inverse = self._direct_inverse() if overlap or self._size <= _FACTORED else self._iterative_inverse()
 
     def forces(self, driver: Motions, tolerance: float = TIGHT) -> tuple[Motions, np.ndarray]:
         """T x, of which ``frame`` is what it is on the frame, and motions (m,) of the frame.
@@ -175,13 +175,13 @@ class LinearisedContacts:
             at_rings = solution[self._places[k]]
             at_ball = answers[k] - self._balls[k].follows @ at_rings
             cut = 3 * len(tangent.ball)
-            pressed = tangent.matrix @ np.concatenate([at_ball[:cut], at_rings])
-            force[tangent.ball] += pressed[:cut].reshape(-1, 3)
-            force[tangent.rings] += pressed[cut:].reshape(-1, 3)
+            contact_force = tangent.matrix @ np.concatenate([at_ball[:cut], at_rings])
+            force[tangent.ball] += contact_force[:cut].reshape(-1, 3)
+            force[tangent.rings] += contact_force[cut:].reshape(-1, 3)
             balls[k] = face.springs(k, len(tangent.ball) > 0) * at_ball[cut:]
         return Motions(force, balls, face.on_frame(force)), np.where(self._unknown, solution[self._size :], 0.0)
 
-    def _factored(self) -> Callable[[np.ndarray, float], np.ndarray]:
+    def _direct_inverse(self) -> Callable[[np.ndarray, float], np.ndarray]:
         from scipy.linalg import lu_factor, lu_solve
 
         size, m = self._size, len(self._frame)
@@ -192,17 +192,17 @@ class LinearisedContacts:
             matrix[:size, places] += self._rings.under(places, stiffness)
             matrix[size:, places] += self._carried[places].T @ stiffness
         matrix[:size, size:], matrix[size:, size:] = -self._carried, self._frame
-        held = size + np.flatnonzero(~self._unknown)
-        matrix[held] = 0.0
-        matrix[held, held] = 1.0
+        fixed_dofs = size + np.flatnonzero(~self._unknown)
+        matrix[fixed_dofs] = 0.0
+        matrix[fixed_dofs, fixed_dofs] = 1.0
         factors = lu_factor(matrix, overwrite_a=True, check_finite=False)
         return lambda right, tolerance: np.asarray(lu_solve(factors, right, check_finite=False))
 
-    def _iterated(self) -> Callable[[np.ndarray, float], np.ndarray]:
+    def _iterative_inverse(self) -> Callable[[np.ndarray, float], np.ndarray]:
         from scipy.linalg import lu_factor, lu_solve
         from scipy.sparse.linalg import LinearOperator, gmres
 
-        size, m, carried, frame_stiffness, unknown = self._size, len(self._frame), self._carried, self._frame, self._unknown
+        size, m, ride, frame_stiffness, unknown = (self._size, len(self._frame), self._carried, self._frame, self._unknown)
         # What is kept below knows the arrays and not this object, which would know it: all iterations' would stay in memory.
         rings, balls, at = self._rings, self._balls, self._places
         factors = {}
@@ -211,10 +211,10 @@ class LinearisedContacts:
             blocks[np.arange(len(blocks)), np.arange(len(blocks))] += 1.0
             factors[k] = lu_factor(blocks, overwrite_a=True, check_finite=False)
 
-        def pressed(moved: np.ndarray) -> np.ndarray:
-            out = np.zeros_like(moved)
+        def contact_forces(w: np.ndarray) -> np.ndarray:
+            out = np.zeros_like(w)
             for k, places in at.items():
-                out[places] = balls[k].stiffness @ moved[places]
+                out[places] = balls[k].stiffness @ w[places]
             return out
 
         def apart(right: np.ndarray) -> np.ndarray:
@@ -223,26 +223,26 @@ class LinearisedContacts:
                 out[places] = lu_solve(factors[k], right[places], check_finite=False)
             return out
 
-        along = apart(carried)
-        small = np.where(unknown[:, None], frame_stiffness + carried.T @ pressed(along), np.eye(m))
+        along = apart(ride)
+        small = np.where(unknown[:, None], frame_stiffness + ride.T @ contact_forces(along), np.eye(m))
 
-        def preconditioned(right: np.ndarray) -> np.ndarray:
-            moved = apart(right[:size])
-            on_frame = right[size:] - np.where(unknown, carried.T @ pressed(moved), 0.0)
+        def preconditioner(right: np.ndarray) -> np.ndarray:
+            w = apart(right[:size])
+            on_frame = right[size:] - np.where(unknown, ride.T @ contact_forces(w), 0.0)
             frame = np.linalg.solve(small, on_frame)
-            return np.concatenate([moved + along @ frame, frame])
+            return np.concatenate([w + along @ frame, frame])
 
-        def applied(moved: np.ndarray) -> np.ndarray:
-            moved = moved.ravel()
-            force, frame = pressed(moved[:size]), moved[size:]
-            on_frame = np.where(unknown, carried.T @ force + frame_stiffness @ frame, frame)
-            out = moved[:size] + rings.times(force) - carried @ frame
-            return preconditioned(np.concatenate([out, on_frame]))
+        def image(w: np.ndarray) -> np.ndarray:
+            w = w.ravel()
+            force, frame = contact_forces(w[:size]), w[size:]
+            on_frame = np.where(unknown, ride.T @ force + frame_stiffness @ frame, frame)
+            out = w[:size] + rings.times(force) - ride @ frame
+            return preconditioner(np.concatenate([out, on_frame]))
 
-        operator = LinearOperator((size + m, size + m), matvec=applied, dtype=float)
+        operator = LinearOperator((size + m, size + m), matvec=image, dtype=float)
 
         def inverse(right: np.ndarray, tolerance: float) -> np.ndarray:
-            solution, fault = gmres(operator, preconditioned(right), rtol=tolerance, restart=_VECTORS, maxiter=3)
+            solution, fault = gmres(operator, preconditioner(right), rtol=tolerance, restart=_VECTORS, maxiter=3)
             if fault or not np.isfinite(solution).all():
                 raise ConvergenceError("the contacts' linear equations have no solution: a part is unconstrained")
             return np.asarray(solution)
@@ -263,16 +263,16 @@ class _Ball:
         cut = 3 * len(tangent.ball)
         flexibility = face.of_ball(ball, tangent.ball)
         sparse = csr_array(tangent.matrix[:cut])  # a point couples eight nodes
-        pressed = (
+        contact = (
             sparse.T @ flexibility[:cut]
         ).T  # flexibility, which is symmetric, times stiffness, which is not with friction
         system = np.empty_like(flexibility, order="F")
-        system[:, :cut] = pressed[:, :cut]
+        system[:, :cut] = contact[:, :cut]
         system[:, cut:] = flexibility[:, cut:] * face.springs(ball, cut > 0)
         system[np.arange(len(system)), np.arange(len(system))] += 1.0
         self._factors = lu_factor(system, overwrite_a=True, check_finite=False)
         self.across = csr_array(tangent.matrix[cut:, :cut])
-        self.follows = lu_solve(self._factors, np.asfortranarray(pressed[:, cut:]), overwrite_b=True, check_finite=False)
+        self.follows = lu_solve(self._factors, np.asfortranarray(contact[:, cut:]), overwrite_b=True, check_finite=False)
         self.stiffness = tangent.matrix[cut:, cut:] - self.across @ self.follows[:cut]
 
     def alone(self, nodes: np.ndarray, motions: np.ndarray) -> np.ndarray:
@@ -340,8 +340,8 @@ class CondensedSolver:
         """(m, m) motions of the frame under unit forces on it, all bodies in balance, with the tangents of the last contact forces."""
         m = self.assembly.frame_size
         step = _Step(self, 1.0, 0.0, 0.0, np.zeros(self.assembly.size), quiet=True)
-        linearised = step._linearised(close=0.0)
-        columns = [linearised.forces(attrs.evolve(step.alone, frame=force))[1] for force in np.eye(m)]
+        system = step._linear_system(close=0.0)
+        columns = [system.forces(attrs.evolve(step.alone, frame=force))[1] for force in np.eye(m)]
         return np.stack(columns, axis=1)
 
     def increment(
@@ -395,48 +395,48 @@ class _Step:
         self.force[a.free] = right[m:] / c_k
         self.unknown = a.frame_free
         face = self.face
-        added = sum(ring.added for ring in face.rings if ring.added.size)
-        self.frame = a.frame_stiffness + self.rate * a.frame_damping + c_m / c_k * a.frame_mass + added
+        additions = sum(ring.added for ring in face.rings if ring.added.size)
+        self.frame = a.frame_stiffness + self.rate * a.frame_damping + c_m / c_k * a.frame_mass + additions
         nodes, balls = np.empty((len(face.numbers), 3)), np.zeros((face.ball_count, face.extra))
         on_frame, self.carried = right[:m] / c_k, []
         if quiet:  # no forces on the bodies
             self.alone = Motions(np.zeros_like(nodes), balls, on_frame)
             return
         for ring in face.rings:
-            moved, force, carried = ring.forward(self.force)
-            nodes[face.place[ring.nodes]] = moved.reshape(-1, 3)
+            displacement, force, interior = ring.forward(self.force)
+            nodes[face.place[ring.nodes]] = displacement.reshape(-1, 3)
             on_frame[: len(force)] += force
-            self.carried.append(carried)
+            self.carried.append(interior)
         for group, members in face.groups:
-            moved, carried = group.forward(self.force)
-            nodes[face.place[group.loose.nodes]] = moved[:, : group.size].reshape(len(members), -1, 3)
-            balls[members] = moved[:, group.size :]
-            self.carried.append(carried)
+            displacement, interior = group.forward(self.force)
+            nodes[face.place[group.loose.nodes]] = displacement[:, : group.size].reshape(len(members), -1, 3)
+            balls[members] = displacement[:, group.size :]
+            self.carried.append(interior)
         self.alone = Motions(nodes, balls, on_frame)
         solver.solves += 1
 
     def linear(self) -> np.ndarray:
-        force, frame = self._linearised(close=0.0).forces(self.alone)
-        return self._whole(self._moved(force, frame), force)
+        force, frame = self._linear_system(close=0.0).forces(self.alone)
+        return self._whole(self._displacement(force, frame), force)
 
     def nonlinear(self, u: np.ndarray, v: np.ndarray | None, dt: float) -> np.ndarray:
         """Newton's method with a line search; every state balances all forces but those of the contacts."""
-        pressed = _Pressing(self.contact, self.face, u, v, self.rate, dt)
-        start = pressed.forces()
+        pressing = _Pressing(self.contact, self.face, u, v, self.rate, dt)
+        start = pressing.forces()
 
-        def unbalanced(state: Motions, force: Motions) -> np.ndarray:
-            return force.nodes - (pressed.forces_at(state.nodes) - start)
+        def imbalance(state: Motions, force: Motions) -> np.ndarray:
+            return force.nodes - (pressing.forces_at(state.nodes) - start)
 
-        force, frame = self._linearised().forces(self.alone)
-        state = self._moved(force, frame)
-        residual = unbalanced(state, force)
+        force, frame = self._linear_system().forces(self.alone)
+        state = self._displacement(force, frame)
+        residual = imbalance(state, force)
         # Gaps are differences of places: their last digit is a force, too.
         rounding = ROUNDING * np.abs(self.contact.place).max() * np.abs(self.contact.stiffness).max(initial=0.0)
         enough = max(_INCREMENT * np.abs(force.nodes).max(), rounding)
         before, close = np.inf, _CLOSE
         for _ in range(NEWTON_LIMIT):
-            if dt == 0.0 and pressed.locate(state.nodes):
-                residual = unbalanced(state, force)
+            if dt == 0.0 and pressing.locate(state.nodes):
+                residual = imbalance(state, force)
             size = np.abs(start + force.nodes).max()
             if np.abs(residual).max() <= max(TOLERANCE * size, enough, 1e-300):
                 return self._whole(state, force)
@@ -448,10 +448,10 @@ class _Step:
             before = np.abs(residual).max()
             back = self.face.moved(Motions(residual, np.zeros_like(force.balls), np.zeros_like(frame)), np.zeros_like(frame))
             driver = Motions(back.nodes, back.balls, self.face.on_frame(residual))
-            pressed_on, turned = self._linearised(close).forces(driver, _ENOUGH)
-            change = Motions(pressed_on.nodes - residual, pressed_on.balls, turned)
-            way = self.face.moved(Motions(-change.nodes, -change.balls, turned), turned)
-            state, force, residual = self._along(state, way, force, change, unbalanced, residual)
+            pressed_on, frame_change = self._linear_system(close).forces(driver, _ENOUGH)
+            change = Motions(pressed_on.nodes - residual, pressed_on.balls, frame_change)
+            way = self.face.moved(Motions(-change.nodes, -change.balls, frame_change), frame_change)
+            state, force, residual = self._along(state, way, force, change, imbalance, residual)
         raise ConvergenceError(
             f"Newton's residual in the contacts stands at {np.abs(residual).max() / size:.1e} of the largest force after {NEWTON_LIMIT} iterations."
         )
@@ -462,19 +462,19 @@ class _Step:
         way: Motions,
         force: Motions,
         change: Motions,
-        unbalanced: Callable[[Motions, Motions], np.ndarray],
+        imbalance: Callable[[Motions, Motions], np.ndarray],
         residual: np.ndarray,
     ) -> tuple[Motions, Motions, np.ndarray]:
         """Motions and forces along a step, and what of the forces is unbalanced there."""
 
         def at(part: float) -> tuple[tuple[Motions, Motions, np.ndarray], float, bool]:
-            trial, tried = state.plus(part, way), force.plus(part, change)
-            remaining = unbalanced(trial, tried)
-            return (trial, tried, remaining), float((way.nodes * remaining).sum()), False
+            trial, trial_force = state.plus(part, way), force.plus(part, change)
+            remaining = imbalance(trial, trial_force)
+            return (trial, trial_force, remaining), float((way.nodes * remaining).sum()), False
 
         return searched(float((way.nodes * residual).sum()), at)
 
-    def _linearised(self, close: float = _CLOSE) -> LinearisedContacts:
+    def _linear_system(self, close: float = _CLOSE) -> LinearisedContacts:
         """With the tangents of the last contact forces; the one before where the same points touch and these are as ``close``."""
         contact, face, solver = self.contact, self.face, self.solver
         blocks = contact.stiffness + self.rate * contact.rate_stiffness
@@ -491,11 +491,11 @@ class _Step:
         for k in range(face.ball_count):
             of_ball = ball == k
             tangents[k] = BallTangent.of(nodes[of_ball], weights[of_ball], blocks[of_ball])
-        linearised = LinearisedContacts(face, tangents, self.frame, self.unknown)
-        solver.last = face, tuple(array.copy() for array in made_of), linearised
-        return linearised
+        system = LinearisedContacts(face, tangents, self.frame, self.unknown)
+        solver.last = face, tuple(array.copy() for array in made_of), system
+        return system
 
-    def _moved(self, force: Motions, frame: np.ndarray) -> Motions:
+    def _displacement(self, force: Motions, frame: np.ndarray) -> Motions:
         back = self.face.moved(Motions(-force.nodes, -force.balls, frame), frame)
         return Motions(self.alone.nodes + back.nodes, self.alone.balls + back.balls, frame)
 
@@ -503,10 +503,10 @@ class _Step:
         """(size,) all unknowns."""
         a, face = self.a, self.face
         out = np.zeros(3 * a.nodes)
-        for ring, carried in zip(face.rings, self.carried, strict=False):
+        for ring, interior in zip(face.rings, self.carried, strict=False):
             frame = state.frame[: ring.carried.shape[1]]
-            ring.backward(carried, state.nodes[face.place[ring.nodes]].ravel(), frame, out)
-        for (group, members), carried in zip(face.groups, self.carried[len(face.rings) :], strict=True):
-            moved = state.nodes[face.place[group.loose.nodes]].reshape(len(members), -1)
-            group.backward(carried, moved, force.balls[members], out)
+            ring.backward(interior, state.nodes[face.place[ring.nodes]].ravel(), frame, out)
+        for (group, members), interior in zip(face.groups, self.carried[len(face.rings) :], strict=True):
+            displacement = state.nodes[face.place[group.loose.nodes]].reshape(len(members), -1)
+            group.backward(interior, displacement, force.balls[members], out)
         return np.concatenate([state.frame, out[a.free]])

@@ -139,12 +139,12 @@ def centre_stress(points: Floats, cells: NDArray[np.uint32], u: Floats, moduli: 
     out = np.empty((len(cells), 6))
     lame, shear = moduli[0], moduli[1]
     for part in batches(len(cells)):
-        corners, moved = points[cells[part]], u[cells[part]]
+        corners, displacement = points[cells[part]], u[cells[part]]
         mean, _ = mean_gradients(corners)
         at = mean if formulation == "one_point" else centre_gradients(corners)
-        gradient = np.einsum("kni,knj->kij", moved, at)
+        gradient = np.einsum("kni,knj->kij", displacement, at)
         trace = np.trace(gradient, axis1=1, axis2=2)
-        change = np.einsum("kni,kni->k", moved, mean) if formulation == "mean_dilatation" else trace
+        change = np.einsum("kni,kni->k", displacement, mean) if formulation == "mean_dilatation" else trace
         for k in range(3):
             out[part, k] = (lame + 2.0 * shear / 3.0) * change + 2.0 * shear * (gradient[:, k, k] - trace / 3.0)
             after = (k + 1) % 3
@@ -171,7 +171,7 @@ def largest_shear(stress: Floats) -> Floats:
 
 
 @jit(void(int64, int64[::1], int32[::1], int64[::1], int32[::1]))
-def _spread(components, starts, neighbours, row_starts, columns):  # type: ignore[no-untyped-def]
+def _spread_blocks(components, starts, neighbours, row_starts, columns):  # type: ignore[no-untyped-def]
     """Rows and columns of a node-by-node pattern with ``components`` unknowns a node."""
     at = 0
     row_starts[0] = 0
@@ -184,8 +184,11 @@ def _spread(components, starts, neighbours, row_starts, columns):  # type: ignor
             row_starts[components * node + a + 1] = at
 
 
-def _node_pattern(cells: NDArray[np.uint32], count: int) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-    """For each of ``count`` nodes the sorted nodes that share an element with it: starts (count + 1,), neighbours."""
+def _assemble_blocks(
+    cells: NDArray[np.uint32], count: int, components: int, element_matrices: Callable[[slice], Floats]
+) -> tuple[NDArray[np.int64], NDArray[np.int32], Floats]:
+    """Starts (count + 1,), neighbours and the rows of a node after each other.  Parameters: see ``assemble``."""
+    # The sorted nodes that share an element with each node
     from scipy.sparse import csr_array
 
     size = 8 * len(cells)
@@ -193,14 +196,7 @@ def _node_pattern(cells: NDArray[np.uint32], count: int) -> tuple[NDArray[np.int
     incidence = csr_array((np.ones(size, dtype=np.int8), cells.ravel().astype(rows.dtype), rows), shape=(len(cells), count))
     pattern = (incidence.T.tocsr() @ incidence).tocsr()
     pattern.sort_indices()
-    return pattern.indptr.astype(np.int64), pattern.indices.astype(np.int32)
-
-
-def _assemble_blocks(
-    cells: NDArray[np.uint32], count: int, components: int, element_matrices: Callable[[slice], Floats]
-) -> tuple[NDArray[np.int64], NDArray[np.int32], Floats]:
-    """``_node_pattern``, and the numbers: the rows of a node after each other.  Parameters: see ``assemble``."""
-    starts, neighbours = _node_pattern(cells, count)
+    starts, neighbours = pattern.indptr.astype(np.int64), pattern.indices.astype(np.int32)
     data = np.zeros(components**2 * len(neighbours))
     for part in batches(len(cells), 2048):
         add_to_sparse(part.start, components, element_matrices(part), cells, starts, neighbours, data)
@@ -226,7 +222,7 @@ def assemble(
     starts, neighbours, data = _assemble_blocks(cells, count, components, element_matrices)
     row_starts = np.empty(components * count + 1, dtype=np.int64)
     columns = np.empty(len(data), dtype=np.int32)
-    _spread(components, starts, neighbours, row_starts, columns)
+    _spread_blocks(components, starts, neighbours, row_starts, columns)
     if len(data) < 2**31:  # scipy's kernels are faster with short indices
         row_starts = row_starts.astype(np.int32)
     return csr_array((data, columns, row_starts), shape=(components * count, components * count))
@@ -254,16 +250,22 @@ def stable_step(matrices: Callable[[slice], Floats], masses: Floats) -> float:
     count = len(masses)
     bounds = np.empty(count)
     for part in batches(count, _BATCH):
-        bounds[part] = np.abs(_scaled(matrices(part), masses[part])).sum(axis=2).max(axis=1)
+        bounds[part] = np.abs(_mass_scaling(matrices(part), masses[part])).sum(axis=2).max(axis=1)
     order = np.argsort(-bounds, kind="stable")
     largest = 0.0
-    for begin, end in _growing(count):
+    # Small parts first, as on graded meshes few elements need a look
+    edges = [0]
+    while edges[-1] < count:
+        edges.append(min(count, edges[-1] + min(_BATCH, max(64, edges[-1]))))
+    for begin, end in zip(edges[:-1], edges[1:], strict=True):
         if bounds[order[begin]] <= largest:
             break
         elements = order[begin:end]
-        scaled = np.concatenate([_scaled(matrices(slice(e, e + 1)), masses[e : e + 1]) for e in elements.tolist()])
-        if not _all_below(scaled, largest * (1.0 + _SAME)):
-            largest = max(largest, float(np.linalg.eigvalsh(scaled)[:, -1].max()))
+        frequencies_squared = np.concatenate(
+            [_mass_scaling(matrices(slice(e, e + 1)), masses[e : e + 1]) for e in elements.tolist()]
+        )
+        if not _all_below(frequencies_squared, largest * (1.0 + _SAME)):
+            largest = max(largest, float(np.linalg.eigvalsh(frequencies_squared)[:, -1].max()))
     return float(2.0 / np.sqrt(largest))
 
 
@@ -276,24 +278,16 @@ def _all_below(matrices: Floats, bound: float) -> bool:
     return True
 
 
-def _growing(count: int) -> list[tuple[int, int]]:
-    """Parts of ``count`` things: small ones first, as on graded meshes few elements need a look."""
-    edges = [0]
-    while edges[-1] < count:
-        edges.append(min(count, edges[-1] + min(_BATCH, max(64, edges[-1]))))
-    return list(zip(edges[:-1], edges[1:], strict=True))
-
-
-def _scaled(stiffness: Floats, mass: Floats) -> Floats:
+def _mass_scaling(stiffness: Floats, mass: Floats) -> Floats:
     """M^-1/2 K M^-1/2 with three components a node."""
     root = 1.0 / np.sqrt(np.repeat(mass, 3, axis=1))
     return stiffness * root[:, :, None] * root[:, None, :]
 
 
 @jit(void(int64, int64, int64[::1], int64[::1], int32[::1], VECTOR, CUBE, CUBE), releases=True)
-def add_rows(first, last, nodes, starts, neighbours, data, moved, force):  # type: ignore[no-untyped-def]
+def add_rows(first, last, nodes, starts, neighbours, data, u, force):  # type: ignore[no-untyped-def]
     """Forces on nodes[first:last], one after the other in ``force`` (m, 3, c), of displacements (n, 3, c) of c copies."""
-    copies = moved.shape[2]
+    copies = u.shape[2]
     for row in range(first, last):
         for a in range(3):
             for c in range(copies):
@@ -306,7 +300,7 @@ def add_rows(first, last, nodes, starts, neighbours, data, moved, force):  # typ
                 at = 9 * begin + 3 * (a * count + p)
                 x, y, z = data[at], data[at + 1], data[at + 2]
                 for c in range(copies):
-                    force[row, a, c] += x * moved[column, 0, c] + y * moved[column, 1, c] + z * moved[column, 2, c]
+                    force[row, a, c] += x * u[column, 0, c] + y * u[column, 1, c] + z * u[column, 2, c]
 
 
 @attrs.frozen(eq=False)
@@ -328,8 +322,8 @@ class BlockRows:
         """Sum of element matrices (k, 24, 24), which ``element_matrices`` gives for a slice of cells (m, 8)."""
         return cls(*_assemble_blocks(cells, nodes, 3, element_matrices))
 
-    def times(self, nodes: NDArray[np.int64], moved: Floats) -> Floats:
+    def times(self, nodes: NDArray[np.int64], displacement: Floats) -> Floats:
         """(m, 3, c) forces [N] on ``nodes`` (m,) of displacements (n, 3, c) [m]."""
-        force = np.empty((len(nodes), 3, moved.shape[2]))
-        add_rows(0, len(nodes), nodes, self.starts, self.neighbours, self.data, moved, force)
+        force = np.empty((len(nodes), 3, displacement.shape[2]))
+        add_rows(0, len(nodes), nodes, self.starts, self.neighbours, self.data, displacement, force)
         return force

@@ -33,28 +33,6 @@ def _stress_rows(moduli, B, point, weight, out):
             out[3 + k, j] = shear * B[point, 3 + k, j]
 
 
-@jit(void(VECTOR, MATRIX, MATRIX, float64, MATRIX))
-def _add_hourglass(moduli, x, mean, volume, K):
-    """Add the hourglass stiffness of the one-point element; see ``raceway.core.fem.hexahedron.stiffness``."""
-    squares = 0.0
-    for n in range(8):
-        for k in range(3):
-            squares += mean[n, k] * mean[n, k]
-    factor = moduli[2] * squares * volume / 8.0
-    for a in range(4):
-        slope_x, slope_y, slope_z = 0.0, 0.0, 0.0
-        for n in range(8):
-            slope_x += HOURGLASS[n, a] * x[n, 0]
-            slope_y += HOURGLASS[n, a] * x[n, 1]
-            slope_z += HOURGLASS[n, a] * x[n, 2]
-        for i in range(8):
-            gamma_i = HOURGLASS[i, a] - slope_x * mean[i, 0] - slope_y * mean[i, 1] - slope_z * mean[i, 2]
-            for j in range(8):
-                gamma_j = HOURGLASS[j, a] - slope_x * mean[j, 0] - slope_y * mean[j, 1] - slope_z * mean[j, 2]
-                for k in range(3):
-                    K[3 * i + k, 3 * j + k] += factor * gamma_i * gamma_j
-
-
 @jit(void(int64, VECTOR, ELEMENT, MATRIX))
 def _element_stiffness(kind, moduli, element, K):
     """Stiffness of one element from its corners: the first 24 rows and columns of K (33, 33) [N/m]."""
@@ -71,7 +49,24 @@ def _element_stiffness(kind, moduli, element, K):
                     for j in range(columns):
                         K[i, j] += factor * rows[s, j]
     if kind == 0:
-        _add_hourglass(moduli, x, mean, weight[0], K)
+        # The hourglass stiffness of the one-point element
+        squares = 0.0
+        for n in range(8):
+            for k in range(3):
+                squares += mean[n, k] * mean[n, k]
+        hourglass = moduli[2] * squares * weight[0] / 8.0
+        for a in range(4):
+            slope_x, slope_y, slope_z = 0.0, 0.0, 0.0
+            for n in range(8):
+                slope_x += HOURGLASS[n, a] * x[n, 0]
+                slope_y += HOURGLASS[n, a] * x[n, 1]
+                slope_z += HOURGLASS[n, a] * x[n, 2]
+            for i in range(8):
+                gamma_i = HOURGLASS[i, a] - slope_x * mean[i, 0] - slope_y * mean[i, 1] - slope_z * mean[i, 2]
+                for j in range(8):
+                    gamma_j = HOURGLASS[j, a] - slope_x * mean[j, 0] - slope_y * mean[j, 1] - slope_z * mean[j, 2]
+                    for k in range(3):
+                        K[3 * i + k, 3 * j + k] += hourglass * gamma_i * gamma_j
     for pivot in range(columns - 1, 23, -1):  # the incompatible modes carry no load: they are eliminated
         for i in range(pivot):
             factor = K[i, pivot] / K[pivot, pivot]
@@ -200,8 +195,6 @@ def _force(s, b, q):
 def _block(w, base, lame, shear, hourglass):
     """Replace the displacements of 16 elements by their nodal forces.
 
-    Parameters
-    ----------
     w : coordinate c of node I of element l at ``base + (8 c + I) WIDTH + l`` [m]; the displacements follow likewise [m]
     lame, shear, hourglass : lambda, mu and hourglass (lambda + 2 mu), each over 64 [Pa]
     """
@@ -311,8 +304,8 @@ def range_hourglass_energy(r, mesh, u):
         over = 1.0 / mean_gradient(b[0], coordinates[0])
         squares = 0.0
         for k in range(3):
-            moved = modes(_nodes(cells, e, uint64(k), u))
-            q = _hourglass(1.0, _gradient(over, b, moved), moved, coordinates)
+            displacement = modes(_nodes(cells, e, uint64(k), u))
+            q = _hourglass(1.0, _gradient(over, b, displacement), displacement, coordinates)
             squares += q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
         total += 0.5 * (moduli[2] / 64.0) * over * (square(b[0]) + square(b[1]) + square(b[2])) * squares
     return total

@@ -200,8 +200,8 @@ def boundary(cells: np.ndarray) -> np.ndarray:
     """(k, 2) facets that belong to one cell only: the surface."""
     nodes = np.sort(cells[:, FACES].reshape(-1, 4), axis=1)
     order = np.lexsort(nodes.T)
-    ordered = nodes[order]
-    alike = (ordered[1:] == ordered[:-1]).all(axis=1)
+    sequence = nodes[order]
+    alike = (sequence[1:] == sequence[:-1]).all(axis=1)
     single = ~(np.r_[False, alike] | np.r_[alike, False])
     keys = np.sort(order[single])
     return np.column_stack([keys // 6, keys % 6])

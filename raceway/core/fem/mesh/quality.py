@@ -99,8 +99,8 @@ def refuse_doubled(mesh: HexMesh, body: str) -> None:
         raise MeshError(
             f"`{body}`: {int((counts - 1).sum())} cells are duplicated; the first is cell {cell}: remove the copies"
         )
-    used = np.unique(mesh.cells)
-    points = mesh.points[used]
+    numbers = np.unique(mesh.cells)
+    points = mesh.points[numbers]
     grain = 1e-9 * float(np.ptp(points, axis=0).max())
     _, first, counts = np.unique(np.round(points / grain), axis=0, return_index=True, return_counts=True)
     if (counts > 1).any():
@@ -109,21 +109,19 @@ def refuse_doubled(mesh: HexMesh, body: str) -> None:
             f"`{body}`: {int((counts - 1).sum())} points coincide with others without being merged, the first at ({where}) m: "
             "touching parts are not connected there. Merge coincident nodes"
         )
-    parts = _parts(mesh.cells)
-    if parts > 1:
-        raise MeshError(f"`{body}`: its cells form {parts} parts that are not connected: give one connected body")
-
-
-def _parts(cells: np.ndarray) -> int:
-    """Number of sets of cells that share nodes with no other set."""
+    # Sets of cells that share nodes with no other set
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
-    count = int(cells.max()) + 1
-    rows, columns = np.repeat(np.arange(len(cells)), 8), cells.reshape(-1)
-    owns = coo_matrix((np.ones(rows.size, dtype=np.int8), (rows, columns + len(cells))), shape=(len(cells) + count,) * 2)
+    count = int(mesh.cells.max()) + 1
+    rows, columns = np.repeat(np.arange(len(mesh.cells)), 8), mesh.cells.reshape(-1)
+    owns = coo_matrix(
+        (np.ones(rows.size, dtype=np.int8), (rows, columns + len(mesh.cells))), shape=(len(mesh.cells) + count,) * 2
+    )
     _, label = connected_components(owns, directed=False)
-    return len(np.unique(label[: len(cells)]))
+    parts = len(np.unique(label[: len(mesh.cells)]))
+    if parts > 1:
+        raise MeshError(f"`{body}`: its cells form {parts} parts that are not connected: give one connected body")
 
 
 def _unit_determinant(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:

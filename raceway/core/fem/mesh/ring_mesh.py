@@ -109,7 +109,7 @@ def _polygon_outline(
     low, high = lines[0], lines[1]
     race, seat = (high, low) if inner else (low, high)
     side = -1.0 if inner else 1.0
-    left, right = _cut(key, race, groove, np.array([centre_x, centre_r]))
+    left, right = _cut_groove(key, race, groove, np.array([centre_x, centre_r]))
     angles = [atan2(p[0] - centre_x, side * (p[1] - centre_r)) for p in (left[-1], right[0])]
     if max(abs(a) for a in angles) >= 0.5 * pi:
         raise MeshError(
@@ -119,7 +119,7 @@ def _polygon_outline(
     return _Outline(left, right, seat, (angles[0], angles[1]))
 
 
-def _cut(key: str, race: np.ndarray, groove: float, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _cut_groove(key: str, race: np.ndarray, groove: float, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The race side left and right of the groove's circle, both ending on it."""
     places: list[tuple[int, float]] = []
     for i, (a, b) in enumerate(zip(race[:-1], race[1:], strict=True)):
@@ -166,7 +166,18 @@ class RingShape:
     def __attrs_post_init__(self) -> None:
         name = "inner ring" if self.inner else "outer ring"
         if self.profile is None:
-            self._check_plain(name)
+            over = self.sign * (self.land - self.centre_r)
+            if not 0.0 < over < self.groove:
+                raise MeshError(
+                    f"{name}: the shoulder at radius {1e3 * self.land:.4g} mm does not cut the groove between its bottom and its "
+                    "centre: change `bearing.shoulder_height`"
+                )
+            half = self.groove * sin(self.edge)
+            if abs(self.centre_x) + half >= 0.5 * self.width:
+                raise MeshError(
+                    f"{name}: a width of {1e3 * self.width:.4g} mm does not hold the groove, which reaches to "
+                    f"{1e3 * (abs(self.centre_x) + half):.4g} mm from its middle: give a larger `bearing.width`"
+                )
         if self.wall <= 0.0:
             raise MeshError(f"{name}: no wall is left below the groove ({1e3 * self.wall:.4g} mm)")
         low, high = self.edges
@@ -174,20 +185,6 @@ class RingShape:
             raise MeshError(
                 f"{name}: the contact angle of {abs(self.contact) * 180 / pi:.3g} deg lies outside the groove, which ends at "
                 f"{-low * 180 / pi:.3g} and {high * 180 / pi:.3g} deg: give a larger `bearing.shoulder_height`"
-            )
-
-    def _check_plain(self, name: str) -> None:
-        over = self.sign * (self.land - self.centre_r)
-        if not 0.0 < over < self.groove:
-            raise MeshError(
-                f"{name}: the shoulder at radius {1e3 * self.land:.4g} mm does not cut the groove between its bottom and its "
-                "centre: change `bearing.shoulder_height`"
-            )
-        half = self.groove * sin(self.edge)
-        if abs(self.centre_x) + half >= 0.5 * self.width:
-            raise MeshError(
-                f"{name}: a width of {1e3 * self.width:.4g} mm does not hold the groove, which reaches to "
-                f"{1e3 * (abs(self.centre_x) + half):.4g} mm from its middle: give a larger `bearing.width`"
             )
 
     @property
@@ -374,7 +371,7 @@ def ring_shape(bearing: Any, inner: bool) -> RingShape:
     key = "inner_profile" if inner else "outer_profile"
     if getattr(bearing, key, None) is not None:
         # A ring whose section the user gives.
-        groove = _groove(bearing, inner)
+        groove = _groove_arc(bearing, inner)
         outline = _polygon_outline(
             f"bearing.{key}", getattr(bearing, key), inner, groove["groove"], groove["centre_x"], groove["centre_r"]
         )
@@ -396,11 +393,11 @@ def ring_shape(bearing: Any, inner: bool) -> RingShape:
         seat=0.5 * (bearing.bore if inner else bearing.outer_diameter),
         land=middle + (-1.0 if inner else 1.0) * (0.5 * bearing.ball_diameter - depth),
         width=bearing.width,
-        **_groove(bearing, inner),
+        **_groove_arc(bearing, inner),
     )
 
 
-def _groove(bearing: Any, inner: bool) -> Tables:
+def _groove_arc(bearing: Any, inner: bool) -> Tables:
     alpha, sense = bearing.contact_angle, 1.0 if inner else -1.0
     conformity = bearing.conformity_inner if inner else bearing.conformity_outer
     offset = sense * (conformity - 0.5) * bearing.ball_diameter

@@ -70,8 +70,8 @@ class Gyroscopic:
     groove: float
     traction: float = 0.0
 
-    def of(self, inner: np.ndarray, outer: np.ndarray, pressed: Sequence[ContactState]) -> _Turned:
-        """At places D (2,) of the ball in both grooves; pressed : the inner and the outer contact."""
+    def of(self, inner: np.ndarray, outer: np.ndarray, states: Sequence[ContactState]) -> _Turned:
+        """At places D (2,) of the ball in both grooves; states : the inner and the outer contact."""
         si, so = float(np.hypot(*inner)), float(np.hypot(*outer))
         ni, no = -inner / si, outer / so
         ti, to = np.array([ni[1], -ni[0]]), np.array([no[1], -no[0]])
@@ -89,7 +89,7 @@ class Gyroscopic:
         pull = [share * moment / self.diameter for share in self.shares]
         by_place = [share / self.diameter * grows for share in self.shares]
         size, grow = np.zeros(2), np.zeros((2, 4))  # normal forces, and their derivatives by both places
-        for race, one in enumerate(pressed):
+        for race, one in enumerate(states):
             normal = one.force if one.traction_state is None else one.normal
             size[race] = np.hypot(*normal)
             if size[race] > 0.0:
@@ -137,11 +137,6 @@ class AppliedLoads:
     push: np.ndarray | float = 0.0
     spring: float = 0.0
     gyroscopic: Gyroscopic | None = None
-
-    @property
-    def with_couples(self) -> bool:
-        """Whether couples act on the ring's section."""
-        return bool(self.slip) or self.gyroscopic is not None
 
     def of(self, contact: int) -> SlipState | None:
         """The part of one contact."""
@@ -216,8 +211,8 @@ class Balls:
         centre, position : (Z, 2) e and p [m];  force : (2 Z, 2) F [N];  rate : (2 Z, 2) velocities of D [m/s]
         """
         applied = applied or AppliedLoads(np.zeros(self.count))
-        moved = (self.coupling @ force.reshape(-1)).reshape(-1, 2)
-        relative = np.concatenate([position - centre, position]) + moved
+        displacement = (self.coupling @ force.reshape(-1)).reshape(-1, 2)
+        relative = np.concatenate([position - centre, position]) + displacement
         contact_states = [
             contact.press(d, r, applied.of(k))
             for k, (contact, d, r) in enumerate(zip(self.contacts, relative, rate, strict=True))
@@ -226,58 +221,58 @@ class Balls:
         answer = np.array([state.force for state in contact_states])
         z = self.count
         couple, by_place = np.array([state.couple for state in contact_states[:z]]), None
-        crossed: np.ndarray | float = 0.0
-        if applied.with_couples:
+        cross_coupling: np.ndarray | float = 0.0
+        if bool(applied.slip) or applied.gyroscopic is not None:
             by_place = np.zeros((z, 4 * z))
             for k, state in enumerate(contact_states[:z]):
                 by_place[k, 2 * k : 2 * k + 2] = state.couple_by_place
         if applied.gyroscopic is not None and by_place is not None:
-            crossed = np.zeros_like(self.coupling)
+            cross_coupling = np.zeros_like(self.coupling)
             for k in range(z):
                 more = applied.gyroscopic.of(relative[k], relative[z + k], contact_states[k::z])
                 at = np.r_[2 * k : 2 * k + 2, 2 * (z + k) : 2 * (z + k) + 2]
                 answer[[k, z + k]] += more.force.reshape(2, 2)
-                crossed[np.ix_(at, at)] = more.stiffness
+                cross_coupling[np.ix_(at, at)] = more.stiffness
                 couple[k] += more.couple
                 by_place[k, at] += more.couple_by_place
         excess = (answer - force).reshape(-1)
         stiffness = [state.stiffness for state in contact_states]
-        contact_stiffness, ball_stiffness, carried, by_section_turn = self._together(
-            stiffness, excess, contact_states, crossed, applied.spring
+        contact_stiffness, ball_stiffness, ring_stiffness, by_section_turn = self._together(
+            stiffness, excess, contact_states, cross_coupling, applied.spring
         )
         acting = self.loads + applied.push - applied.spring * position
-        balance = self._both.T @ (force.reshape(-1) + carried) + acting.reshape(-1)
+        balance = self._both.T @ (force.reshape(-1) + ring_stiffness) + acting.reshape(-1)
         return LinearisedBalls(
             contact_states,
             force,
             excess.reshape(-1, 2),
-            carried,
+            ring_stiffness,
             contact_stiffness,
             ball_stiffness,
             balance,
             by_section_turn,
             couple,
             by_place,
-            crossed,
+            cross_coupling,
             relative,
         )
 
     def smoothed_stiffness(self, now: LinearisedBalls, centre: np.ndarray, position: np.ndarray) -> LinearisedBalls:
         """The same state with the mean stiffness of every contact, see ``Contact.mean_stiffness``."""
-        moved = (self.coupling @ now.force.reshape(-1)).reshape(-1, 2)
-        relative = np.concatenate([position - centre, position]) + moved
+        displacement = (self.coupling @ now.force.reshape(-1)).reshape(-1, 2)
+        relative = np.concatenate([position - centre, position]) + displacement
         stiffness = [
             contact.mean_stiffness(d) + state.along
             for contact, d, state in zip(self.contacts, relative, now.contact_states, strict=True)
         ]
-        contact_stiffness, ball_stiffness, carried, by_section_turn = self._together(
+        contact_stiffness, ball_stiffness, ring_stiffness, by_section_turn = self._together(
             stiffness, now.excess.reshape(-1), now.contact_states, now.crossed
         )
         return attrs.evolve(
             now,
             contact_stiffness=contact_stiffness,
             ball_stiffness=ball_stiffness,
-            carried=carried,
+            carried=ring_stiffness,
             by_section_turn=by_section_turn,
         )
 
@@ -286,19 +281,19 @@ class Balls:
         stiffness: list[np.ndarray],
         excess: np.ndarray,
         contact_states: list[ContactState],
-        crossed: np.ndarray | float,
+        cross_coupling: np.ndarray | float,
         spring: float = 0.0,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """S, H, (1 + K W)^-1 rest and B, for the stiffness (2, 2) of every contact."""
         stiff, by_section_turn = np.zeros_like(self.coupling), np.zeros((len(excess), self.count))
         for k, block in enumerate(stiffness):
             stiff[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = block
-        stiff += crossed
+        stiff += cross_coupling
         for k, state in enumerate(contact_states[: self.count]):
             by_section_turn[2 * k : 2 * k + 2, k] = state.by_turn
         both = np.linalg.solve(self._ones + stiff @ self.coupling, np.column_stack([stiff, by_section_turn, excess]))
         contact_stiffness = both[:, : len(excess)]
-        if isinstance(crossed, float) and all(state.traction_state is None for state in contact_states):
+        if isinstance(cross_coupling, float) and all(state.traction_state is None for state in contact_states):
             contact_stiffness = 0.5 * (contact_stiffness + contact_stiffness.T)
         ball_stiffness = self._both.T @ contact_stiffness @ self._both
         ball_stiffness += (spring + _IDLE * max(np.abs(ball_stiffness).max(), 1.0)) * np.eye(len(ball_stiffness))
@@ -310,9 +305,9 @@ class Balls:
 
     def tangent(self, now: LinearisedBalls) -> np.ndarray:
         """(2 Z, 2 Z) stiffness against motions of the inner groove centres."""
-        carried = self._both.T @ now.contact_stiffness @ self._inner
-        lost = self._inner.T @ now.contact_stiffness @ self._both @ np.linalg.solve(now.ball_stiffness, carried)
-        return np.asarray(self._inner.T @ now.contact_stiffness @ self._inner - lost)
+        ball_coupling = self._both.T @ now.contact_stiffness @ self._inner
+        relief = self._inner.T @ now.contact_stiffness @ self._both @ np.linalg.solve(now.ball_stiffness, ball_coupling)
+        return np.asarray(self._inner.T @ now.contact_stiffness @ self._inner - relief)
 
     def tangent_with_turns(self, now: LinearisedBalls) -> np.ndarray:
         """(3 Z, 3 Z) the same against those motions and, behind them, turns of the inner ring's section."""
@@ -321,9 +316,9 @@ class Balls:
         by_turn = np.array([state.couple_by_turn for state in now.contact_states[: self.count]])
         # D moves by P p' - E e' + W F';  F' = -S (P p' - E e') - B t'.
         by_relative = by_place @ (self._ones - self.coupling @ now.contact_stiffness)
-        applied = np.concatenate([now.contact_stiffness @ self._inner, -now.by_section_turn], axis=1)
-        balls = np.linalg.solve(now.ball_stiffness, self._both.T @ applied)
-        force = applied - now.contact_stiffness @ self._both @ balls
+        motion_forces = np.concatenate([now.contact_stiffness @ self._inner, -now.by_section_turn], axis=1)
+        balls = np.linalg.solve(now.ball_stiffness, self._both.T @ motion_forces)
+        force = motion_forces - now.contact_stiffness @ self._both @ balls
         couple = by_relative @ self._both @ balls
         couple[:, :n] -= by_relative @ self._inner
         couple[:, n:] += np.diag(by_turn) - by_place @ self.coupling @ now.by_section_turn
@@ -334,8 +329,8 @@ class Balls:
         if now.couple_by_place is None:
             return now.couple
         step, change = self.move(now, np.zeros(2 * self.count))
-        moved = self._both @ step.reshape(-1) + self.coupling @ change.reshape(-1)
-        return now.couple + now.couple_by_place @ moved
+        displacement = self._both @ step.reshape(-1) + self.coupling @ change.reshape(-1)
+        return now.couple + now.couple_by_place @ displacement
 
     def slip(self, now: LinearisedBalls) -> np.ndarray:
         """(4 Z, 2 Z) change of D that a motion of the inner groove centres brings, the balls following."""
@@ -343,14 +338,14 @@ class Balls:
 
     def carried(self, now: LinearisedBalls) -> np.ndarray:
         """(2 Z,) forces of the inner races on the balls that equilibrium of the balls will bring, to first order."""
-        lost = self._inner.T @ now.contact_stiffness @ self._both @ np.linalg.solve(now.ball_stiffness, now.balance)
-        return (now.force.reshape(-1) + now.carried)[: 2 * self.count] - lost
+        relief = self._inner.T @ now.contact_stiffness @ self._both @ np.linalg.solve(now.ball_stiffness, now.balance)
+        return (now.force.reshape(-1) + now.carried)[: 2 * self.count] - relief
 
-    def move(self, now: LinearisedBalls, moved: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def move(self, now: LinearisedBalls, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Steps of places (Z, 2) and forces (2 Z, 2) when the inner groove centres move by (2 Z,), by Newton."""
-        driven = self._both.T @ now.contact_stiffness @ self._inner @ moved
-        step = np.linalg.solve(now.ball_stiffness, now.balance + driven)
-        force = now.carried - now.contact_stiffness @ (self._both @ step - self._inner @ moved)
+        drive = self._both.T @ now.contact_stiffness @ self._inner @ displacement
+        step = np.linalg.solve(now.ball_stiffness, now.balance + drive)
+        force = now.carried - now.contact_stiffness @ (self._both @ step - self._inner @ displacement)
         return step.reshape(-1, 2), force.reshape(-1, 2)
 
     def residual(self, now: LinearisedBalls) -> float:

@@ -89,11 +89,11 @@ class Friction:
         bound, free = self.coefficient * load, position - slip[nodes]
         sliding = self._sliding[nodes]
         for iteration in range(1, _LIMIT + 1):
-            stuck = np.flatnonzero(sliding == 0)
+            sticking = np.flatnonzero(sliding == 0)
             traction = sliding * bound
-            if len(stuck):
-                self._factorise(stuck)
-                traction[stuck] = self._solve((free - self._block @ traction)[stuck])
+            if len(sticking):
+                self._factorise(sticking)
+                traction[sticking] = self._solve((free - self._block @ traction)[sticking])
             excess = free - self._block @ traction  # what slips on top
             breaks = (sliding == 0) & (np.abs(traction) > bound * (1.0 + 1e-12))
             stops = sliding * excess < 0.0
@@ -109,10 +109,10 @@ class Friction:
         self._sliding[nodes] = sliding
         by_load = self.coefficient * sliding.astype(float)
         by_place = 0.0
-        if len(stuck):
-            ones = self._solve(np.ones(len(stuck)))
+        if len(sticking):
+            ones = self._solve(np.ones(len(sticking)))
             by_place = float(ones.sum())
-            by_load *= 1.0 - ones @ self._block[stuck]
+            by_load *= 1.0 - ones @ self._block[sticking]
         moved = np.where(sliding == 0, 0.0, excess)
         after[nodes] = slip[nodes] + moved
         return Traction(float(traction.sum()), by_place, by_load, after, float(traction @ moved), sliding)
@@ -124,15 +124,15 @@ class Friction:
         self._block = np.empty((len(nodes), len(nodes)))
         between(self._ball, self._race, nodes, nodes, self._block)
 
-    def _factorise(self, stuck: np.ndarray) -> None:
-        if np.array_equal(stuck, self._stuck):
+    def _factorise(self, sticking: np.ndarray) -> None:
+        if np.array_equal(sticking, self._stuck):
             return
-        self._lower, status = dpotrf(self._block[np.ix_(stuck, stuck)], lower=1)
+        self._lower, status = dpotrf(self._block[np.ix_(sticking, sticking)], lower=1)
         if status != 0:
             raise ConvergenceError(
                 "the compliance along a groove is not positive definite: its mesh is too coarse or distorted"
             )
-        self._stuck = stuck.copy()
+        self._stuck = sticking.copy()
 
     def _solve(self, right: np.ndarray) -> np.ndarray:
         return np.asarray(dpotrs(self._lower, right, lower=1)[0])

@@ -48,8 +48,8 @@ def sphere_in_torus(axial, radial, points, gap):
 
 
 @jit(void(float64, float64, _POINTS, INDEX, VECTOR, MATRIX, VECTOR))
-def derivatives(axial, radial, points, nodes, load, slope, curved):
-    """slope (n, 2): derivatives of chosen points' gaps by D; curved (3,): aa, ar, rr of sum(load * second derivatives).
+def derivatives(axial, radial, points, nodes, load, slope, curvature):
+    """slope (n, 2): derivatives of chosen points' gaps by D; curvature (3,): aa, ar, rr of sum(load * second derivatives).
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def derivatives(axial, radial, points, nodes, load, slope, curved):
     geometry, meridian, parallel = points
     sense, circle, ball = geometry[0], geometry[2], geometry[3]
     columns = parallel.shape[1]
-    curved[0], curved[1], curved[2] = 0.0, 0.0, 0.0
+    curvature[0], curvature[1], curvature[2] = 0.0, 0.0, 0.0
     for n in range(nodes.size):
         k, i = nodes[n] // columns, nodes[n] % columns
         size = sense * ball * parallel[0, i]
@@ -72,9 +72,9 @@ def derivatives(axial, radial, points, nodes, load, slope, curved):
         slope[n, 0] = -z / rho
         slope[n, 1] = -u / rho * lean
         w = load[n] / rho
-        curved[0] -= w * (1.0 - z * z / (rho * rho))
-        curved[1] += w * z * u / (rho * rho) * lean
-        curved[2] -= w * ((1.0 - u * u / (rho * rho)) * lean * lean + u * y * y / (reach * reach * reach))
+        curvature[0] -= w * (1.0 - z * z / (rho * rho))
+        curvature[1] += w * z * u / (rho * rho) * lean
+        curvature[2] -= w * ((1.0 - u * u / (rho * rho)) * lean * lean + u * y * y / (reach * reach * reach))
 
 
 @jit(void(CUBE, CUBE, INDEX, INDEX, MATRIX))

@@ -228,10 +228,10 @@ def make_patch(ring: RingBody, ball: _Ball, spacing: Spacing, balls: int) -> Pat
     body = Revolution(section, count, solid.young, solid.poisson, formulation=solid.formulation, seat=ring.seat)
     full = body.cached_compliance(label, load, load, steps)
     normal = np.array([np.cos(section.angles), np.sin(section.angles)])  # radial, axial
-    near = _projected(full[:columns], normal)
+    near = _projection(full[:columns], normal)
     along = np.array([-normal[1], normal[0]])
-    shear = None if ball.shear is None else _projected(full[:columns], along)
-    between = np.moveaxis(_projected(full[columns:], normal), 0, 2)
+    shear = None if ball.shear is None else _projection(full[:columns], along)
+    between = np.moveaxis(_projection(full[columns:], normal), 0, 2)
     low, high = shape.edges
     edges = (low, high) if sense > 0.0 else (-high, -low)
     crossing = np.zeros((balls, 2, 2))
@@ -323,7 +323,7 @@ def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int, shear: b
     along_normal = free_ball(radius, solid.poisson, mesh, steps, (0, 2), solid.formulation)
     assert len(along_normal.latitudes) == 2 * spacing.columns + 1
     normal = np.array([np.cos(along_normal.latitudes), np.sin(along_normal.latitudes)])
-    near = _projected(along_normal.compliance(radius, solid.young), normal)
+    near = _projection(along_normal.compliance(radius, solid.young), normal)
     middle = len(along_normal.latitudes) // 2
     opposite, around = float(near[-1, middle, middle]), None
     if shear:
@@ -332,7 +332,7 @@ def make_ball(radius: float, solid: Solid, spacing: Spacing, rows: int, shear: b
     return _Ball(radius, along_normal.latitudes, np.ascontiguousarray(near[:-1]), opposite, around)
 
 
-def _projected(full: np.ndarray, normal: np.ndarray) -> np.ndarray:
+def _projection(full: np.ndarray, normal: np.ndarray) -> np.ndarray:
     """(o, n, n) along directions normal (2, n), from (o, 2 n, 2 n) of two components."""
     n = normal.shape[1]
     parts = np.asarray(full).reshape(len(full), 2, n, 2, n)

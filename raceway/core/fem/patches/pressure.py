@@ -79,22 +79,22 @@ class ComplianceFactor:
         """Make the factor, or the border, of a set of points."""
         if self._nodes is not None and np.array_equal(nodes, self._nodes):
             return
-        joined = np.isin(nodes, self._base, assume_unique=True, invert=True)
+        joining = np.isin(nodes, self._base, assume_unique=True, invert=True)
         leaving = np.isin(self._base, nodes, assume_unique=True, invert=True)
-        changed = int(joined.sum() + leaving.sum())
+        exchanges = int(joining.sum() + leaving.sum())
         self._nodes = nodes.copy()
-        if not len(self._base) or changed > max(2, _BORDER * len(nodes)):
+        if not len(self._base) or exchanges > max(2, _BORDER * len(nodes)):
             self._factorise(nodes)
             return
-        self._same = changed == 0
+        self._same = exchanges == 0
         if self._same:
             return
-        self._joined, self._left = np.flatnonzero(joined), np.flatnonzero(leaving)
-        self._kept, self._kept_base = np.flatnonzero(~joined), np.flatnonzero(~leaving)
+        self._joined, self._left = np.flatnonzero(joining), np.flatnonzero(leaving)
+        self._kept, self._kept_base = np.flatnonzero(~joining), np.flatnonzero(~leaving)
         new = nodes[self._joined]
         self._cross = self.block(self._base, new)
         count = len(self._joined)
-        sides = np.zeros((len(self._base), changed))
+        sides = np.zeros((len(self._base), exchanges))
         sides[:, :count] = self._cross
         sides[self._left, count + np.arange(len(self._left))] = 1.0
         self._reach = self._plain(sides)
@@ -238,14 +238,14 @@ def _active_set(gap: np.ndarray, start: np.ndarray, factor: ComplianceFactor) ->
     nodes = start[gap[start] < 0.0] if len(start) else start
     if not len(nodes):
         nodes = near[gap[near] < 0.5 * deepest]  # Hertz: half the overlap's area carries
-    allowed = _ROUNDING * abs(deepest)
+    tolerance = _ROUNDING * abs(deepest)
     for iteration in range(1, _UNILATERAL_LIMIT + 1):
         load = factor.solve(nodes, -gap[nodes])
         free = gap < 0.0
         free[nodes] = False
         outside = np.flatnonzero(free)
         depth = gap[outside] + factor.displacement(outside, nodes, load)
-        pulls, joins = load < 0.0, depth < -allowed
+        pulls, joins = load < 0.0, depth < -tolerance
         if not (pulls.any() or joins.any()):
             return nodes, load, iteration
         if iteration > _WHOLE:
@@ -368,14 +368,18 @@ class Contact:
         self._nodes = nodes
         if not len(nodes):
             return self._open(position, slipping)
-        slope, curved = self._derivatives(nodes, load, axial, radial)
+        slope, curvature = self._derivatives(nodes, load, axial, radial)
         force = slope.T @ load
-        carried = solve(slope)
-        stiffness = slope.T @ carried - curved
-        viscous = self._viscous(state, slope, carried)
-        truncated = self._ends(nodes, force)
-        normal = ContactState(force, stiffness, viscous, nodes, load, penetration, truncated)
-        return normal if slipping is None else self._rubbed(normal, position, slipping, -carried)
+        load_slope = solve(slope)
+        stiffness = slope.T @ load_slope - curvature
+        viscous = (
+            np.zeros((2, 2))
+            if state is None or not state.viscous.any()
+            else -load_slope.T @ (state.viscous[:, None] * slope)
+        )
+        at_edge = self._ends(nodes, force)
+        normal = ContactState(force, stiffness, viscous, nodes, load, penetration, at_edge)
+        return normal if slipping is None else self._friction_forces(normal, position, slipping, -load_slope)
 
     def mean_stiffness(self, position: np.ndarray) -> np.ndarray:
         """(2, 2) stiffness as ``press`` gives it, the mean over all places of the points under the ellipse [N/m].
@@ -400,7 +404,7 @@ class Contact:
         self._nodes = _NONE
         zero = np.zeros((2, 2))
         open_ = ContactState(np.zeros(2), zero, zero, _NONE, np.zeros(0))
-        return open_ if slipping is None else self._rubbed(open_, position, slipping, np.zeros((0, 2)))
+        return open_ if slipping is None else self._friction_forces(open_, position, slipping, np.zeros((0, 2)))
 
     def along(self, position: np.ndarray, turn: float = 0.0) -> float:
         """Place of the contact along the groove [m]: all points of the ball move so far over the race."""
@@ -408,7 +412,7 @@ class Contact:
         angle = np.arctan2(race.sense * position[0], race.sense * position[1])
         return float((race.groove - self.patch.ball.radius) * angle - (race.groove * turn if race.sense < 0.0 else 0.0))
 
-    def _rubbed(
+    def _friction_forces(
         self, normal: ContactState, position: np.ndarray, slipping: SlipState, load_by_place: np.ndarray
     ) -> ContactState:
         """With friction; load_by_place (n, 2): derivatives of the points' forces by the ball's place [N/m]."""
@@ -433,15 +437,9 @@ class Contact:
     def _derivatives(
         self, nodes: np.ndarray, load: np.ndarray, axial: float, radial: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        slope, curved = np.empty((len(nodes), 2)), np.empty(3)
-        derivatives(axial, radial, self.patch.points, nodes, np.ascontiguousarray(load), slope, curved)
-        return slope, curved[[0, 1, 1, 2]].reshape(2, 2)
-
-    @staticmethod
-    def _viscous(state: _LawState | None, slope: np.ndarray, held: np.ndarray) -> np.ndarray:
-        if state is None or not state.viscous.any():
-            return np.zeros((2, 2))
-        return -held.T @ (state.viscous[:, None] * slope)
+        slope, curvature = np.empty((len(nodes), 2)), np.empty(3)
+        derivatives(axial, radial, self.patch.points, nodes, np.ascontiguousarray(load), slope, curvature)
+        return slope, curvature[[0, 1, 1, 2]].reshape(2, 2)
 
     def _ends(self, nodes: np.ndarray, force: np.ndarray) -> bool:
         """Whether the contact is cut off by the groove's edge."""
@@ -474,10 +472,10 @@ class PressureField:
     pressure: np.ndarray
 
 
-def pressure_field(patch: Patch, pressed: ContactState) -> PressureField:
+def pressure_field(patch: Patch, state: ContactState) -> PressureField:
     """Pressures of a contact at all points of its patch."""
     pressure = np.zeros(patch.rows * patch.columns)
-    pressure[pressed.nodes] = pressed.load / patch.area
+    pressure[state.nodes] = state.load / patch.area
     radius = patch.ball.radius
     return PressureField(
         radius * patch.phi, radius * patch.ball.latitude, patch.phi, pressure.reshape(patch.rows, patch.columns)

@@ -66,7 +66,7 @@ class SlipHistory:
             elif patch is before:
                 out.append(contact_slip + self.slip[k, : patch.rows * patch.columns])
             else:
-                out.append(contact_slip + _resampled(self.slip[k, : before.rows * before.columns], before, patch))
+                out.append(contact_slip + _wider_slip(self.slip[k, : before.rows * before.columns], before, patch))
         return out
 
     def with_inertia(self, loads: AppliedLoads, mass: float, dt: float, gain: float, rate: np.ndarray) -> AppliedLoads:
@@ -83,20 +83,20 @@ class SlipHistory:
         self, velocity: np.ndarray | None, traction_state: list[Traction | None], reference: np.ndarray, grid: int = 0
     ) -> np.ndarray:
         """(2 Z, 5 + points) the memory when the step is accepted; velocity (Z, 2) of the balls, None in a series of equilibria."""
-        rubbed = [traction for traction in traction_state if traction is not None]
-        points = max((len(traction.slip) for traction in rubbed), default=0)
+        tractions = [traction for traction in traction_state if traction is not None]
+        points = max((len(traction.slip) for traction in tractions), default=0)
         out = np.zeros((len(traction_state), _SLIP + points))
         out[:, _LOST], out[:, _GRID] = self.lost, grid
         if velocity is not None:
             out[:, _VELOCITIES] = min(self.velocities + 1, 2)
             out[:, _LAST], out[:, _BEFORE] = velocity.T.reshape(-1), self.last.T.reshape(-1)
-        for k, traction in enumerate(rubbed):
+        for k, traction in enumerate(tractions):
             out[k, _LOST] += traction.lost
             out[k, _SLIP : _SLIP + len(traction.slip)] = traction.slip - reference[k]
         return out
 
 
-def _resampled(slip: np.ndarray, before: Patch, now: Patch) -> np.ndarray:
+def _wider_slip(slip: np.ndarray, before: Patch, now: Patch) -> np.ndarray:
     """Slips on wider patches: linear between rows; points that are new have not carried and follow the ball, as the corner does."""
     old = slip.reshape(before.rows, before.columns)
     out = np.full((now.rows, now.columns), old[0, 0])
@@ -193,7 +193,19 @@ class Pool:
             contacts = [Contact(patch, law, friction) for patch, law in both for _ in range(z)]
             loads = np.zeros((z, 2))
             loads[:, 1] = table[:, layout.CENTRIFUGAL]
-            balls = Balls(contacts, self._coupling(z), loads, STEP * self.diameter)
+            # (4 Z, 4 Z) W: between the poles of a ball, and between the balls of a row through both rings
+            row = len(self.patches[0].race.crossing)
+            out = np.zeros((2, z, 2, 2, z, 2))
+            ball = np.arange(z)
+            for component in (0, 1):
+                for side, opposite in ((0, 1), (1, 0)):
+                    out[side, ball, component, opposite, ball, component] = -self.patches[0].ball.opposite
+            for race, patch in enumerate(self.patches):
+                for k in range(z):
+                    first = k // row * row
+                    for neighbour in range(first, first + row):
+                        out[race, k, :, race, neighbour, :] += patch.race.crossing[(k - neighbour) % row]
+            balls = Balls(contacts, out.reshape(4 * z, 4 * z), loads, STEP * self.diameter)
             self._rows[key] = _Row(balls, np.zeros((2 * z, 2)))
         return self._rows[key]
 
@@ -217,21 +229,6 @@ class Pool:
                     raise ConvergenceError(f"the balls leave the races: {left} ({why})") from why
                 self._rows.clear()
         raise ConvergenceError("the contacts leave every patch: no equilibrium near the first guess")
-
-    def _coupling(self, z: int) -> np.ndarray:
-        """(4 Z, 4 Z) W: between the poles of a ball, and between the balls of a row through both rings."""
-        row = len(self.patches[0].race.crossing)
-        out = np.zeros((2, z, 2, 2, z, 2))
-        ball = np.arange(z)
-        for component in (0, 1):
-            for side, opposite in ((0, 1), (1, 0)):
-                out[side, ball, component, opposite, ball, component] = -self.patches[0].ball.opposite
-        for race, patch in enumerate(self.patches):
-            for k in range(z):
-                first = k // row * row
-                for neighbour in range(first, first + row):
-                    out[race, k, :, race, neighbour, :] += patch.race.crossing[(k - neighbour) % row]
-        return out.reshape(4 * z, 4 * z)
 
 
 @attrs.frozen(eq=False)
@@ -346,14 +343,14 @@ class PatchSystem(SteppedRing):
     def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
         """Stiffness of the contacts (5, 5) at an equilibrium, without the ripple of points that come and go."""
 
-        def smoothed() -> np.ndarray:
+        def smooth_stiffness() -> np.ndarray:
             self._evaluate(np.asarray(q, dtype=float), np.zeros(5), now.ball, None, 0.0, AT_ONCE)
             row = self.pool.row(self.table, self.with_friction)
             assert row.last is not None
             state = row.balls.smoothed_stiffness(row.last, row.centre, row.where)
             return self._stiffness(row.balls, state, self._grooves(q, np.zeros(5), 0.0))
 
-        return self.pool.widened(smoothed)
+        return self.pool.widened(smooth_stiffness)
 
     def solve_equilibrium(
         self, q: np.ndarray, ball: np.ndarray | None = None, tolerance: float = TOLERANCE
@@ -369,18 +366,18 @@ class PatchSystem(SteppedRing):
         """
         if ball is not None and np.any(ball):
             try:
-                return self._rolled(*self.pool.widened(lambda: self._newton(q, np.asarray(ball), self.load, tolerance)))
+                return self._roll(*self.pool.widened(lambda: self._newton(q, np.asarray(ball), self.load, tolerance)))
             except ConvergenceError:
                 pass  # from rigid bodies, then
         for parts in (1, 4, 16):
             try:
-                return self._rolled(*self._by_load(q, parts, tolerance))
+                return self._roll(*self._by_load(q, parts, tolerance))
             except ConvergenceError as why:
                 if parts == 16 or "nothing holds" in str(why):
                     raise
         raise AssertionError("unreachable")
 
-    def _rolled(self, q: np.ndarray, ball: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, int]:
+    def _roll(self, q: np.ndarray, ball: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, int]:
         if not self.conservative:
             ball = np.concatenate([ball, self.stress_free_slip(q, ball)], axis=1)
         return q, ball, count

@@ -112,23 +112,18 @@ def symmetric_factors(matrix: csr_matrix, ordered: bool = True) -> SuperLU:
     return splu(matrix, permc_spec="NATURAL" if ordered else "MMD_AT_PLUS_A", **_SYMMETRIC)
 
 
-def _elimination_order(matrix: csr_matrix) -> np.ndarray:
-    """(m,) Rows of a symmetric matrix in an order of little fill (minimum degree)."""
-    return np.argsort(symmetric_factors(matrix, ordered=False).perm_c)
-
-
-def _condensed(factor: SuperLU, retained: np.ndarray) -> np.ndarray:
+def _schur_inverse(factor: SuperLU, boundary: np.ndarray) -> np.ndarray:
     """(s, s) The rows and columns ``kept`` of the inverse, where they are the last ones of the matrix that was factorised.
 
     With K = L D L^T the last block of L D L^T is the condensed stiffness, and its inverse that block of K^-1.  SuperLU may
     renumber along the elimination tree, which changes no entry of the factors.
     """
-    position = factor.perm_c[retained]
+    position = factor.perm_c[boundary]
     by_place = np.argsort(position)
     lower, upper = factor.L, factor.U
     row = np.full(lower.shape[0], -1)
-    row[position[by_place]] = np.arange(len(retained))
-    block = np.zeros((len(retained), len(retained)))
+    row[position[by_place]] = np.arange(len(boundary))
+    block = np.zeros((len(boundary), len(boundary)))
     for column, at in enumerate(position[by_place]):
         part = slice(lower.indptr[at], lower.indptr[at + 1])
         rows = row[lower.indices[part]]
@@ -136,7 +131,7 @@ def _condensed(factor: SuperLU, retained: np.ndarray) -> np.ndarray:
     from scipy.linalg import solve_triangular
 
     inverse = solve_triangular(
-        block, np.eye(len(retained)), lower=True, unit_diagonal=True, overwrite_b=True, check_finite=False
+        block, np.eye(len(boundary)), lower=True, unit_diagonal=True, overwrite_b=True, check_finite=False
     )
     pivots = upper.diagonal()[position[by_place]]
     compliance = inverse.T @ (inverse / pivots[:, None])
@@ -164,7 +159,7 @@ def solved_harmonics(divisions: int, harmonics: str) -> np.ndarray:
     return np.array(orders)
 
 
-def offset_weights(divisions: int, solved: np.ndarray, offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def offset_weights(divisions: int, harmonics: np.ndarray, offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Weights of the solved harmonics at offsets in whole sectors.
 
     Returns
@@ -187,20 +182,17 @@ def offset_weights(divisions: int, solved: np.ndarray, offsets: np.ndarray) -> t
     # n k reduced by whole turns in integers, so that large products lose no digits.
     phase = 2.0 * np.pi / divisions * (np.outer(offsets, n) % divisions)
     even, odd = share * np.cos(phase), share * np.sin(phase)
-    if len(solved) == len(n):
+    if len(harmonics) == len(n):
         return even, odd
-    spread = np.zeros((len(n), len(solved)))
+    spread = np.zeros((len(n), len(harmonics)))
     spread[n[: DENSE + 1], n[: DENSE + 1]] = 1.0
-    spread[DENSE + 1 :, 2:] = _spline(solved[2:], n[DENSE + 1 :])
-    return even @ spread, odd @ spread
-
-
-def _spline(solved: np.ndarray, orders: np.ndarray) -> np.ndarray:
-    """(wanted, solved) Values of the interpolating spline for unit data."""
+    # The interpolating spline for unit data
+    harmonics, orders = harmonics[2:], n[DENSE + 1 :]
     from scipy.interpolate import make_interp_spline
 
-    unit = make_interp_spline(np.log1p(solved / 8.0), np.eye(len(solved)), k=5)(np.log1p(orders / 8.0))
-    return np.asarray(unit * (1.0 + solved)[None, :] / (1.0 + orders)[:, None])
+    unit = make_interp_spline(np.log1p(harmonics / 8.0), np.eye(len(harmonics)), k=5)(np.log1p(orders / 8.0))
+    spread[DENSE + 1 :, 2:] = np.asarray(unit * (1.0 + harmonics)[None, :] / (1.0 + orders)[:, None])
+    return even @ spread, odd @ spread
 
 
 def groove_compliance(angles: np.ndarray, response: np.ndarray, weight: np.ndarray) -> np.ndarray:
@@ -222,23 +214,23 @@ def groove_compliance(angles: np.ndarray, response: np.ndarray, weight: np.ndarr
     hold that turn and are not what the contact feels.
     """
     pairs = np.outer(weight, weight)
-    columns = _columns(angles[:, None], angles) * pairs
+    columns = _unit_columns(angles[:, None], angles) * pairs
     values = (response * pairs[:, :, None]).reshape(-1, response.shape[2])
     return np.asarray(np.linalg.lstsq(columns.reshape(3, -1).T, values, rcond=None)[0].T)
 
 
 def direct_compliance(angles: np.ndarray, response: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """M (3,) of a contact on itself, from response (n,) at the angle of the force itself; else as ``groove_compliance``."""
-    columns = _columns(angles, angles) * weight
+    columns = _unit_columns(angles, angles) * weight
     return np.asarray(np.linalg.lstsq(columns.T, response * weight, rcond=None)[0])
 
 
 def along_normal(angles: np.ndarray, compliance: np.ndarray) -> np.ndarray:
     """(n,) n.M n at contact angles [m/N], from M (3,)."""
-    return np.asarray(compliance @ _columns(angles, angles))
+    return np.asarray(compliance @ _unit_columns(angles, angles))
 
 
-def _columns(angle: np.ndarray, load_angle: np.ndarray) -> np.ndarray:
+def _unit_columns(angle: np.ndarray, load_angle: np.ndarray) -> np.ndarray:
     """(3, ...) what the three numbers of M are multiplied by in n.M n'."""
     return np.stack([np.sin(angle) * np.sin(load_angle), np.sin(angle + load_angle), np.cos(angle) * np.cos(load_angle)])
 
@@ -284,7 +276,7 @@ class Revolution:
 
     @_held.default
     def _held_dofs(self) -> np.ndarray:
-        held = np.zeros(3 * len(self.profile.points), dtype=bool)
+        fixed = np.zeros(3 * len(self.profile.points), dtype=bool)
         if self.divisions < 3:
             raise MeshError(f"a body of revolution needs at least 3 elements around it, not {self.divisions}")
         if isinstance(self.seat, str) and self.seat not in ("clamped", "free"):
@@ -292,8 +284,8 @@ class Revolution:
         if self.seat == "clamped":
             if not len(self.profile.seat):
                 raise MeshError("a profile without a seat cannot be clamped: seat = 'free'")
-            held[(3 * self.profile.seat[:, None] + np.arange(3)).ravel()] = True
-        return held
+            fixed[(3 * self.profile.seat[:, None] + np.arange(3)).ravel()] = True
+        return fixed
 
     @_springs.default
     def _bed(self) -> np.ndarray:
@@ -348,18 +340,18 @@ class Revolution:
         -------
         compliance : (o, observed, loads) [m/N]; reversing the offset changes the sign where one of both components is theta
         """
-        load, observed = _flat(load_dofs), _flat(observed_dofs)
+        load, outputs = _flat(load_dofs), _flat(observed_dofs)
         steps = np.arange(self.divisions) if offsets is None else np.atleast_1d(np.asarray(offsets, dtype=np.int64))
-        if self._held[load].all() or self._held[observed].all():
-            return np.zeros((len(steps), len(observed), len(load)))
+        if self._held[load].all() or self._held[outputs].all():
+            return np.zeros((len(steps), len(outputs), len(load)))
         solved = solved_harmonics(self.divisions, harmonics)
         even, odd = offset_weights(self.divisions, solved, steps)
         # u_theta is counted in units of i: i exp(i phase) has the real part -sin, -i exp(i phase) has +sin.
-        turn = (load % 3 == 1).astype(float)[None, :] - (observed % 3 == 1).astype(float)[:, None]
+        turn = (load % 3 == 1).astype(float)[None, :] - (outputs % 3 == 1).astype(float)[:, None]
         straight = turn == 0.0
         plain = bool(straight.all())
-        out = np.zeros((len(steps), len(observed) * len(load)))
-        responses = self._responses(load, observed, solved)
+        out = np.zeros((len(steps), len(outputs) * len(load)))
+        responses = self._responses(load, outputs, solved)
         for first in range(0, len(solved), _BATCH):
             part = slice(first, first + _BATCH)
             block = np.stack([next(responses) for _ in solved[part]])
@@ -368,7 +360,7 @@ class Revolution:
             else:
                 out += even[:, part] @ (block * straight).reshape(len(block), -1)
                 out += odd[:, part] @ (block * turn).reshape(len(block), -1)
-        return out.reshape(len(steps), len(observed), len(load))
+        return out.reshape(len(steps), len(outputs), len(load))
 
     def cached_compliance(
         self,
@@ -420,47 +412,47 @@ class Revolution:
         out = []
         for n in harmonics:
             matrix = self.harmonic(int(n))
-            scaled = (diags_array(scale) @ matrix @ diags_array(scale)).tocsc()
+            unit_diagonal = (diags_array(scale) @ matrix @ diags_array(scale)).tocsc()
             rigid = len(self._rigid_motions(int(n))[0]) if self.seat == "free" else 0
             # Far below the elastic eigenvalues, far above the rounding of the largest.
-            shift = 1e-9 * float(scaled.diagonal().max())
-            factor = symmetric_factors(scaled + shift * diags_array(np.ones(len(mass)), format="csc"), ordered=False)
-            inverse = LinearOperator(scaled.shape, matvec=factor.solve, dtype=float)
+            shift = 1e-9 * float(unit_diagonal.diagonal().max())
+            factor = symmetric_factors(unit_diagonal + shift * diags_array(np.ones(len(mass)), format="csc"), ordered=False)
+            inverse = LinearOperator(unit_diagonal.shape, matvec=factor.solve, dtype=float)
             start = np.random.default_rng(0).standard_normal(len(mass))
             eigenvalues = eigsh(inverse, count + rigid + 2, which="LM", v0=start, return_eigenvectors=False)
             squares = np.sort(1.0 / eigenvalues - shift)[rigid : rigid + count]
             out.append(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi))
         return np.array(out)
 
-    def _responses(self, load: np.ndarray, observed: np.ndarray, solved: np.ndarray) -> Iterator[np.ndarray]:
+    def _responses(self, load: np.ndarray, outputs: np.ndarray, harmonics: np.ndarray) -> Iterator[np.ndarray]:
         """For each harmonic in turn the (seen, loads) compliance between degrees of freedom 3 node + component [m/N]."""
-        both = np.unique(np.concatenate([load, observed]))
+        both = np.unique(np.concatenate([load, outputs]))
         # Condensing costs the cube of the degrees of freedom that stay, solving the number of loads times the whole body.
-        small = len(both) <= _CONDENSED * min(len(load), len(observed))
+        small = len(both) <= _CONDENSED * min(len(load), len(outputs))
         row = self._places(self._order(both if small else both[:0]))
         pencil = self._pencil(row)
-        row_load, row_seen, row_both = row[load], row[observed], row[both]
-        held = (row_seen < 0)[:, None] | (row_load < 0)[None, :]
-        retained = row_both[row_both >= 0]
-        at_load, at_seen = (np.searchsorted(retained, np.maximum(rows, retained[0])) for rows in (row_load, row_seen))
-        for n in solved:
+        row_load, row_seen, row_both = row[load], row[outputs], row[both]
+        fixed = (row_seen < 0)[:, None] | (row_load < 0)[None, :]
+        boundary = row_both[row_both >= 0]
+        at_load, at_seen = (np.searchsorted(boundary, np.maximum(rows, boundary[0])) for rows in (row_load, row_seen))
+        for n in harmonics:
             matrix = pencil.at(2.0 * np.pi * n / self.divisions)
             rigid = self._rigid_motions(int(n)) if self.seat == "free" else None
             if rigid is not None and len(rigid[0]):
-                response = self._relieved(matrix, rigid, row, row_load, row_seen)
+                response = self._free_compliance(matrix, rigid, row, row_load, row_seen)
             elif small:
-                response = _condensed(symmetric_factors(matrix), retained)[np.ix_(at_seen, at_load)]
+                response = _schur_inverse(symmetric_factors(matrix), boundary)[np.ix_(at_seen, at_load)]
             else:
-                response = symmetric_factors(matrix).solve(_unit(row_load, len(matrix.indptr) - 1))[row_seen]
-            yield np.where(held, 0.0, response) if held.any() else response
+                response = symmetric_factors(matrix).solve(_unit_loads(row_load, len(matrix.indptr) - 1))[row_seen]
+            yield np.where(fixed, 0.0, response) if fixed.any() else response
 
-    def _relieved(
+    def _free_compliance(
         self,
         matrix: csr_matrix,
         rigid: tuple[np.ndarray, np.ndarray],
         row: np.ndarray,
         load: np.ndarray,
-        observed: np.ndarray,
+        outputs: np.ndarray,
     ) -> np.ndarray:
         """Compliance of a free body's harmonic 0 or 1: loads balanced by inertia, no rigid motion of the masses.
 
@@ -478,10 +470,10 @@ class Revolution:
         springs[row[pins]] = matrix.diagonal().mean()
         factor = symmetric_factors((matrix + diags_array(springs)).tocsc())
         small = np.linalg.inv(r.T @ inertia)
-        moved = factor.solve(inertia)
-        far, near = r[observed] @ small, r[load] @ small
-        answer = factor.solve(_unit(load, len(order)))[observed]
-        return np.asarray(answer - moved[observed] @ near.T - far @ moved[load].T + far @ (inertia.T @ moved) @ near.T)
+        relief = factor.solve(inertia)
+        far, near = r[outputs] @ small, r[load] @ small
+        answer = factor.solve(_unit_loads(load, len(order)))[outputs]
+        return np.asarray(answer - relief[outputs] @ near.T - far @ relief[load].T + far @ (inertia.T @ relief) @ near.T)
 
     def _rigid_motions(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """(q, 3 N) Rigid motions of a harmonic, theta in units of i, and (q,) degrees of freedom that determine them."""
@@ -497,7 +489,7 @@ class Revolution:
     def _order(self, last: np.ndarray) -> np.ndarray:
         """(m,) Unknowns in an order of little fill, those of ``last`` that are not held at the end, ascending."""
         inside = np.setdiff1d(self.unknowns, last)
-        order = inside[_elimination_order(self._pencil(self._places(inside)).at(1.0))]
+        order = inside[np.argsort(symmetric_factors(self._pencil(self._places(inside)).at(1.0), ordered=False).perm_c)]
         return np.concatenate([order, last[~self._held[last]]])
 
     def _places(self, order: np.ndarray) -> np.ndarray:
@@ -528,7 +520,7 @@ def seat_areas(profile: Profile, divisions: int) -> np.ndarray:
     return np.asarray(area * 2.0 * np.pi / divisions)
 
 
-def _unit(rows: np.ndarray, size: int) -> np.ndarray:
+def _unit_loads(rows: np.ndarray, size: int) -> np.ndarray:
     """(size, k) Unit loads; a row -1 is held and carries none."""
     out = np.zeros((size, len(rows)))
     free = np.flatnonzero(rows >= 0)

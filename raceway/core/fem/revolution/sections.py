@@ -44,9 +44,9 @@ class Profile:
             raise MeshError(f"{len(self.race)} race nodes with {len(self.angles)} angles")
         r, x = self.points[self.quads, 0], self.points[self.quads, 1]
         area = (x[:, 2] - x[:, 0]) * (r[:, 3] - r[:, 1]) - (r[:, 2] - r[:, 0]) * (x[:, 3] - x[:, 1])
-        turned = self.quads[:, ::-1] if area.sum() < 0.0 else self.quads
-        object.__setattr__(self, "quads", np.ascontiguousarray(turned))
-        corner = _corner_areas(self.points, turned)
+        anticlockwise = self.quads[:, ::-1] if area.sum() < 0.0 else self.quads
+        object.__setattr__(self, "quads", np.ascontiguousarray(anticlockwise))
+        corner = _corner_areas(self.points, anticlockwise)
         if not (corner > 0.0).all():
             bad = int(np.argmin(corner.min(axis=1)))
             at = self.points[self.quads[bad]].mean(axis=0)
@@ -71,7 +71,7 @@ def dofs(nodes: np.ndarray, components: tuple[int, ...] = (0, 2)) -> np.ndarray:
     return np.concatenate([np.column_stack([nodes, np.full(len(nodes), c)]) for c in components])
 
 
-def _mapped(top: np.ndarray, bottom: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _map_between(top: np.ndarray, bottom: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A block of quadrilaterals between two lines.
 
     top, bottom : (m, 2) ends of the lines into the body [m];  depth : (k,) from 0 to 1
@@ -124,7 +124,7 @@ def graded_profile(
     below = zone[0] - growing(zone[0] - edges[0], min(growth * step, coarse), coarse, growth)[:0:-1]
     above = zone[-1] + growing(edges[1] - zone[-1], min(growth * step, coarse), coarse, growth)[1:]
     angles = np.concatenate([below, zone, above])
-    return _section(shape, angles, slice(len(below), len(below) + len(zone)), depth_step, bulk, growth)
+    return _profile(shape, angles, slice(len(below), len(below) + len(zone)), depth_step, bulk, growth)
 
 
 def coarse_profile(shape: RingShape, bulk: float = BULK, surface: float = SURFACE, growth: float = GROWTH) -> Profile:
@@ -132,7 +132,7 @@ def coarse_profile(shape: RingShape, bulk: float = BULK, surface: float = SURFAC
     low, high = _contact_edges(shape)
     cells = max(ceil((high - low) * shape.groove / min(surface, bulk) - 1e-9), 2)
     angles = np.linspace(low, high, cells + 1)
-    return _section(shape, angles, slice(0, len(angles)), min(surface, bulk), bulk, growth)
+    return _profile(shape, angles, slice(0, len(angles)), min(surface, bulk), bulk, growth)
 
 
 def _contact_edges(shape: RingShape) -> tuple[float, float]:
@@ -141,7 +141,7 @@ def _contact_edges(shape: RingShape) -> tuple[float, float]:
     return (low, high) if shape.sign > 0.0 else (-high, -low)
 
 
-def _section(shape: RingShape, angles: np.ndarray, race: slice, depth_step: float, bulk: float, growth: float) -> Profile:
+def _profile(shape: RingShape, angles: np.ndarray, race: slice, depth_step: float, bulk: float, growth: float) -> Profile:
     """Lines from lands and groove into the ring: along the groove's normals, bent towards the side faces."""
     outline, sign = shape.outline, shape.sign
     groove = shape.surface(sign * angles)
@@ -161,7 +161,7 @@ def _section(shape: RingShape, angles: np.ndarray, race: slice, depth_step: floa
     for lean in _LEANS:
         seat = _onto(lean * along + (1.0 - lean) * top[:, 0], outline.seat[1:-1, 0])
         bottom = np.column_stack([seat, np.interp(seat, *outline.seat.T)])
-        points, quads = _mapped(top[:, ::-1], bottom[:, ::-1], depth)
+        points, quads = _map_between(top[:, ::-1], bottom[:, ::-1], depth)
         if lean == _LEANS[-1] or _corner_areas(points, quads).min() > 0.0:
             break
     rows = len(depth)
@@ -220,7 +220,7 @@ def ball_profile(
     axis = radius * np.sin(POLE) * (EVEN * even + (1.0 - EVEN) * latitude / POLE)
     hole = HOLE * radius
     depth = growing(radius - hole, depth_step, bulk, growth) / (radius - hole)
-    points, quads = _mapped(top, np.column_stack([np.full(len(axis), hole), axis]), depth)
+    points, quads = _map_between(top, np.column_stack([np.full(len(axis), hole), axis]), depth)
     rows, middle = len(depth), len(north) - 1
     lines = np.arange(middle - count, middle + count + 1)
     return Profile(points, quads, lines * rows, np.empty(0, dtype=np.int64), latitude[lines], rows)

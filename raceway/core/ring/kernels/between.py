@@ -83,10 +83,10 @@ def forces(scalars, table, work):
             work[ring.CARRIED, c] = work[rows.FORCE, c] + turn * work[ring.TURNING, c]
     _rings_times(scalars, work, ring.CARRIED, ring.MOVED_REST)
     for c in range(2 * z):
-        meant = work[ring.CENTRIFUGAL_MOVED, c] - work[rows.MOVED, c]
-        work[ring.MOVED_REST, c] = meant - work[ring.MOVED_REST, c]
+        target = work[ring.CENTRIFUGAL_MOVED, c] - work[rows.MOVED, c]
+        work[ring.MOVED_REST, c] = target - work[ring.MOVED_REST, c]
         # Second order in what is left, as of the structural approaches.
-        work[rows.STORED, c] += 0.5 * work[ring.CARRIED, c] * (meant + work[ring.MOVED_REST, c])
+        work[rows.STORED, c] += 0.5 * work[ring.CARRIED, c] * (target + work[ring.MOVED_REST, c])
 
 
 @jit(PAIR(MATRIX, int64))
@@ -121,9 +121,7 @@ def _approaches(scalars, work, k, approach):
 def _by_centre(scalars, work, k, position, speed):
     """Of one ball, structural approaches eliminated, by e times ``position`` and its velocity times ``speed``.
 
-    Returns
-    -------
-    tangent of its force; derivatives (inner, outer) x (axial, radial) of its structural approaches
+    Returns the tangent of its force; derivatives (inner, outer) x (axial, radial) of its structural approaches.
     """
     z = work.shape[1] // 2
     ga, gr, cross = work[ring.TURNING, k], work[ring.TURNING, z + k], scalars[ring.BALL_CROSS]
@@ -153,8 +151,6 @@ def _by_centre(scalars, work, k, position, speed):
 def _factorise(scalars, work, first, balls):
     """1 + A M of one row of balls as L U, unknowns ball by ball; False where a pivot is not positive.
 
-    Notes
-    -----
     The matrix is similar to a positive definite one: no pivots are needed.
     """
     n, base = 2 * balls, ring.MATRIX_ROWS + 2 * first
@@ -200,7 +196,7 @@ def _scatter(work, row, first, balls):
 
 
 @jit(void(VECTOR, MATRIX, int64))
-def _solve(scalars, work, row):
+def _solve_moves(scalars, work, row):
     """work[row] := (1 + A M)^-1 work[row]."""
     balls = int(scalars[ring.ROW])
     n = 2 * balls
@@ -261,7 +257,7 @@ def step(scalars, table, ball_gain, work):
     for first in range(0, z, balls):
         if not _factorise(scalars, work, first, balls):
             return False
-    _solve(scalars, work, ring.CARRIED)
+    _solve_moves(scalars, work, ring.CARRIED)
     _rings_times(scalars, work, ring.CARRIED, ring.MOVED_STEP)
     for c in range(2 * z):
         work[ring.MOVED_STEP, c] = work[ring.CENTRIFUGAL_MOVED, c] - work[ring.MOVED_STEP, c] - work[rows.MOVED, c]
@@ -283,11 +279,11 @@ def reduce_tangents(scalars, table, ball_gain, work, K, C):
         w, (di, do) = _by_shift(work, k), _by_angle(work, k)
         # By the turn of the section, and of the couple by d.
         qi, qo = work[rows.BY_TURN, k], work[rows.BY_TURN, z + k]
-        turned = di * qi + do * qo
+        by_turn = di * qi + do * qo
         approach = Pair(work[ring.OWN, k] * qi + cross * qo, cross * qi + work[ring.OWN, z + k] * qo)
         wi, wo = _approaches(scalars, work, k, approach)
-        axial = work[rows.FORCE_BY_TURN, k] + turned * work[ring.TURNING, k] + w.aa * wi + w.ar * wo
-        radial = work[rows.FORCE_BY_TURN, z + k] + turned * work[ring.TURNING, z + k] + w.ra * wi + w.rr * wo
+        axial = work[rows.FORCE_BY_TURN, k] + by_turn * work[ring.TURNING, k] + w.aa * wi + w.ar * wo
+        radial = work[rows.FORCE_BY_TURN, z + k] + by_turn * work[ring.TURNING, z + k] + w.ra * wi + w.rr * wo
         f, _ = _by_centre(scalars, work, k, 1.0, 0.0)
         to_ring(seat, Pair(f.aa, f.ar), axial, work, ring.BY_Q, k)
         to_ring(seat, Pair(f.ra, f.rr), radial, work, ring.BY_Q, z + k)

@@ -365,9 +365,9 @@ def next_balls(scalars, dt, ball, before, history, trial):
     for k in range(ball.shape[0]):
         for c in range(ball.shape[1]):
             now, last = ball[k, c], before[k, c]
-            committed = SLIPS <= c < end
-            history[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
-            trial[k, c] = now if committed else 2.0 * now - last
+            is_slip = SLIPS <= c < end
+            history[k, c] = now if is_slip else (0.5 * last - 2.0 * now) * inverse
+            trial[k, c] = now if is_slip else 2.0 * now - last
 
 
 @jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
@@ -377,10 +377,10 @@ def accept_balls(scalars, dt, ball, before, history, trial):
     for k in range(ball.shape[0]):
         for c in range(ball.shape[1]):
             now, last = trial[k, c], ball[k, c]
-            committed = SLIPS <= c < end
+            is_slip = SLIPS <= c < end
             before[k, c], ball[k, c] = last, now
-            history[k, c] = now if committed else (0.5 * last - 2.0 * now) * inverse
-            trial[k, c] = now if committed else 2.0 * now - last
+            history[k, c] = now if is_slip else (0.5 * last - 2.0 * now) * inverse
+            trial[k, c] = now if is_slip else 2.0 * now - last
 
 
 class Seat(NamedTuple):

@@ -92,9 +92,9 @@ def _tangents(k, z, ball_gain, work):
     ki = -by_gap - ball_gain * by_rate
     ko = -work[rows.FORCE_BY_GAP, z + k] - ball_gain * work[rows.FORCE_BY_RATE, z + k]
     na, nr = work[NORMAL, k], work[NORMAL, z + k]
-    closed = 1.0 if work[APPROACH, z + k] > 0.0 and ki + ko > 0.0 else 0.0
-    share = closed * ko / max(ki + ko, 1e-300)
-    across = closed * work[rows.CONTACT_FORCE, k] / max(work[LENGTH, k], 1e-300)
+    contact = 1.0 if work[APPROACH, z + k] > 0.0 and ki + ko > 0.0 else 0.0
+    share = contact * ko / max(ki + ko, 1e-300)
+    across = contact * work[rows.CONTACT_FORCE, k] / max(work[LENGTH, k], 1e-300)
     along, dashpot = -by_gap * share - across, -by_rate * share
     stiffness = Tensor(along * na * na + across, along * na * nr, along * na * nr, along * nr * nr + across)
     damping = Tensor(dashpot * na * na, dashpot * na * nr, dashpot * na * nr, dashpot * nr * nr)
@@ -134,8 +134,8 @@ def rigid_weightless(t, q, v, balls, contacts, constants, response):
         if moving == 0:
             break
     for k in range(z):
-        closed = 1.0 if work[APPROACH, z + k] > 0.0 else 0.0
-        fi, fo, na, nr = force[k] * closed, force[z + k] * closed, work[NORMAL, k], work[NORMAL, z + k]
+        contact = 1.0 if work[APPROACH, z + k] > 0.0 else 0.0
+        fi, fo, na, nr = force[k] * contact, force[z + k] * contact, work[NORMAL, k], work[NORMAL, z + k]
         _, lo = offsets_of(k, scalars, table)
         ball[k, 0] = lo + work[rows.SHIFT, z + k] + work[OUTER, z + k]
         force[k], force[z + k] = fi, fo

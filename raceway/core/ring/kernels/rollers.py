@@ -32,8 +32,6 @@ _LOAD, _MOMENT, _STIFF, _STIFF_1, _STIFF_2, _VISCOUS, _VISCOUS_1, _VISCOUS_2 = r
 def _add_energies(share, work):
     """Add the share of each contact's energy [J] to STORED: Q delta / (1 + m) of a law that goes with delta^m.
 
-    Notes
-    -----
     Energies of systems are the law's at the gaps in ``work``, those of the middle, and STORED: what the laminae have beyond it.
     """
     for i in range(work.shape[1]):
@@ -85,12 +83,8 @@ def _sum_laminae(contacts, scalars, table, work):
 def _add_tangent(k, row, gain, work, tangent):
     """Add roller k's derivatives by d and u, or by their rates, to a tangent (5, 5) of the ring.
 
-    Parameters
-    ----------
     row : of the sums that act directly, the stiffnesses or the dashpots
 
-    Notes
-    -----
     With S the sum of both races' stiffness against p, dp = (k_i dd - (k_i1 - k_o1) du / 2) / S; dQ = k_i dd - k_i1 du / 2 - S_i dp and
     dM = k_i1 dd - k_i2 du / 2 - S_i1 dp; the ring feels Q along d and -M along u.
     """
@@ -134,9 +128,9 @@ def rollers(t, q, v, balls, contacts, constants, response):
         work[_TURN, z + k] = (v[3] + cage * q[4]) * s - (v[4] - cage * q[3]) * c
         edge = 0.5 * reach * abs(work[_TURN, k])
         low, high = min(0.0, approach) - edge, np.inf if push > 0.0 else max(0.0, approach) + edge
-        loaded = approach + 2.0 * edge > 0.0 or push > 0.0
+        in_contact = approach + 2.0 * edge > 0.0 or push > 0.0
         # Without any load a roller lies in the middle; a pushed one as deep as its outer contact asks for.
-        outer = ball[k, 1] if loaded and ball[k, 1] != 0.0 and low < ball[k, 1] < high else 0.5 * approach
+        outer = ball[k, 1] if in_contact and ball[k, 1] != 0.0 and low < ball[k, 1] < high else 0.5 * approach
         work[_OUTER, k], work[_OUTER, z + k] = outer, ball_gain * outer + ball_history[k, 1]
         work[_BRACKET, k], work[_BRACKET, z + k] = low, high
         work[SHIFT, k] = work[SHIFT, z + k] = 0.0

@@ -113,8 +113,6 @@ def _compliance_times(scalars, work, row, c):
 def _factorise(scalars, work):
     """I - C S as inverses ball by ball; False where the bodies take off more than there is.
 
-    Notes
-    -----
     The matrix is similar to a positive definite one, and close to the identity.
     """
     z, cross = work.shape[1] // 2, scalars[ring.BALL_CROSS]
@@ -132,7 +130,7 @@ def _factorise(scalars, work):
 
 
 @jit(void(MATRIX, int64))
-def _solve(work, row):
+def _solve_shifts(work, row):
     """work[row] := (I - C S)^-1 work[row]."""
     z = work.shape[1] // 2
     for k in range(z):
@@ -182,17 +180,17 @@ def _half_way_back(first, coupled, ball, work):
 @jit(boolean(int64, boolean, float64, MATRIX, MATRIX), inline=True)
 def _go(first, coupled, deepest, ball, work):
     """Take a step; whether it was so small that what it leaves is of second order."""
-    z, settled = ball.shape[0], True
+    z, at_rest = ball.shape[0], True
     for c in range(2 * z):
         k, side = (c, 0) if c < z else (c - z, 1)
         ball[k, first + side] += work[ring.STEP, c]
         work[ring.LAST, c] = work[ring.STEP, c]
-        settled = settled and abs(work[ring.STEP, c]) <= max(1e-8 * -work[rows.GAP, c], 1e-10 * deepest)
+        at_rest = at_rest and abs(work[ring.STEP, c]) <= max(1e-8 * -work[rows.GAP, c], 1e-10 * deepest)
         if coupled:
             ball[k, first + 2 + side] += work[ring.MOVED_STEP, c]
             work[ring.MOVED_LAST, c] = work[ring.MOVED_STEP, c]
-            settled = settled and abs(work[ring.MOVED_STEP, c]) <= 1e-8 * deepest
-    return settled
+            at_rest = at_rest and abs(work[ring.MOVED_STEP, c]) <= 1e-8 * deepest
+    return at_rest
 
 
 @jit(void(int64, VECTOR, MATRIX, float64, MATRIX, VECTOR), inline=True)
@@ -228,10 +226,7 @@ def _follow_linearly(k, scalars, table, ball_gain, work, f):
 def _correct(scalars, table, ball, ball_gain, work, f):
     """One Newton step on structural approaches and displacements after a rigid kernel; the last one is a linear correction.
 
-    Returns
-    -------
-    int
-        ``GOES_ON``, ``SETTLED`` (forces and f are corrected; ``_tangents`` may follow) or ``FAILED``.
+    Returns int: ``GOES_ON``, ``SETTLED`` (forces and f are corrected; ``_tangents`` may follow) or ``FAILED``.
     """
     z, first = table.shape[0], slips_end(scalars, ball)
     coupled = scalars[ring.COUPLED] != 0.0
@@ -249,7 +244,7 @@ def _correct(scalars, table, ball, ball_gain, work, f):
     work[ring.NORM, 0] = norm
     if not _factorise(scalars, work):
         return FAILED
-    _solve(work, ring.STEP)
+    _solve_shifts(work, ring.STEP)
     if coupled and not step(scalars, table, ball_gain, work):
         return FAILED
     if not _go(first, coupled, deepest, ball, work):
@@ -305,8 +300,6 @@ def _rows_of_ball(k, arm, table, work):
 def _tangents(scalars, table, ball_gain, work, f, K, C):
     """Complete f (5,), and K and C (5, 5) where they are asked for, with what the bodies' elasticity adds.
 
-    Notes
-    -----
     df = K dq + B dw + D^T dQ and dQ = A dq + S dw, w = C Q: dw = (I - C S)^-1 (C A - D) dq, where D holds -Q c' dbeta/dq.
     """
     z, arm, rates = table.shape[0], scalars[ring.TILT_ARM], 0.0

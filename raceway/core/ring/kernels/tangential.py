@@ -108,10 +108,10 @@ def _first_guess(k, q, scalars, table, ball, work):
     li, lo = offsets_of(k, scalars, table)
     ea, er, shift = work[CENTRE, k], work[CENTRE, z + k], work[rows.SHIFT, z + k]
     turn = q[3] * work[DIRECTION, z + k] - q[4] * work[DIRECTION, k]
-    turned = (scalars[ring.OFFSET_INNER] + 0.5 * scalars[ring.DIAMETER]) * table[k, ring.SIDE] * turn
+    turn_arc = (scalars[ring.OFFSET_INNER] + 0.5 * scalars[ring.DIAMETER]) * table[k, ring.SIDE] * turn
     length = np.sqrt(ea * ea + er * er)
     room = li + lo + work[rows.SHIFT, k] + shift
-    work[TURNED, z + k] = turned
+    work[TURNED, z + k] = turn_arc
     work[SLOPE, k], work[STATE, z + k], work[MERIT, z + k] = 0.0, MOVES, np.inf
     work[STEP, k], work[STEP, z + k] = 0.0, 0.0
     # Of gyroscopic moments alone.
@@ -121,7 +121,7 @@ def _first_guess(k, q, scalars, table, ball, work):
         scale, angle = (lo + shift + 0.5 * (length - room)) / length, np.arctan2(ea, er)
         ball[k, 0], ball[k, 1] = scale * ea, scale * er
         at_i, at_o = scalars[ring.OFFSET_INNER] * angle, scalars[ring.OFFSET_OUTER] * angle
-        ball[k, ring.SLIPS], ball[k, ring.SLIPS + 1] = at_i - turned, at_o
+        ball[k, ring.SLIPS], ball[k, ring.SLIPS + 1] = at_i - turn_arc, at_o
         work[STATE, z + k] = LOOSE
         return False
     if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 or ball[k, 0] ** 2 + ball[k, 1] ** 2 <= lo * lo:
@@ -183,11 +183,9 @@ def _contact_matrix(contact, c, work):
 
 
 @jit(PAIR(int64, CONTACTS, float64, float64, float64, MATRIX), inline=True)
-def _newton_step(k, contacts, ra, rr, longest, work):
+def _ball_step(k, contacts, ra, rr, longest, work):
     """-J^-1 R [m], regular where J is not, and no longer than ``longest``.
 
-    Notes
-    -----
     J = dR/dp = -G_i - G_o + cross terms through the moment's dependence on both angles.
     """
     z = work.shape[1] // 2
@@ -218,8 +216,6 @@ def _newton_step(k, contacts, ra, rr, longest, work):
 def _settles(k, attempt, contacts, lo, table, ball, work):
     """Move ball k by one step; whether that was the last one, small enough to leave nothing but second order.
 
-    Notes
-    -----
     With n = (sin a, cos a) the direction of a contact at its angle a and t = (cos a, -sin a), the imbalance of a ball at p
     is R = f_i n_i + h_i t_i - f_o n_o - h_o t_o + F_c. It has no potential: a step that goes beyond the balance is halved,
     balls that run in circles begin anew, and those that fail again have to come closer at every step.
@@ -243,7 +239,7 @@ def _settles(k, attempt, contacts, lo, table, ball, work):
         ball[k, 0] -= da
         ball[k, 1] -= dr
         return False
-    da, dr = _newton_step(k, contacts, ra, rr, 0.2 * lo, work)
+    da, dr = _ball_step(k, contacts, ra, rr, 0.2 * lo, work)
     ball[k, 0] += da
     ball[k, 1] += dr
     work[STEP, k], work[STEP, z + k], work[SLOPE, k] = da, dr, ra * da + rr * dr
@@ -306,13 +302,13 @@ class _Traction(NamedTuple):
 
 
 @jit(types.NamedUniTuple(float64, 3, _Traction)(float64, float64, float64))
-def traction_within(asked, normal, limit):
-    """asked / sqrt(1 + (asked / (limit normal))^2): all of a small part, never more than ``limit`` times the normal force."""
+def traction_within(demand, normal, limit):
+    """demand / sqrt(1 + (demand / (limit normal))^2): all of a small part, never more than ``limit`` times the normal force."""
     most = limit * normal
-    size = np.sqrt(asked * asked + most * most)
+    size = np.sqrt(demand * demand + most * most)
     if not size > 0.0:
         return _Traction(0.0, 0.0, 0.0)
-    a, m = asked / size, most / size
+    a, m = demand / size, most / size
     return _Traction(most * a, m**3, limit * a**3)
 
 
@@ -320,15 +316,11 @@ def traction_within(asked, normal, limit):
 def _add_gyroscopic(k, contacts, scalars, work):
     """Add what ball k's moment does to its tangential forces and to the couple on the ring's section.
 
-    Notes
-    -----
     T = share * M / D with M = J w_R w_c sin(beta), tan(beta) = sin(a_o) / (cos(a_o) + D/d_m); the ball's spin w_R follows
     from rolling on both races. M follows the contact angles a, with derivatives. The inner race carries no more than its
     normal force, the outer one the rest: so it fades continuously where the inner contact opens.  With TRACTION both carry
     what ``traction_within`` leaves: the inner race of its share, the outer one of the rest.
 
-    References
-    ----------
     Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapters 2 and 3 (control of the outer race).
     """
     z = work.shape[1] // 2
@@ -342,26 +334,26 @@ def _add_gyroscopic(k, contacts, scalars, work):
     by_i = (_moment(inner + step, here, ratio, scale) - _moment(inner - step, here, ratio, scale)) / (2.0 * step)
     by_o = _moment(inner, _rolling(outer + step, ratio), ratio, scale)
     by_o = (by_o - _moment(inner, _rolling(outer - step, ratio), ratio, scale)) / (2.0 * step)
-    carried, rest, grows, passed = share_i * moment, share_o * moment, 0.0, 0.0
+    traction, rest, grows, coupling = share_i * moment, share_o * moment, 0.0, 0.0
     if limit > 0.0:
         # Dashpots carry no traction: it is limited by the elastic forces, and rates of gaps leave it alone.
         force -= work[rows.FORCE_BY_RATE, k] * work[rows.GAP_RATE, k]
         outer_force = contacts[1].force - work[rows.FORCE_BY_RATE, z + k] * work[rows.GAP_RATE, z + k]
-        at_i = traction_within(carried, max(force, 0.0), limit)
+        at_i = traction_within(traction, max(force, 0.0), limit)
         at_o = traction_within(2.0 / diameter * moment - at_i.force, max(outer_force, 0.0), limit)
-        carried, rest, share_i = at_i.force, at_o.force, share_i * at_i.by_asked
+        traction, rest, share_i = at_i.force, at_o.force, share_i * at_i.by_asked
         share_o = at_o.by_asked * (2.0 / diameter - share_i)
         grows = at_i.by_normal * -work[rows.FORCE_BY_GAP, k]
-        passed, own = at_o.by_asked * grows, at_o.by_normal * -work[rows.FORCE_BY_GAP, z + k]
+        coupling, own = at_o.by_asked * grows, at_o.by_normal * -work[rows.FORCE_BY_GAP, z + k]
         work[BY_LENGTH, z + k] -= own
         work[BY_SHIFT, z + k] += own
-    elif abs(carried) > force:
+    elif abs(traction) > force:
         # No more than the normal force; the outer race takes the rest.
         sign = 1.0 if moment > 0.0 else -1.0
-        carried, grows, passed = sign * force, sign * stiffness, sign * stiffness
+        traction, grows, coupling = sign * force, sign * stiffness, sign * stiffness
         share_i, share_o = 0.0, 2.0 / diameter
-        rest = share_o * moment - carried
-    work[TANGENTIAL, k] -= carried
+        rest = share_o * moment - traction
+    work[TANGENTIAL, k] -= traction
     work[BY_LENGTH, k] -= grows
     work[BY_SHIFT, k] += grows
     work[COUPLE_BY_SHIFT, k] -= groove * grows
@@ -369,8 +361,8 @@ def _add_gyroscopic(k, contacts, scalars, work):
     work[TANGENTIAL, z + k] -= rest
     work[BY_ANGLE, z + k] -= share_o * by_o
     work[BY_OTHER_ANGLE, k], work[BY_OTHER_ANGLE, z + k] = -share_i * by_o, -share_o * by_i
-    work[OUTER_BY_INNER_LENGTH, k] = passed
-    work[COUPLE, k] += groove * carried
+    work[OUTER_BY_INNER_LENGTH, k] = coupling
+    work[COUPLE, k] += groove * traction
     work[COUPLE_BY_LENGTH, z + k] += groove * grows
     work[COUPLE_BY_ANGLE, k] += groove * share_i * by_i
     work[COUPLE_BY_ANGLE, z + k] = groove * share_i * by_o
@@ -416,8 +408,6 @@ def _roll(k, work):
 def _rub(k, contacts, scalars, ball, ball_history, work):
     """Tangential forces of ball k by friction, its couple on the ring's section, and its slips in ``ball``.
 
-    Notes
-    -----
     A contact that sticks stores k_t u^2 / 2 with u = L a - slip outside, L a - r turn - slip inside: L is the distance of
     ball and groove centre at the first touch, a the contact's angle, r the groove's radius, turn that of the ring's section
     by its tilts, the slip is memory. So tau = k_t u L / s, at most mu f (return mapping), and work is stored or lost, never
@@ -436,24 +426,18 @@ def _rub(k, contacts, scalars, ball, ball_history, work):
     work[BY_ANGLE, k], work[BY_ANGLE, z + k] = gi.by_angle, go.by_angle
     work[BY_LENGTH, k], work[BY_LENGTH, z + k] = gi.by_length, go.by_length
     work[BY_SHIFT, k], work[BY_SHIFT, z + k] = gi.by_shift, go.by_shift
-    _couple(k, inner, gi, scalars, work)
-
-
-@jit(void(int64, CONTACT, _GRIP, VECTOR, MATRIX), inline=True)
-def _couple(k, contact, grip, scalars, work):
-    """What the grip of the inner contact does to the section, and turning the section to the grip."""
     z, stick, reach = work.shape[1] // 2, scalars[ring.STICK], scalars[ring.OFFSET_INNER]
     groove = reach + 0.5 * scalars[ring.DIAMETER]
-    lever = reach / contact.length if contact.length > 0.0 else 1.0
-    work[COUPLE, k] = -groove * stick * grip.stretch
-    if grip.by_angle != 0.0:
+    lever = reach / inner.length if inner.length > 0.0 else 1.0
+    work[COUPLE, k] = -groove * stick * gi.stretch
+    if gi.by_angle != 0.0:
         work[COUPLE_BY_ANGLE, k], work[COUPLE_BY_TURN, k] = -groove * stick * reach, groove * groove * stick
         work[BY_TURN, z + k], work[COUPLE_BY_LENGTH, z + k] = -stick * groove * lever, 0.0
         work[COUPLE_BY_SHIFT, k] = 0.0
     else:
         work[COUPLE_BY_ANGLE, k], work[COUPLE_BY_TURN, k], work[BY_TURN, z + k] = 0.0, 0.0, 0.0
-        work[COUPLE_BY_LENGTH, z + k] = -groove * (grip.by_length / lever + grip.force / reach)
-        work[COUPLE_BY_SHIFT, k] = -groove * grip.by_shift / lever
+        work[COUPLE_BY_LENGTH, z + k] = -groove * (gi.by_length / lever + gi.force / reach)
+        work[COUPLE_BY_SHIFT, k] = -groove * gi.by_shift / lever
 
 
 class _Balance(NamedTuple):
@@ -461,8 +445,6 @@ class _Balance(NamedTuple):
 
     by_turn : derivative of the ball's force by the turn of its section [N]
 
-    Notes
-    -----
     At the balance R(p; e, w, turn) = 0 of ball place p, groove centre e, shifts w and turn of the section, dp = -J^-1 dR
     with J = dR/dp. With P the derivative of the ring's force by p, that force follows e by E - T X, T = P J^-1, X = dR/de.
     """
@@ -479,7 +461,7 @@ BALANCE = types.NamedTuple((*(TENSOR,) * 5, PAIR), _Balance)
 
 
 @jit(BALANCE(int64, CONTACTS, MATRIX), inline=True)
-def _linearised(k, contacts, work):
+def _linear_balance(k, contacts, work):
     """Ball k at its balance."""
     z = work.shape[1] // 2
     inner, outer = contacts
@@ -507,14 +489,14 @@ def _add_settled(k, ball_gain, seat, work, f, K, C):
     contacts = _contacts_of(k, ball_gain, work)
     inner, outer = contacts
     # Forces are those before the ball's last step: with what that changes they are off by its square.
-    b, h, da, dr = _linearised(k, contacts, work), work[TANGENTIAL, k], work[STEP, k], work[STEP, z + k]
+    b, h, da, dr = _linear_balance(k, contacts, work), work[TANGENTIAL, k], work[STEP, k], work[STEP, z + k]
     force = Pair(
         inner.force * inner.axial + h * inner.radial + b.p.aa * da + b.p.ar * dr,
         inner.force * inner.radial + h * -inner.axial + b.p.ra * da + b.p.rr * dr,
     )
-    lost, gained = inner.axial * da + inner.radial * dr, outer.axial * da + outer.radial * dr
-    work[rows.CONTACT_FORCE, k] = max(inner.force - inner.stiffness * lost, 0.0)
-    work[rows.CONTACT_FORCE, z + k] = max(outer.force + outer.stiffness * gained, 0.0)
+    inner_closing, outer_closing = inner.axial * da + inner.radial * dr, outer.axial * da + outer.radial * dr
+    work[rows.CONTACT_FORCE, k] = max(inner.force - inner.stiffness * inner_closing, 0.0)
+    work[rows.CONTACT_FORCE, z + k] = max(outer.force + outer.stiffness * outer_closing, 0.0)
     det = b.j.aa * b.j.rr - b.j.ar * b.j.ra
     if det == 0.0:
         return False
@@ -547,8 +529,6 @@ def _add_settled(k, ball_gain, seat, work, f, K, C):
 def _keep_for_bodies(k, contacts, b, t, u, work):
     """Contact forces by e, its velocity, shifts and turn; the ball's force on the ring and its couple by shifts.
 
-    Notes
-    -----
     Both contacts have dQ = g (dR), g = dQ/dp J^-1, on top of what they feel at a ball that stays where it is.
     """
     z = work.shape[1] // 2
