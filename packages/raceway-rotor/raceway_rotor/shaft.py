@@ -60,6 +60,15 @@ class Beam:
         """K - lambda^2 (M_t + M_r) + lambda Omega G for speeds [rad/s]."""
         return self.stiffness - whirl**2 * (self.mass + self.rotary) + whirl * spin * self.polar
 
+    def with_disc(self, position: float, mass: float, transverse: float, polar: float) -> Beam:
+        """A copy with a rigid disc at a node: mass [kg], inertias [kg m2]."""
+        k = 2 * self.node(position)
+        m, r, p = self.mass.copy(), self.rotary.copy(), self.polar.copy()
+        m[k, k] += mass
+        r[k + 1, k + 1] += transverse
+        p[k + 1, k + 1] += polar
+        return attrs.evolve(self, mass=m, rotary=r, polar=p)
+
     def with_spring(self, position: float, stiffness: float, tilt: float = 0.0) -> Beam:
         """A copy with a spring against the ground at a node [N/m, N m/rad]."""
         k = 2 * self.node(position)
@@ -196,14 +205,7 @@ def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
     inner, outer, width = 0.5 * rig.shaft_diameter, rig.disc_radius, rig.disc_thickness
     mass = rig.density * pi * (outer**2 - inner**2) * width
     polar = 0.5 * mass * (outer**2 + inner**2)
-    # A copy with a rigid disc at a node: mass [kg], inertias [kg m2]
-    transverse = 0.5 * polar + mass * width**2 / 12.0
-    k = 2 * bare.node(middle)
-    m, r, p = bare.mass.copy(), bare.rotary.copy(), bare.polar.copy()
-    m[k, k] += mass
-    r[k + 1, k + 1] += transverse
-    p[k + 1, k + 1] += polar
-    return attrs.evolve(bare, mass=m, rotary=r, polar=p)
+    return bare.with_disc(middle, mass, 0.5 * polar + mass * width**2 / 12.0, polar)
 
 
 @lru_cache(maxsize=32)  # a fit asks for one at all its numbers
