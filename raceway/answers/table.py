@@ -37,7 +37,7 @@ _QUANTITY, _VALUE = 22, 16
 def sections(rows: Iterable[Row]) -> RenderableType:
     """Quantity, value, remark; a row without a value is a heading with its remark, or a remark alone where it has no quantity."""
     parts: list[RenderableType] = []
-    table = _section()
+    table = _section_grid()
     for quantity, value, remark in rows:
         if value:
             table.add_row(Words(quantity), escape(value), Words(remark, "dim"))
@@ -46,12 +46,12 @@ def sections(rows: Iterable[Row]) -> RenderableType:
             parts.append(Words(quantity, "bold"))
         if remark:
             parts.append(Words(remark, "dim", indent=2))
-        table = _section()
+        table = _section_grid()
         parts.append(Padding(table, (0, 0, 0, 2)))
     return Group(*parts)
 
 
-def _section() -> Table:
+def _section_grid() -> Table:
     table = Table.grid(padding=(0, 2))
     table.add_column(width=_QUANTITY)
     table.add_column(justify="right", min_width=_VALUE, no_wrap=True)

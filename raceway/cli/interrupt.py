@@ -78,11 +78,11 @@ def farewell(say: Callable[[str], object]) -> int:
     if not _farewell_said:
         _farewell_said = True
         with suppress(OSError):  # a terminal that was closed
-            say(f"stopped by {_words(number)}; no file is left half-written")
+            say(f"stopped by {_signal_name(number)}; no file is left half-written")
     return 128 + number
 
 
-def _words(number: int) -> str:
+def _signal_name(number: int) -> str:
     return "Ctrl-C" if number == signal.SIGINT else signal.Signals(number).name
 
 
@@ -161,7 +161,7 @@ def end(code: int) -> NoReturn:
     def leave(number: int, _frame: FrameType | None) -> None:
         if not _farewell_said:
             with suppress(OSError):
-                os.write(2, f"stopped by {_words(number)}\n".encode())
+                os.write(2, f"stopped by {_signal_name(number)}\n".encode())
         os._exit(128 + number)
 
     for number in _ENDING:

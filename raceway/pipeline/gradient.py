@@ -177,16 +177,16 @@ class SteadyOrbit:
     @cached_property
     def line(self) -> np.ndarray:
         """(5,) Re Z, C and K [N/m, N s/m, N/m], amplitude [m], Im Z [N/m]."""
-        return _line(self.solved, self.model.mass_used)
+        return _line_numbers(self.solved, self.model.mass_used)
 
     def near(self, model: Model, shift: np.ndarray) -> np.ndarray:
         """The same of a neighbouring model, whose equilibrium is moved by (5,)."""
         speed, path = 2.0 * np.pi / float(model.excitation.period_s), self.solved.path
         problem = attrs.evolve(self.solved.problem, system=surrogate(model.system), speed=speed, clock=speed)
-        return _line(solve(problem, attrs.evolve(path, q=path.q + shift), _SOLVED), model.mass_used)
+        return _line_numbers(solve(problem, attrs.evolve(path, q=path.q + shift), _SOLVED), model.mass_used)
 
 
-def _line(solution: Solved, mass: float) -> np.ndarray:
+def _line_numbers(solution: Solved, mass: float) -> np.ndarray:
     z, amplitude = synchronous_response(solution)
     omega = solution.problem.speed
     return np.array([z.real, z.imag / omega, z.real + mass * omega**2, amplitude, z.imag])
@@ -280,7 +280,7 @@ class Gradients:
         """Keys at the end of their range, whatever they do."""
 
         def refusal(keys: Iterable[Key], side: float) -> str:
-            numbers = {key.path: key.value + side * _step(key, _WIDE) for key in keys}
+            numbers = {key.path: key.value + side * _difference_step(key, _WIDE) for key in keys}
             try:
                 with_numbers(self.model.scene, numbers)
             except ValueError as why:
@@ -308,7 +308,7 @@ class Gradients:
         """Of keys whose neighbours are solved in compiled loops."""
         if not keys:
             return {}
-        scene, q, steps = self.model.scene, self.equilibrium.displacement, [_step(key, relative) for key in keys]
+        scene, q, steps = self.model.scene, self.equilibrium.displacement, [_difference_step(key, relative) for key in keys]
         columns = {key.path: np.full(1 + 2 * len(keys), key.value) for key in keys}
         for k, (key, step) in enumerate(zip(keys, steps, strict=True)):
             columns[key.path][1 + 2 * k : 3 + 2 * k] += -step, step
@@ -360,7 +360,7 @@ class Gradients:
                 "also changes the steady temperatures, which derivatives do not solve for. Sample it: raceway band --samples"
             )
         wide = self.model.problem.bearing.preloaded or renews(self.model.problem.contact.law)
-        step, shifts = _step(key, _WIDE if wide else relative), (-2, -1, 1, 2) if wide else (-1, 1)
+        step, shifts = _difference_step(key, _WIDE if wide else relative), (-2, -1, 1, 2) if wide else (-1, 1)
         base, ahead = self._values(self.model, self.equilibrium), self._model(key, step)
         solutions, moves = dict.fromkeys(shifts, base), _has_other_contacts(self.model, ahead)
         if moves or self.stated:
@@ -440,7 +440,7 @@ def _has_other_contacts(model: Model, neighbour: Model) -> bool:
     return periods[0] != periods[1] or not all(np.array_equal(value, other) for value, other in pairs)
 
 
-def _step(key: Key, relative: float) -> float:
+def _difference_step(key: Key, relative: float) -> float:
     """Of differences, in the unit of the key."""
     size, least = abs(key.value), _LEAST.get(key.unit, _ELSE) * relative / _STEP
     if ".conformity_" in key.path:  # acts by what it is above one half

@@ -195,9 +195,9 @@ def model_spread(
         return None, why
     bound = _bound_of(model, equilibrium, values)
     if bound < NEGLIGIBLE:
-        return _table([], bound), Estimate.BOUND(bound=bound, why=why)
+        return _spread_table([], bound), Estimate.BOUND(bound=bound, why=why)
     secant, how = _secant(model, equilibrium, identification, simulation)
-    kinematics, own = model.problem.kinematics, _numbers(model, equilibrium)
+    kinematics, own = model.problem.kinematics, _state_numbers(model, equilibrium)
     rows: list[tuple[Tables, Tables]] = []
 
     def solve(combination: Tables) -> None:
@@ -206,7 +206,7 @@ def model_spread(
         try:
             problem = attrs.evolve(model.problem, kinematics=attrs.evolve(kinematics, **combination))
             variant, state = _under(model, problem, equilibrium)
-            for name, number in _numbers(variant, state).items():
+            for name, number in _state_numbers(variant, state).items():
                 before = own[name]
                 change[name] = None if before is None or number is None else (number - before) / abs(before)
             of_secant = np.nan if secant is None else secant(variant, state)
@@ -231,10 +231,10 @@ def model_spread(
             combinations.append(together)
     for combination in combinations:
         solve(combination)
-    return _table(rows, bound), Estimate.EACH_HYPOTHESIS(how=how, why=why)
+    return _spread_table(rows, bound), Estimate.EACH_HYPOTHESIS(how=how, why=why)
 
 
-def _numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float | None]:
+def _state_numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float | None]:
     """Of an equilibrium, by their names."""
     k, forces = equilibrium.stiffness, equilibrium.contact_force
     return {
@@ -401,7 +401,7 @@ def _secant(
     return of_orbit, "of the steady orbit near the recorded one"
 
 
-def _table(rows: list[tuple[Tables, Tables]], bound: float) -> Tables:
+def _spread_table(rows: list[tuple[Tables, Tables]], bound: float) -> Tables:
     """``error.model``: ranges over all rows and 0, None where a row lacks the number; each hypothesis by itself; the bound."""
     ranges: Tables = {}
     for name in _QUANTITIES:

@@ -83,7 +83,7 @@ def uncertainty_table(result: Result) -> Tables:
     absent = {K: "the scene is static", L10R: lives, PRELOAD: "the bearing has no preload"}
     scatters, hertz = _at_scatters(result), dict[str, float]()
     if getattr(result.error["how"]["contact"], "estimate", None) is Estimate.AGAINST_HERTZ:  # the law is not Hertz's
-        own, other = _numbers(result.model, result.equilibrium), _rigid_numbers(result.model, result.model.problem)
+        own, other = _rest_numbers(result.model, result.equilibrium), _rigid_numbers(result.model, result.model.problem)
         hertz = {name: other[name] / value - 1.0 for name, value in own.items() if name in other}
     elastic = elastic_change(result.model, result.equilibrium) if result.bodies is None else {}
     for quantity in HEADLINE:
@@ -246,12 +246,12 @@ def _rigid_numbers(model: Model, problem: Problem, **numbers: Any) -> dict[str, 
         else:
             bearing = build(with_hertz(problem), model.plan)
             other = Model(with_hertz(problem), model.plan, bearing, bearing.system)
-        return _numbers(other, solve_equilibrium(other))
+        return _rest_numbers(other, solve_equilibrium(other))
     except (RacewayError, ValueError, ArithmeticError):  # LinAlgError is a ValueError
         return {}
 
 
-def _numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float]:
+def _rest_numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float]:
     """Headline quantities at rest that are no zeros."""
     lives = stated_numbers(solved_point(model, equilibrium, None), plugins_stating(model.problem, L10R.name))
     k, force = equilibrium.stiffness, equilibrium.contact_force

@@ -266,7 +266,7 @@ def scene_warnings(problem: Problem) -> tuple[str, ...]:
     """A sentence for each ring that is loose, each value that is likely to be in another unit, and each key without effect."""
     sentences = [words for _, words in speaking(LOOSE, problem.running)]
     for table in _TABLES:
-        for path, unit, value in _numbers(getattr(problem, table), table):
+        for path, unit, value in _table_numbers(getattr(problem, table), table):
             most, symbol, right = _MOST.get(path) or _MOST.get(unit or "", (inf, "", ""))
             if abs(value) > most:
                 sentences.append(f"`{path}` = {value:g}{symbol} is more than {most:g}{symbol}: {right}")
@@ -275,7 +275,7 @@ def scene_warnings(problem: Problem) -> tuple[str, ...]:
     return (*sentences, *unused(problem.scene))
 
 
-def _numbers(table: attrs.AttrsInstance | None, path: str) -> Iterator[tuple[str, str | None, float]]:
+def _table_numbers(table: attrs.AttrsInstance | None, path: str) -> Iterator[tuple[str, str | None, float]]:
     """Path, unit and value of every number in a table and the tables in it."""
     cls: type = type(table)
     for name, unit in _units(cls):
@@ -283,7 +283,7 @@ def _numbers(table: attrs.AttrsInstance | None, path: str) -> Iterator[tuple[str
         if isinstance(value, float):
             yield f"{path}.{name}", unit, value
         elif attrs.has(type(value)):
-            yield from _numbers(value, f"{path}.{name}")
+            yield from _table_numbers(value, f"{path}.{name}")
 
 
 @cache

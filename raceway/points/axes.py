@@ -17,12 +17,12 @@ import numpy as np
 from raceway.errors import Mistake, PluginError, SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.changes import parse_value, value_at, with_value
-from raceway.scene.inputs import read_toml, tidy
+from raceway.scene.inputs import read_toml, text_of, tidy
 from raceway.scene.reading import numbers_only, options_class, scene_from_dict
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.scene.units import is_quantity
 from raceway.scene.unused import without_inherited
-from raceway.storage.files import size_of, why_unreadable
+from raceway.storage.files import why_unreadable
 from raceway.storage.tables import ReadTables, Tables
 
 MOST_POINTS = 10_000
@@ -465,13 +465,7 @@ def _json_points(path: Path) -> object:
 
 def _text(path: Path) -> str:
     try:
-        size_of(path, _LONGEST)
-    except ValueError as why:
-        raise SceneError.at(str(path), None, str(why)) from None
-    except OSError as why:
-        raise SceneError.at(str(path), None, f"cannot be read: {why.strerror or why}") from None
-    try:
-        return path.read_text(encoding="utf-8-sig")
+        return text_of(path, _LONGEST)
     except (OSError, UnicodeDecodeError) as why:
         raise SceneError.at(str(path), None, f"cannot be read: {why_unreadable(why)}") from None
 

@@ -289,12 +289,12 @@ def _row(scene: Scene, paths: Sequence[str], point: list[float]) -> Tables:
     try:
         for path, value in zip(paths, point, strict=True):
             scene = with_number(scene, path, value)
-        return dict(_answer(scene)[0])
+        return dict(_scene_numbers(scene)[0])
     except (RacewayError, ValueError) as why:
         return {"why": str(why)}
 
 
-def _answer(scene: Scene) -> tuple[dict[str, float], dict[str, str]]:
+def _scene_numbers(scene: Scene) -> tuple[dict[str, float], dict[str, str]]:
     """Numbers, and what they are; of plug-ins of quantities those with one number a point."""
     model = build_model(scene, steady_plan(scene))
     equilibrium = solve_equilibrium(model)
@@ -395,7 +395,7 @@ def band(
             "samples", count, "must be a power of 2, at least 2: the samples of a Sobol' sequence are balanced then"
         )
     widths, registry = tolerances_of(read, tolerances or stated_tolerances(read)), default_registry()
-    nominal, words = _answer(read)
+    nominal, words = _scene_numbers(read)
     paths, low, high = zip(*((tolerance.key.path, tolerance.low, tolerance.high) for tolerance in widths), strict=True)
     numbers = np.array(low) + design(count, len(widths), seed) * np.subtract(high, low)
     rows = _loop_rows(read, paths, numbers, nominal)

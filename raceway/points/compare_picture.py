@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from raceway.answers.picture import COLOURS, GREY, MARKERS, dress, given_axes, new_figure, wrapped
 from raceway.answers.quantities import KXX, K, Quantity
-from raceway.points.axes import shown as _text
+from raceway.points.axes import shown
 from raceway.points.effects import MOVING, Findings, Row
 from raceway.storage.tables import Tables
 
@@ -36,7 +36,7 @@ def draw(comparison: Findings) -> Figure:
         _name_lines(panels[0], comparison)
         figure.suptitle(wrapped(f"{_title(quantities)}: {comparison.title}"), fontsize=12)
         return figure
-    texts = {key: [_text(value) for value in comparison.axis(key).values] for key in _by_interaction(comparison, along)}
+    texts = {key: [shown(value) for value in comparison.axis(key).values] for key in _by_interaction(comparison, along)}
     column = next((key for key in list(texts)[:1] if len(texts[key]) <= _MOST_COLUMNS), None)
     styles = {key: values for key, values in texts.items() if key != column}
     columns = texts[column] if column else [""]
@@ -44,7 +44,7 @@ def draw(comparison: Findings) -> Figure:
     one_scale = len({quantity.unit for quantity in quantities}) == 1
     panels = figure.subplots(len(quantities), len(columns), sharex=True, sharey="col" if one_scale else "row", squeeze=False)
     for column_number, value in enumerate(columns):
-        rows = [row for row in comparison.rows if column is None or _text(row.point[column]) == value]
+        rows = [row for row in comparison.rows if column is None or shown(row.point[column]) == value]
         for quantity, panel in zip(quantities, panels[:, column_number], strict=True):
             limits = _limits(rows, quantities) if one_scale else _limits(comparison.rows, [quantity])
             _curves(panel, rows, quantity, along, styles, limits)
@@ -66,7 +66,7 @@ def draw_on(comparison: Findings, name: str, axes: Axes | None) -> Axes:
         _dots_on(panel, rows, quantity)
         _name_lines(panel, comparison)
         return panel
-    styles = {axis.key: [_text(value) for value in axis.values] for axis in comparison.varied if axis.key != along}
+    styles = {axis.key: [shown(value) for value in axis.values] for axis in comparison.varied if axis.key != along}
     limits = _limits(rows, quantities.values() if name in MOVING else [quantity])
     _curves(panel, rows, quantity, along, styles, limits)
     panel.set_xlabel(along)
@@ -109,7 +109,7 @@ def _curves(
     """One curve for each combination of the styled axes, broken where a run failed or is unreliable; those are crosses, at the edge
     where they lie outside."""
     for combination in product(*styles.values()):
-        series = [row for row in rows if all(_text(row.point[k]) == v for k, v in zip(styles, combination, strict=True))]
+        series = [row for row in rows if all(shown(row.point[k]) == v for k, v in zip(styles, combination, strict=True))]
         series = sorted(series, key=lambda row: row.point[along])
         look = _look([values.index(text) for values, text in zip(styles.values(), combination, strict=True)])
         bad = [row for row in series if _in_doubt(row)]
@@ -176,7 +176,7 @@ def _dots_on(panel: Axes, rows: Sequence[Row], quantity: Quantity) -> None:
 
 def _name_lines(panel: Axes, comparison: Findings) -> None:
     keys = [axis.key for axis in comparison.varied]
-    words = [", ".join(f"{key.rpartition('.')[2]} = {_text(row.point[key])}" for key in keys) for row in comparison.rows]
+    words = [", ".join(f"{key.rpartition('.')[2]} = {shown(row.point[key])}" for key in keys) for row in comparison.rows]
     panel.set_yticks(range(len(words)), [word or "the scene" for word in words])
     panel.set_ylim(len(words) - 0.5, -0.5)
 

@@ -384,7 +384,7 @@ def explain(comparison: Findings) -> list[str]:
     # What was run, and how far the runs' own errors reach.
     few = [axis.values if len(axis.values) <= 6 else (*axis.values[:2], "...", axis.values[-1]) for axis in comparison.axes]
     axes = [f"{axis.key} ({', '.join(map(shown, values))})" for axis, values in zip(comparison.axes, few, strict=True)]
-    text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {_series(axes)}."
+    text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {_enumeration(axes)}."
     if comparison.factorials:
         factorial, error = next(iter(comparison.factorials.values())), max(f.error for f in comparison.factorials.values())
         text += f" The effects compare the first with the last value of each axis ({factorial.corners.size} runs)"
@@ -438,18 +438,18 @@ def _span(log_changes: Iterable[float]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _series(parts: Sequence[str]) -> str:
+def _enumeration(parts: Sequence[str]) -> str:
     """``a, b and c``."""
     return parts[0] if len(parts) == 1 else ", ".join(parts[:-1]) + " and " + parts[-1]
 
 
-def _step(axis: Axis) -> str:
+def _axis_ends(axis: Axis) -> str:
     return f"{axis.key} from {shown(axis.ends[0])} to {shown(axis.ends[1])}"
 
 
 def _settings(point: Tables) -> str:
     """``a = 1 and b = 2``."""
-    return _series([f"{key} = {shown(value)}" for key, value in point.items()])
+    return _enumeration([f"{key} = {shown(value)}" for key, value in point.items()])
 
 
 def _courses(comparison: Findings) -> list[str]:
@@ -482,7 +482,9 @@ def _courses(comparison: Findings) -> list[str]:
             left_out = sum(t["doubtful"] for t in here)
             note = f"; doubtful runs between the ends left out: {left_out}" if left_out else ""
             if parts:
-                words.append(f"With {partner.key} = {shown(value)}, {label} along {_step(axis)} {_series(parts)}{note}.")
+                words.append(
+                    f"With {partner.key} = {shown(value)}, {label} along {_axis_ends(axis)} {_enumeration(parts)}{note}."
+                )
     return words
 
 
@@ -523,7 +525,7 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
             ]
             remark = ", a mean of rises and falls" if any(low * high < 0.0 for low, high in ends) else ""
             change = f"{percent(effect.log_change)} ({about.read(effect.difference or 0.0):+.2f} {unit}{share}{remark})"
-            parts.append(f"{_step(comparison.axis(key))} changes it by {change}")
+            parts.append(f"{_axis_ends(comparison.axis(key))} changes it by {change}")
         elif abs(effect.log_change) + factorial.error >= _HARDLY and not effect.resolved:
             # An end of another axis may resolve what its mean does not.
             other_ends = [(other, end) for other in factorial.keys if other != key for end in (0, 1)]
@@ -542,14 +544,16 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
     words = [f"{label} lies between {min(values):.2f} and {max(values):.2f} {unit}. {order} {'; '.join(parts) or none}."]
     if unclear:
         words.append(
-            f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {_series(unclear)}."
+            f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {_enumeration(unclear)}."
         )
     if weak:
         words.append(
-            f"{label} on average hardly depends on {_series(weak)}, but does so together with other axes (see below)."
+            f"{label} on average hardly depends on {_enumeration(weak)}, but does so together with other axes (see below)."
         )
     if inert:
-        words.append(f"{label} hardly depends on {_series(inert)}: no effect of it, alone or with others, reaches 0.5 %.")
+        words.append(
+            f"{label} hardly depends on {_enumeration(inert)}: no effect of it, alone or with others, reaches 0.5 %."
+        )
     return words
 
 
@@ -585,7 +589,7 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
         changes = [factorial.log_change(other.key, {partner.key: end}) for end in (0, 1)]
         words.append(
             f"{label}, interaction of {partner.key} and {other.key}: with {partner.key} = {shown(partner.ends[0])}, "
-            f"{_step(other)} changes it by {percent(changes[0])}, with {shown(partner.ends[1])} by {percent(changes[1])}."
+            f"{_axis_ends(other)} changes it by {percent(changes[0])}, with {shown(partner.ends[1])} by {percent(changes[1])}."
         )
     high = [e for e in factorial.effects if len(e.term) > 2 and abs(e.log_change) >= _HARDLY and e.resolved]
     if high:

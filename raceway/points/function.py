@@ -161,7 +161,7 @@ class Function:
 
     def arrays(self, *columns: ArrayLike) -> np.ndarray | tuple[np.ndarray, ...]:
         """The outputs alone, a tuple of arrays, or the array of a single output: for ``scipy`` and ``xarray.apply_ufunc``."""
-        answer = self(**{key: _numbers(key, column) for key, column in self._by_key(columns, {}).items()})
+        answer = self(**{key: _as_floats(key, column) for key, column in self._by_key(columns, {}).items()})
         values = tuple(np.asarray(answer[name]) for name in self.outputs)
         return values[0] if len(values) == 1 else values
 
@@ -268,7 +268,7 @@ class Function:
 
     def _flat(self, values: Mapping[str, ArrayLike]) -> tuple[tuple[int, ...], Columns]:
         """Common shape of arrays, and their columns (n,), refused before they are made."""
-        arrays = {key: _numbers(key, value) for key, value in values.items()}
+        arrays = {key: _as_floats(key, value) for key, value in values.items()}
         try:
             shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
         except ValueError:
@@ -288,7 +288,7 @@ class Function:
         import xarray
 
         arrays = [
-            value if isinstance(value, xarray.DataArray) else xarray.DataArray(_numbers(key, value))
+            value if isinstance(value, xarray.DataArray) else xarray.DataArray(_as_floats(key, value))
             for key, value in values.items()
         ]
         same = xarray.broadcast(*arrays)
@@ -438,7 +438,7 @@ def refuse_bytes(n: int, entries: int, advice: str) -> None:
         raise RacewayError(f"{n} points need {need:.4g} bytes for their numbers, of {left:.4g} available: {advice}")
 
 
-def _numbers(key: str, value: ArrayLike) -> np.ndarray:
+def _as_floats(key: str, value: ArrayLike) -> np.ndarray:
     try:
         array = np.asarray(value)
         if array.dtype.kind in "c":

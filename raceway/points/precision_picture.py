@@ -69,17 +69,22 @@ def page(result: Tables, picture: bool = False) -> str:
     lines += ["Errors of each quantity, each relative to its own reference:", "", _quantities(result), ""]
     models = [model for model in result["models"] if not model["base"]]
     if models:
-        table = [_line(("model", "difference", "of K", "of peak load", "of p0", "reference's bound")), _line(["---"] * 6)]
+        table = [
+            _markdown_row(("model", "difference", "of K", "of peak load", "of p0", "reference's bound")),
+            _markdown_row(["---"] * 6),
+        ]
         for model in models:
             parts = model["differences"]
             changes = (parts.get(name) for name in (K.name, PEAK_BALL_LOAD.name, P0.name))
             cells = ["" if part is None else f"{100.0 * part:+.3g} %" for part in changes]
             difference = "" if model["difference"] is None else f"{100.0 * model['difference']:.3g} %"
-            table.append(_line((_words(model["model"]), difference, *cells, _number(model["reference"]["error"], 2))))
+            table.append(
+                _markdown_row((_setting_words(model["model"]), difference, *cells, _digits(model["reference"]["error"], 2)))
+            )
         lines += ["Differences between models, each by its own reference:", "", "\n".join(table), ""]
     if result["left_out"]:
         lines += ["Left out:", ""]
-        lines += [f"- {_words(item['setting'])} ({item['family']}): {item['why']}" for item in result["left_out"]]
+        lines += [f"- {_setting_words(item['setting'])} ({item['family']}): {item['why']}" for item in result["left_out"]]
         lines.append("")
     return "\n".join(lines)
 
@@ -98,26 +103,26 @@ def _table(result: Tables) -> str:
         "steps",
         "iterations",
     )
-    lines = [_line((*head, "MiB", "status")), _line(["---"] * (len(head) + 2))]
+    lines = [_markdown_row((*head, "MiB", "status")), _markdown_row(["---"] * (len(head) + 2))]
     for number, row in enumerate(result["rows"]):
         cost = row["cost"] or {}
         memory = cost.get("peak_memory_bytes")
         cells = [
             "\\*" if number in result["front"] else "",
-            _words(row["setting"]),
-            ("~" if row["at_bound"] else "") + _number(row["error"], 2),
-            _number(row["own_error"], 2),
+            _setting_words(row["setting"]),
+            ("~" if row["at_bound"] else "") + _digits(row["error"], 2),
+            _digits(row["own_error"], 2),
             "" if row["order"] is None else f"{row['order']:.2f}",
-            _number(_milli(cost.get("wall_s"))),
-            _number(_milli(cost.get("wall_spread_s")), 2),
-            _number(_milli(cost.get("cpu_s"))),
-            _number(cost.get("compile_s"), 2),
+            _digits(_milli(cost.get("wall_s"))),
+            _digits(_milli(cost.get("wall_spread_s")), 2),
+            _digits(_milli(cost.get("cpu_s"))),
+            _digits(cost.get("compile_s"), 2),
             str(cost.get("steps", "")),
             str(cost.get("iterations", "")),
             "" if memory is None else f"{memory / 2**20:.0f}",
             row["status"] + (f": {row['reason']}" if row["reason"] else ""),
         ]
-        lines.append(_line(cells))
+        lines.append(_markdown_row(cells))
     notes = "\\* on the front; ~ the reference is not ten times more accurate than this row: its error is known to the bound only."
     return "\n".join([*lines, "", notes])
 
@@ -126,16 +131,22 @@ def _quantities(result: Tables) -> str:
     """Errors of all quantities, those of Z's parts relative to |Z|."""
     rows = [row for row in result["rows"] if row["errors"]]
     names = list(dict.fromkeys(name for row in rows for name in row["errors"]))
-    lines = [_line(("setting", *(name.replace("_", " ") for name in names))), _line(["---"] * (1 + len(names)))]
-    lines += [_line((_words(row["setting"]), *(_number(row["errors"].get(name), 2) for name in names))) for row in rows]
+    lines = [
+        _markdown_row(("setting", *(name.replace("_", " ") for name in names))),
+        _markdown_row(["---"] * (1 + len(names))),
+    ]
+    lines += [
+        _markdown_row((_setting_words(row["setting"]), *(_digits(row["errors"].get(name), 2) for name in names)))
+        for row in rows
+    ]
     return "\n".join([*lines, "", "z real and z imag: relative to the size of Z."])
 
 
-def _line(cells: Sequence[object]) -> str:
+def _markdown_row(cells: Sequence[object]) -> str:
     return "| " + " | ".join(str(cell).replace("|", "\\|") if cell != "\\*" else cell for cell in cells) + " |"
 
 
-def _number(value: float | None, digits: int = 3) -> str:
+def _digits(value: float | None, digits: int = 3) -> str:
     return "" if value is None else f"{value:.{digits}g}"
 
 
@@ -143,7 +154,7 @@ def _milli(value: float | None) -> float | None:
     return None if value is None else 1e3 * value
 
 
-def _words(setting: Tables) -> str:
+def _setting_words(setting: Tables) -> str:
     return ", ".join("without inertia" if key == "inertia" else f"{key} = {value}" for key, value in setting.items()) or "-"
 
 
@@ -178,7 +189,7 @@ def draw_on(panel: Axes, result: Tables) -> list[_Label]:
         xy = [_point(result["rows"][k], least) for k in foreign]
         label = "other models, against their own references"
         panel.plot(*zip(*xy, strict=True), linestyle="", marker="x", color=GREY, label=label)
-        labels += [(_words(result["rows"][k]["setting"]), point, GREY) for k, point in zip(foreign, xy, strict=True)]
+        labels += [(_setting_words(result["rows"][k]["setting"]), point, GREY) for k, point in zip(foreign, xy, strict=True)]
     points = [_point(result["rows"][number], least) for number in result["front"]]
     if points:
         x, y = zip(*points, strict=True)
@@ -212,7 +223,7 @@ def _series(row: Tables) -> str:
     ladder = _ladder(row)
     values = {key: value for key, value in row["setting"].items() if key != ladder}
     short = {key.removeprefix("integrator."): value for key, value in values.items()}
-    return f"{row['family']}: {_words(short)}"
+    return f"{row['family']}: {_setting_words(short)}"
 
 
 def _ladder(row: Tables) -> str | None:

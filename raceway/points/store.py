@@ -140,7 +140,7 @@ class Store:
             memory, arrays = io.BytesIO(), any(isinstance(value, np.ndarray) for value in content.values())
             if arrays:
                 np.savez(memory, **content)
-            columns = (key, state, reason, memory.getvalue() if arrays else _text(content), _text(cost))
+            columns = (key, state, reason, memory.getvalue() if arrays else _json_text(content), _json_text(cost))
             lines.append((*columns, self._digest(*columns)))
         self._write(f"INSERT OR REPLACE INTO points ({_COLUMNS}) VALUES (?, ?, ?, ?, ?, ?)", lines)
 
@@ -273,8 +273,8 @@ def _holds_rows(connection: sqlite3.Connection) -> bool:
 def _make(connection: sqlite3.Connection, facts: ReadTables, keys: Iterable[Key]) -> None:
     """All in one transaction: a store is there with all its rows, or not at all."""
     all_facts = {**facts, "schema": SCHEMA, "created": datetime.now(UTC).isoformat(timespec="seconds")}
-    texts = {name: _text(value) for name, value in all_facts.items()}
-    texts["digest"] = _text(facts_digest(texts))
+    texts = {name: _json_text(value) for name, value in all_facts.items()}
+    texts["digest"] = _json_text(facts_digest(texts))
     with connection:
         connection.execute("BEGIN")
         for table in _TABLES:
@@ -293,7 +293,7 @@ def _damage(folder: Path, how: str = "its scene and design differ from those wri
     return RacewayError(f"`{folder / POINTS}` is damaged: {how}. Begin again in another folder with --out")
 
 
-def _text(value: object) -> str:
+def _json_text(value: object) -> str:
     return json.dumps(value, allow_nan=False, separators=(",", ":"))
 
 

@@ -266,7 +266,7 @@ def refuse_large(task: Sweep, executor: Executor, force: bool) -> None:
     RacewayError
         With bytes or the predicted time.
     """
-    refuse_bytes(task.design.size, sum(map(_numbers, COLUMNS)), "give fewer points at a time")
+    refuse_bytes(task.design.size, sum(map(_entry_count, COLUMNS)), "give fewer points at a time")
     if task.function is None and not force:
         work = workload(task, executor, planned=1)
         if work.seconds > _LIMIT_S:
@@ -288,10 +288,10 @@ def workload(task: Sweep, executor: Executor, planned: int = 100) -> Workload:
             title, design.size, seconds / getattr(executor, "workers", 1), runs=left - refusals, refused=refusals, stored=present,
             disk_bytes=_RUN_BYTES * design.size, why_runs="an axis, the scene or a quantity that no compiled loop takes",
         )  # fmt: skip
-    return of_columns(title, function, design.size, present, len(design.keys) + sum(map(_numbers, function.outputs)))
+    return of_columns(title, function, design.size, present, len(design.keys) + sum(map(_entry_count, function.outputs)))
 
 
-def _numbers(name: str) -> int:
+def _entry_count(name: str) -> int:
     """Entries of a quantity at a point."""
     return len(DOF) ** len(COLUMNS[name].dims) if name in COLUMNS else 1
 

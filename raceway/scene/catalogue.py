@@ -241,11 +241,11 @@ def _single(file: Traversable) -> Preset:
 
 
 def _uncertainty(names: Iterable[str]) -> tuple[Tables, ...]:
-    return tuple(_table("uncertainty")[name] for name in names)
+    return tuple(_data_table("uncertainty")[name] for name in names)
 
 
 @cache
-def _table(name: str) -> Tables:
+def _data_table(name: str) -> Tables:
     return tomllib.loads(files("raceway").joinpath(f"data/{name}.toml").read_text(encoding="utf-8"))
 
 
@@ -412,7 +412,7 @@ class _NamedMaterial:
 @cache
 def materials() -> dict[str, _NamedMaterial]:
     """All by name."""
-    return {name: _NamedMaterial(name, **row) for name, row in _table("materials").items()}
+    return {name: _NamedMaterial(name, **row) for name, row in _data_table("materials").items()}
 
 
 def with_material(table: Tables, path: str, preset: Tables) -> Tables:

@@ -126,7 +126,7 @@ def continuous_keys(scene: Scene) -> list[Key]:
     Keys that are left out and have no default number are not there.
     """
     tables = [name for name in (*TABLES, *_PLUGINS) if name not in _SETTINGS]
-    return [key for name in tables for key in _numbers(getattr(scene, name), name)]
+    return [key for name in tables for key in _keys_with_numbers(getattr(scene, name), name)]
 
 
 def key_of(scene: Scene, path: str) -> Key:
@@ -192,11 +192,11 @@ def _value(scene: Scene, path: str) -> Any:
     return node
 
 
-def _numbers(part: Any, before: str) -> Iterator[Key]:
+def _keys_with_numbers(part: Any, before: str) -> Iterator[Key]:
     for field in attrs.fields(type(part)) if part is not None else ():
         value = getattr(part, field.name)
         if "plugin" in field.metadata:
-            yield from _numbers(value, before)
+            yield from _keys_with_numbers(value, before)
         elif field.init:
             unit, words = field.metadata.get("unit", ""), field.metadata.get("help", "")
             yield from _leaves(value, f"{before}.{field.name}", unit, words)
@@ -206,7 +206,7 @@ def _leaves(value: object, path: str, unit: str, words: str) -> Iterator[Key]:
     if isinstance(value, float):
         yield Key(path, value, unit, words)
     elif attrs.has(type(value)):
-        yield from _numbers(value, path)
+        yield from _keys_with_numbers(value, path)
     elif isinstance(value, tuple) and not any(isinstance(element, tuple) for element in value):
         for k, element in enumerate(value):
             yield from _leaves(element, f"{path}[{k}]", unit, words)

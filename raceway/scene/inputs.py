@@ -297,7 +297,7 @@ def read_toml(path: str | Path) -> Tables:
     """
     path = Path(path)
     try:
-        text = _text(path)
+        text = text_of(path)
     except FileNotFoundError:
         # By the name itself: what ends in .toml is alike to a third already.
         stems = {file.stem: file.name for file in _tomls_in(path.parent)}
@@ -334,10 +334,16 @@ def _parse_toml(text: str, name: str) -> Tables:
         raise SceneError.at(name, None, "cannot be read: a number has thousands of digits") from None
 
 
-def _text(path: Path) -> str:
-    """Text of a scene; a byte order mark is left out.  ``OSError``, ``SceneError`` or ``UnicodeDecodeError`` where there is none."""
+def text_of(path: Path, most: int = _LONGEST) -> str:
+    """Text of a file of so many bytes at most, without a byte order mark.
+
+    Raises
+    ------
+    OSError, SceneError, UnicodeDecodeError
+        There is none, it is larger, or no UTF-8.
+    """
     try:
-        size_of(path, _LONGEST)
+        size_of(path, most)
     except ValueError as why:
         raise SceneError.at(str(path), None, str(why)) from None
     return path.read_bytes().decode("utf-8-sig")

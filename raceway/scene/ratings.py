@@ -49,7 +49,7 @@ def load_ratings(bearing: Bearing) -> LoadRatings:
     Ceramic balls change no dynamic rating (ISO 20056-1).  Their contacts reach 4200 MPa under less load, where ISO 20056-2 permits
     a little more.
     """
-    row, modulus, parts = _row(attrs.asdict(bearing, recurse=False)), STEEL, (bearing.rings, bearing.balls)
+    row, modulus, parts = _ball_row(attrs.asdict(bearing, recurse=False)), STEEL, (bearing.rings, bearing.balls)
     if not all(np.all((STEEL_YOUNG[0] <= part.young) & (part.young <= STEEL_YOUNG[1])) for part in parts):
         from raceway.core.contact.hertz import contact_modulus
 
@@ -74,7 +74,7 @@ def _rating(bearing: Bearing, key: str, by_geometry: Number, formula: Callable[[
     return entry.ratings[key] * (by_geometry / formula(_catalogue_row(entry.name, bearing.maker))), "catalogue"
 
 
-def _row(numbers: Mapping[str, Number]) -> BallRow:
+def _ball_row(numbers: Mapping[str, Number]) -> BallRow:
     count, ball, pitch, angle, inner, outer = (numbers.get(key) for key in _GEOMETRY)
     return BallRow(count, ball, pitch, np.radians(0.0 if angle is None else angle), inner, outer)
 
@@ -82,4 +82,4 @@ def _row(numbers: Mapping[str, Number]) -> BallRow:
 @cache
 def _catalogue_row(name: str, maker: str | None) -> BallRow:
     entry = preset_of(name, maker)
-    return _row({} if entry is None else entry.table)
+    return _ball_row({} if entry is None else entry.table)

@@ -165,31 +165,31 @@ class Scene(SceneTables, Shown):
         for name in TABLES:
             part = getattr(self, name)
             if part is not None:
-                tables[name] = _plain(part)
+                tables[name] = _plain_table(part)
         if self.integrator.kind == AutoIntegrator.name:  # defaults that are written out would ask for a transient
             keys = ("kind", *self.source.get("integrator", ()))
             tables["integrator"] = {key: value for key, value in tables["integrator"].items() if key in keys}
         for name in ("bodies", "excitation", "mesh"):
             plugin = getattr(self, name)
             if plugin is not None:
-                tables[name] = {"kind": plugin.name, **_plain(plugin)}
+                tables[name] = {"kind": plugin.name, **_plain_table(plugin)}
         plugins = [getattr(self.quantities, field.name) for field in attrs.fields(type(self.quantities))]
-        if options := {plugin.name: _plain(plugin) for plugin in plugins if plugin != type(plugin)()}:
+        if options := {plugin.name: _plain_table(plugin) for plugin in plugins if plugin != type(plugin)()}:
             tables["quantities"] = options
         return tables
 
 
-def _plain(part: attrs.AttrsInstance) -> Tables:
+def _plain_table(part: attrs.AttrsInstance) -> Tables:
     out: Tables = {}
     cls: type = type(part)
     for name, plugin in _keys(cls):
         value = getattr(part, name)
         if plugin:
-            out.update(_plain(value))
+            out.update(_plain_table(value))
         elif isinstance(value, float | str):
             out[name] = value
         elif attrs.has(type(value)):
-            out[name] = _plain(value)
+            out[name] = _plain_table(value)
         elif value is not None and value != ():
             out[name] = _lists(value)
     return out
@@ -204,7 +204,7 @@ def _keys(cls: type) -> tuple[tuple[str, bool], ...]:
 def _lists(value: Any) -> object:
     if isinstance(value, tuple):
         return [_lists(part) for part in value]
-    return _plain(value) if attrs.has(type(value)) else value
+    return _plain_table(value) if attrs.has(type(value)) else value
 
 
 SCENE = reader("a Scene, as raceway.load_scene reads it", Scene)

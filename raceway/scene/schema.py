@@ -30,7 +30,7 @@ def scene_schema(registry: Registry | None = None) -> Tables:
     tables: Tables = {"title": {"type": "string", "minLength": 1, "description": "for people and folder names"}}
     for name, cls in TABLES.items():
         if name not in PLUGIN_TABLES:
-            tables[name] = _table(cls)
+            tables[name] = _table_schema(cls)
     # Geometry is required unless a preset gives it.
     bearing = tables["bearing"]
     bearing["anyOf"] = [{"required": ["preset"]}, {"required": bearing.pop("required")}]
@@ -40,8 +40,8 @@ def scene_schema(registry: Registry | None = None) -> Tables:
     for name, (kind, default) in PLUGIN_TABLES.items():
         tables[name] = _plugin_table(name, kind, default, registry)
     for name, place in registry.mapping("raceway_tables").items():
-        tables[name] = _table(named(place))
-    tables["quantities"] = _table(quantities_table(registry))
+        tables[name] = _table_schema(named(place))
+    tables["quantities"] = _table_schema(quantities_table(registry))
     words = 'by how much numbers may differ: "load.axial" = "±10 %", class = "P4" (ISO 492, ABEC), balls = "G5" (ISO 3290)'
     tables["tolerances"] = {"type": "object", "description": words}
     return {
@@ -55,7 +55,7 @@ def scene_schema(registry: Registry | None = None) -> Tables:
     }
 
 
-def _table(cls: type) -> Tables:
+def _table_schema(cls: type) -> Tables:
     fields = keys(cls)
     return {
         "type": "object",
@@ -73,8 +73,8 @@ def _plugin_table(name: str, kind: str, default: str | None, registry: Registry)
         usable = {default: AutoIntegrator, **usable}
     branches = []
     for word, plugin in usable.items():
-        branch = _table(plugin)
-        core = _table(TABLES[name])["properties"] if name in TABLES else {}
+        branch = _table_schema(plugin)
+        core = _table_schema(TABLES[name])["properties"] if name in TABLES else {}
         words = {"const": word, "description": (plugin.__doc__ or "").strip().partition("\n")[0]}
         branch["properties"] = {**core, **branch["properties"], "kind": words}
         if word != default:
@@ -96,7 +96,7 @@ def keys(cls: type) -> list[Any]:
 def key_schema(field: Any) -> Tables:
     """The schema of one key: type, range or words, default, help and unit."""
     if attrs.has(field.type):
-        return {**_table(field.type), "description": field.metadata.get("help", "")}
+        return {**_table_schema(field.type), "description": field.metadata.get("help", "")}
     facts = dict(getattr(field.validator, "facts", {}))
     words, pattern = facts.pop("words", None), facts.pop("pattern", None)
     members = get_args(field.type) if get_origin(field.type) in (Union, UnionType) else [field.type]
@@ -120,14 +120,14 @@ def key_schema(field: Any) -> Tables:
 def _forms(kind: Any, limits: dict[str, float], with_unit: bool) -> list[Tables]:
     """What a value may look like; one that is measured may be text with a unit, whose limits the loader alone checks."""
     if (table := table_of_list(kind)) is not None:
-        return [{"type": "array", "items": _table(table)}]
+        return [{"type": "array", "items": _table_schema(table)}]
     if get_origin(kind) is tuple:
         items = get_args(kind)
         inner = _forms(items[0], {}, with_unit)
         array: Tables = {"type": "array", "items": inner[0] if len(inner) == 1 else {"anyOf": inner}}
         return [array if items[-1] is Ellipsis else {**array, "minItems": len(items), "maxItems": len(items)}]
     if attrs.has(kind):  # a material, or its name alone
-        return [_table(kind), {"type": "string", "enum": list(materials())}]
+        return [_table_schema(kind), {"type": "string", "enum": list(materials())}]
     if kind not in _TYPES:
         return [{}]
     form = {"type": _TYPES[kind], **(limits if kind in (float, int) else {})}

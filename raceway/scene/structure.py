@@ -68,7 +68,7 @@ def _kind(value: object) -> str:
     return names.get(type(value), type(value).__name__)
 
 
-def _numbers(value: object, _type: object = None) -> tuple[float, ...]:
+def _number_list(value: object, _type: object = None) -> tuple[float, ...]:
     kinds = get_args(_type)
     if len(kinds) == 2 and kinds[1] is Ellipsis:
         if not isinstance(value, list | tuple):
@@ -101,8 +101,8 @@ _HOOKS: dict[object, Any] = {
     int: _integer,
     str: _word,
     bool: _switch,
-    tuple[float, float]: _numbers,
-    tuple[float, ...]: _numbers,
+    tuple[float, float]: _number_list,
+    tuple[float, ...]: _number_list,
     tuple[tuple[float, float], ...] | None: _points,
     float | str: _number_or_word,
     str | float: _number_or_word,

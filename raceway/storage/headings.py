@@ -63,7 +63,7 @@ class Heading:
         """Rows of text without the fields that hold no numbers, tabs between the others; one with more fields than all as it is."""
         if self.fields is None:
             return rows
-        split = ([*_words(text, self.sign), *[""] * self.most] for text in rows)
+        split = ([*_line_fields(text, self.sign), *[""] * self.most] for text in rows)
         choice = (("\t".join([words[k] for k in self.fields]), any(words[self.most :])) for words in split)
         return [text if more else part for text, (part, more) in zip(rows, choice, strict=True)]
 
@@ -109,11 +109,11 @@ def heading_of(path: Path, encoding: str) -> Heading:
     sign = "\t;, "[tables.index((rank, first, fields))]
     if not fields:
         sign = next((sign for sign in "\t;" if sign in lines[full[0]].strip()), ",")
-        return Heading(_words(lines[full[0]], sign), full[0] + 1, full[0] + 1, sign)
+        return Heading(_line_fields(lines[full[0]], sign), full[0] + 1, full[0] + 1, sign)
     begin = full.index(first)
-    rows = [_words(lines[k], sign) for k in full[begin : begin + rank[3]]]
+    rows = [_line_fields(lines[k], sign) for k in full[begin : begin + rank[3]]]
     for k in reversed(full[:begin]):  # rows without a sample, or with a number amid their text
-        numbers = _numbers(words := _words(lines[k], sign), sign)
+        numbers = _numeric_fields(words := _line_fields(lines[k], sign), sign)
         if fields[0] not in numbers and len(numbers) < max(sum(map(bool, words)), 1):
             break
         first = k
@@ -141,9 +141,9 @@ def _runs(lines: Sequence[str], full: Sequence[int], sign: str) -> list[tuple[_R
     Columns, several rows, words that are numbers, many rows.
     """
     runs = []
-    for fields, group in groupby(full, key=lambda k: _numbers(_words(lines[k], sign), sign)):
+    for fields, group in groupby(full, key=lambda k: _numeric_fields(_line_fields(lines[k], sign), sign)):
         among = list(group)
-        share = len(fields) / max(sum(map(bool, _words(lines[among[0]], sign))), 1)
+        share = len(fields) / max(sum(map(bool, _line_fields(lines[among[0]], sign))), 1)
         runs.append(((len(fields) > 1, len(among) >= _SEVERAL, share, len(among)), among[0], fields))
     return runs
 
@@ -154,11 +154,11 @@ def _names(
     """Names and units by field of a row, from the lines above it, and the index of the line of names."""
     units: list[str] = []
     for k in above:  # a line that names its units as such, those of the channels, perhaps with that of time
-        words = _words(lines[k].strip(_MARKS), sign)
+        words = _line_fields(lines[k].strip(_MARKS), sign)
         if _LABEL.match(words[0]) and any(map(_is_unit, words[1:])):
             units = words[1:] if len(words) > fields[-1] + 1 and words[-1] else ["", *words[1:]]
     for k in reversed(above):
-        words = _words(lines[k].strip(_MARKS), sign)
+        words = _line_fields(lines[k].strip(_MARKS), sign)
         if len(words) == most + 1 and _TIME.match(words[1]):  # what the line names stands before it
             del words[0]
         here = [words[field] if field < len(words) else "" for field in fields]
@@ -220,7 +220,7 @@ def _with_clock(heading: Heading, preamble: str, begin: Sequence[float]) -> Head
     return attrs.evolve(heading, header=header, interval=interval, absent=absent, notes=(*notes, note))
 
 
-def _numbers(words: Sequence[str], sign: str) -> tuple[int, ...]:
+def _numeric_fields(words: Sequence[str], sign: str) -> tuple[int, ...]:
     """Indices of the words that are numbers; a comma is a decimal sign where none stands between columns."""
     return tuple(k for k, word in enumerate(words) if is_numeral(word if sign == "," else word.replace(",", ".")))
 
@@ -234,7 +234,7 @@ def is_numeral(word: str) -> bool:
     return True
 
 
-def _words(text: str, sign: str) -> list[str]:
+def _line_fields(text: str, sign: str) -> list[str]:
     """Fields of a line, at least one; between blanks a unit in brackets belongs to the name before it."""
     if sign == " ":
         text = re.sub(r"(?<=\w) (?=[\[(])", "", " ".join(text.split()))

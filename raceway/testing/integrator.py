@@ -157,7 +157,7 @@ class IntegratorSuite(Suite):
         amplitudes = np.zeros(5, dtype=complex)  # of the displacement Re(x e^(j w t))
         amplitudes[free] = np.linalg.solve(dynamic[np.ix_(free, free)], force[free])
         off = record.displacement - (np.exp(1j * SPEED * record.time)[:, None] * amplitudes).real
-        linear = _within(np.abs(off).max() / np.abs(amplitudes).max(), _stated_error(record), "the closed form")
+        linear = _shortfall_words(np.abs(off).max() / np.abs(amplitudes).max(), _stated_error(record), "the closed form")
         # A mass pushed to and fro on a Hertzian contact, against an integration that begins at the record's end.
         resting = _resting(contact_system())
         speed = 0.4 * np.sqrt(1.5 * PRELOAD / resting[0] / float(contact_system().mass[0, 0]))
@@ -166,7 +166,7 @@ class IntegratorSuite(Suite):
         q, _ = exact(system, record.final, record.time)
         # A turn passes the error on, once: twice the stated error lies between the two.
         apart = np.abs(q - record.displacement).max() / np.ptp(q[:, 0])
-        return f"{linear}; {_within(apart, _stated_error(record), 'an integration to 1e-11')}"
+        return f"{linear}; {_shortfall_words(apart, _stated_error(record), 'an integration to 1e-11')}"
 
     @duty(
         "each sample is an equilibrium, where the method has no inertia",
@@ -249,7 +249,7 @@ class IntegratorSuite(Suite):
             first = integrate(method, system, motion(system, np.zeros(5), np.zeros(5)), Schedule(_TURN / 36, 36, 1))
             second = integrate(method, system, moved, Schedule(_TURN / 36, 36, 2))
             off = _apart(np.tile(first.displacement, (2, 1)), second.displacement)
-            return _within(off, _stated_error(first) + _stated_error(second), "the motion from another start")
+            return _shortfall_words(off, _stated_error(first) + _stated_error(second), "the motion from another start")
         for system in (linear_system(), contact_system()):
             start = _start(method, system)
             half, full = (Schedule(_TURN / 90, 90, turns) for turns in (1, 2))
@@ -296,7 +296,7 @@ class IntegratorSuite(Suite):
         start = model.bearing.at_rest(model.system, still.displacement, still.ball, False)
         record = integrate(method, model.system, start, Schedule(2.0 * np.pi / speed / 90, 90, 1))
         line = 2.0 * (np.exp(-1j * speed * record.time)[:, None] * record.displacement).mean(axis=0)
-        return _within(_apart(loop[1:3], line[1:3]), _stated_error(record), "the loops' orbit")
+        return _shortfall_words(_apart(loop[1:3], line[1:3]), _stated_error(record), "the loops' orbit")
 
     @duty(
         "compiled and stepped drivers, where a scheme has both, take the same steps",
@@ -367,6 +367,6 @@ def _stated_error(record: Record) -> float:
     return float(error)  # type: ignore[arg-type]
 
 
-def _within(off: float, tolerance: float, word: str) -> str:
+def _shortfall_words(off: float, tolerance: float, word: str) -> str:
     require(off <= _SHORTFALL * tolerance + _FLOOR, f"off {word} by {off:.2g} of the motion; it states {tolerance:.2g}")
     return f"off {word} by {off:.1g}, states {tolerance:.1g}"

@@ -143,7 +143,7 @@ class FormatSuite(Suite):
 AROUND = ((1, 3, 4), (2, 0, 5), (3, 1, 6), (0, 2, 7), (7, 5, 0), (4, 6, 1), (5, 7, 2), (6, 4, 3))
 
 
-def _within(numbers: np.ndarray, limits: int | tuple[int, int]) -> bool:
+def _in_range(numbers: np.ndarray, limits: int | tuple[int, int]) -> bool:
     """Whether there are some, all from 0 to below the limits."""
     return bool(len(numbers) and (numbers >= 0).all() and (numbers < limits).all())
 
@@ -179,7 +179,7 @@ class MesherSuite(Suite):
             require(cells.ndim == 2 and cells.shape[1] == 8, f"'{name}': cells of shape {cells.shape}, not (m, 8)")
             require(np.issubdtype(cells.dtype, np.integer), f"'{name}': cells are {cells.dtype}, not integers")
             require(np.isfinite(points).all() and len(points), f"'{name}': points must be finite, and there must be some")
-            require(_within(cells, len(points)), f"'{name}': cells name points that do not exist")
+            require(_in_range(cells, len(points)), f"'{name}': cells name points that do not exist")
 
     @duty("no cell is flat or inside out")
     def test_volumes(self, mesher: Mesher) -> None:
@@ -195,11 +195,11 @@ class MesherSuite(Suite):
         for name, mesh in mesher.mesh(_example_scene().bearing).items():
             for word, members in getattr(mesh, "node_sets", {}).items():
                 nodes = np.asarray(members)
-                good = nodes.ndim == 1 and _within(nodes, len(mesh.points))
+                good = nodes.ndim == 1 and _in_range(nodes, len(mesh.points))
                 require(good, f"'{name}': node set '{word}' is empty or names points that do not exist")
             for word, members in getattr(mesh, "facet_sets", {}).items():
                 facets = np.asarray(members)
-                good = facets.ndim == 2 and facets.shape[1] == 2 and _within(facets, (len(mesh.cells), 6))
+                good = facets.ndim == 2 and facets.shape[1] == 2 and _in_range(facets, (len(mesh.cells), 6))
                 require(good, f"'{name}': facet set '{word}' is empty or names faces that do not exist")
 
     @duty("twice the same bearing gives the same mesh")
