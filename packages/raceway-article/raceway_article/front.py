@@ -92,8 +92,7 @@ def article(
         tables = plain_tables(ARTICLE if scene is None else scene, *changes, registry=registry)
         kinds = ("rigid", "condensed") if bodies == "both" else (bodies,)
         curves = design(tables, speeds or SPEEDS, axial or LOADS, shaft, kinds, friction)
-        # Mistakes are refused before anything is loaded that computes.
-        from raceway_article.study import solve_curves, workload
+        from raceway_article.study import solve_curves, workload  # mistakes are refused before what computes is loaded
 
         workers = 2 if processes is None else processes
         foresee, compute = partial(workload, curves, workers, kept), partial(solve_curves, curves, workers, kept)
