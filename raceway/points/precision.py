@@ -204,30 +204,15 @@ class Precision(Answer):
 
     def to_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
-        keep = (
-            "family",
-            "setting",
-            "model",
-            "value",
-            "error",
-            "at_bound",
-            "order",
-            "expected_order",
-            "errors",
-            "quantities",
-        )
         rows = []
         for row in self.judged:
             cost = row["cost"] or {}
+            plain = {name: row[name] for name in ("family", "setting", "model", "value", "error", "at_bound", "order")}
+            plain |= {name: row[name] for name in ("expected_order", "errors", "quantities")}
             costs = {name: cost.get(name) for name in ("time_s", "wall_s", "cpu_s", "compile_s", "steps")}
-            state = {
-                "status": row["status"],
-                "reason": row["reason"],
-                "own_error": row["own_error"],
-                "reused": row["reused"],
-            }
+            state = {name: row[name] for name in ("status", "reason", "own_error", "reused")}
             base = row["physics"] == self.base
-            rows.append({**{name: row[name] for name in keep}, **costs, **state, "base": base, "cost": row["cost"]})
+            rows.append({**plain, **costs, **state, "base": base, "cost": row["cost"]})
         return {
             "title": self.title,
             "reference": _reference_table(self.references[self.base]),

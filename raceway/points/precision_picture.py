@@ -90,20 +90,9 @@ def page(result: Tables, picture: bool = False) -> str:
 
 
 def _table(result: Tables) -> str:
-    head = (
-        "",
-        "setting",
-        "error",
-        "own estimate",
-        "order",
-        "wall ms",
-        "spread",
-        "cpu ms",
-        "compile s",
-        "steps",
-        "iterations",
-    )
-    lines = [_markdown_row((*head, "MiB", "status")), _markdown_row(["---"] * (len(head) + 2))]
+    times = "wall ms", "spread", "cpu ms", "compile s"
+    head = ("", "setting", "error", "own estimate", "order", *times, "steps", "iterations", "MiB", "status")
+    lines = [_markdown_row(head), _markdown_row(["---"] * len(head))]
     for number, row in enumerate(result["rows"]):
         cost = row["cost"] or {}
         memory = cost.get("peak_memory_bytes")

@@ -214,14 +214,9 @@ def _table(row: _Sensitivity) -> Tables:
     half = len(statics.contact_force) // 2
     table: Tables = {
         "key": row.key.path,
-        "value": row.key.value,
-        "unit": row.key.unit,
-        "help": row.key.help,
-        "influence": row.influence,
-        "derivatives": row.derivatives,
-        "displacement": statics.displacement.tolist(),
-        "stiffness": statics.stiffness.tolist(),
-        "damping": statics.damping.tolist(),
+        **{name: getattr(row.key, name) for name in ("value", "unit", "help")},
+        **{name: getattr(row, name) for name in ("influence", "derivatives")},
+        **{name: getattr(statics, name).tolist() for name in ("displacement", "stiffness", "damping")},
         "ball_load_inner": statics.contact_force[:half].tolist(),
         "ball_load_outer": statics.contact_force[half:].tolist(),
         "step": statics.step,

@@ -270,14 +270,8 @@ def _of_inlet(mistake: Mistake) -> Mistake:
 
 def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:
     """Title, and a copy of the known tables."""
-    names = [
-        *dict.fromkeys((*TABLES, *PLUGIN_TABLES)),
-        *registry.mapping("raceway_tables"),
-        "quantities",
-        "tolerances",
-        "requires",
-        "title",
-    ]
+    names = [*dict.fromkeys((*TABLES, *PLUGIN_TABLES)), *registry.mapping("raceway_tables")]
+    names += "quantities", "tolerances", "requires", "title"
     for name in tables:
         if name not in names:
             mistakes.append(Mistake(name, None, f"unknown table{nearest(name, names)}; known: {', '.join(names)}"))
