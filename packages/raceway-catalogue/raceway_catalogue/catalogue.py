@@ -27,7 +27,7 @@ _POINTS = 60
 
 
 def section_drawing(name: str, bearing: Bearing) -> Figure:
-    """The figure: left the whole bearing, right one ball."""
+    """The figure: left the bearing, right one ball."""
     try:
         rings = [ring_outline(bearing, inner) for inner in (True, False)]
     except MeshError as why:

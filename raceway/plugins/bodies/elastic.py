@@ -79,7 +79,7 @@ class _ElasticCost:
 
 
 def elastic_cost(problem: Problem) -> _ElasticCost | None:
-    """Predicted cost of the bodies of a scene; None where the mesher cannot tell before it meshes."""
+    """Predicted cost of the bodies of a scene; None where the mesher does not know it before it meshes."""
     mesh = predicted_mesh(problem)
     if mesh is None:
         return None
