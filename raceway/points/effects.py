@@ -280,7 +280,7 @@ class Findings:
     @cached_property
     def held(self) -> Tables:
         """Axes that the effects hold at one end, because corners of the other end cannot be used."""
-        part = self.complete_factorial
+        part = self._whole_part
         if part is None:
             return {}
         pairs = zip(self.varied, part, strict=True)
@@ -289,7 +289,7 @@ class Findings:
     @cached_property
     def factorials(self) -> dict[str, Factorial]:
         """For each quantity its corners; empty when there is nothing to analyse."""
-        part = self.complete_factorial
+        part = self._whole_part
         if part is None or all(end is not None for end in part):
             return {}
         index = tuple(slice(None) if end is None else end for end in part)
@@ -313,7 +313,7 @@ class Findings:
         return corners
 
     @cached_property
-    def complete_factorial(self) -> tuple[int | None, ...] | None:
+    def _whole_part(self) -> tuple[int | None, ...] | None:
         if not self.varied:
             return None
         usable = [row is not None and row.doubt is None for row in self._corners.flat]
