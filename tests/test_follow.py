@@ -18,7 +18,7 @@ from raceway.answers.answer import Interrupted
 from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, special_points
 from raceway.core.periodic.refinement import displacements
 from raceway.core.periodic.search import directly
-from raceway.points.attractor import QUASI, REPEATS, WANDERS, judged
+from raceway.points.attractor import QUASI, REPEATS, WANDERS, kind_of_section
 
 
 def walked(branch, first, start, until, size=0.1, sense=1.0):
@@ -153,7 +153,7 @@ def test_sections_are_told_apart(kind, period, second):
         while len(x) < 513:
             x.append(3.9 * x[-1] * (1.0 - x[-1]))
         section = np.stack([x[:-1], x[1:]], axis=1)
-    told = judged(section, 1.0)
+    told = kind_of_section(section, 1.0)
     assert told[:2] == (kind, period)
     if second is not None:
         assert told[2] == pytest.approx(second, abs=1e-4)
@@ -162,7 +162,7 @@ def test_sections_are_told_apart(kind, period, second):
 def test_an_orbit_of_two_turns_that_still_settles_is_no_quasi_periodic_motion():
     k = np.arange(512)
     x = (-1.0) ** k * (1.0 + 0.05 * 0.995**k)
-    assert judged(np.stack([x, 0.3 * x], axis=1), 1.0) == (REPEATS, 2, None)
+    assert kind_of_section(np.stack([x, 0.3 * x], axis=1), 1.0) == (REPEATS, 2, None)
 
 
 def test_the_bearing_s_period_doubles_under_a_radial_load(tmp_path):

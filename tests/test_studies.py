@@ -68,4 +68,4 @@ def test_what_could_not_be_loaded_is_named_below_the_list(monkeypatch):
     shown = " ".join(invoke("study", "--help").stdout.split())
     assert "article" in shown and "not loaded: plug-in `raceway-broken`: `raceway_studies` raises" in shown
     with pytest.raises(PluginError, match="no study named 'mine'"):
-        command._command_of("mine")
+        registry.find("study", "mine")

@@ -20,14 +20,16 @@ def draw_stability(report: dict[str, Any], path: Path) -> None:
     with _figure((11.5, 4.8), path) as figure:
         for axes, (start, label, title) in zip(figure.subplots(1, 2), panels, strict=True):
             rows = [row for row in report["rows"] if row["quantity"].startswith(start)][::-1]
+            least = min(abs(number) for row in rows for number in (row["value"], row["low"], row["high"]) if number) / 3.0
             for place, row in enumerate(rows):
                 color = _BAD if row["misses"] else _WITHOUT if row["value"] < 0.0 else _GOOD
-                axes.barh(place, abs(row["value"]), color=color)
+                axes.barh(place, abs(row["value"]) - least, left=least, color=color)
                 limit, sign = (row["low"], "\u2265") if row["high"] is None else (row["high"], "\u2264")
                 axes.plot([limit] * 2, [place - 0.4, place + 0.4], color=_LIMIT)
                 axes.annotate(sign, (limit, place), (3, 0), textcoords="offset points", va="center")
             axes.set_yticks(range(len(rows)), [row["quantity"].removeprefix(start) for row in rows], fontsize=8)
             axes.set(xscale="log", xlabel=label, title=title)
+            axes.set_xlim(left=least)
         words = "Black lines: limits, set before. Pale: energy is lost, as that integrator is made to. Red would be: not as expected."
         figure.supxlabel(words, fontsize=9)
 
