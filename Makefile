@@ -48,7 +48,7 @@ wheel: $(VENV)/.all ## a wheel in dist with compiled kernels, installed into an 
 	$(BIN)/python -m build --wheel --no-isolation --outdir dist .; status=$$?; rm -rf raceway/data/kernels; exit $$status
 	$(PYTHON) -m venv build/wheel
 	build/wheel/bin/python -m pip install -q -c constraints.txt dist/*.whl
-	cd build/wheel && bin/raceway run $(CURDIR)/examples/minimal.toml --out out
+	cd build/wheel && bin/raceway run $(CURDIR)/examples/minimal.toml -v --out out
 
 evidence: $(VENV)/.all ## the numbers that README and docs show, computed again at the commit that is checked out: hours
 	$(BIN)/python -m checks.night

@@ -52,14 +52,13 @@ def compile_all(folder: Path) -> None:
 
 def main() -> int:
     folder = Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build" / "kernels").resolve()
-    if os.environ.get("NUMBA_CPU_NAME") == "x86-64-v3":
+    if sys.argv[2:]:  # the process below
         compile_all(folder)
         return 0
     with tempfile.TemporaryDirectory() as cache:
         own = {"NUMBA_CPU_NAME": "x86-64-v3", "NUMBA_CPU_FEATURES": "", "RACEWAY_CACHE_DIR": cache, "RACEWAY_PLUGINS": ""}
-        return subprocess.run(
-            [sys.executable, "-m", "checks.kernels", str(folder)], cwd=ROOT, env={**os.environ, **own}
-        ).returncode
+        words = [sys.executable, "-m", "checks.kernels", str(folder), "here"]
+        return subprocess.run(words, cwd=ROOT, env={**os.environ, **own}).returncode
 
 
 if __name__ == "__main__":
