@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import ast
+import json
 import re
 import subprocess
 import sys
@@ -15,6 +16,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -57,6 +59,7 @@ def trees(*folders: str) -> dict[str, ast.Module]:
     return {path.relative_to(ROOT).as_posix(): ast.parse(path.read_text(encoding="utf-8")) for path in files}
 
 
+@cache
 def product() -> dict[str, ast.Module]:
     return {name: tree for name, tree in trees("raceway", "packages").items() if "/tests/" not in name}
 
@@ -192,9 +195,6 @@ def foreign(files: dict[str, ast.Module]) -> tuple[set[str], list[str]]:
 
 def smallest_run() -> list[str]:
     """Files of raceway and its packages that ``raceway run examples/minimal.toml`` imports."""
-    import json
-    from tempfile import TemporaryDirectory
-
     with TemporaryDirectory() as folder:
         words = [sys.executable, "-c", _SMALLEST, folder]
         done = subprocess.run(words, cwd=ROOT, stdout=subprocess.PIPE, check=True, text=True)

@@ -224,8 +224,7 @@ class _Compiler(CompilerBase):
 
 
 _Dispatcher: _Numba = CPUDispatcher
-#: Modules whose kernels need no more than ``_Compiler`` does.
-_OWN = "raceway.core.", "raceway.contact_laws.", "raceway.plugins."
+#: Modules whose kernels need no more than ``_Compiler`` does, and whose sources name the folders of compiled kernels.
 _SHARED = tuple(f"raceway.{folder.replace('/', '.')}." for folder in SHARED)
 
 
@@ -240,7 +239,7 @@ class Kernel(_Dispatcher):
     """
 
     def __init__(self, function: Callable[..., Any], signature: Signature, options: dict[str, Any]) -> None:
-        if function.__module__.startswith(_OWN):
+        if function.__module__.startswith(_SHARED):
             super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
         else:
             super().__init__(function, targetoptions=options)
@@ -340,12 +339,17 @@ class Kernel(_Dispatcher):
             clock["compile_processor_s"] = processor_billed + time.thread_time() - processor
         clock["loaded" if hit else "compiled"] += 1
 
+    @cached_property
+    def _digest(self) -> str:
+        """Of all that decides the machine code beside signature and processor."""
+        return hashlib.sha256(repr(_marks(self.py_func, [])).encode()).hexdigest()
+
     def _from_wheel(self) -> bool:
         """Take the machine code that came with the package, if it has this kernel's."""
         name = f"{self.py_func.__module__}.{self.py_func.__qualname__}"
         if not name.startswith(_SHARED) or (wheel_kernels.folder() is None and not wheel_kernels.writing):
             return False
-        marks = str(self.signature), hashlib.sha256(repr(_marks(self.py_func, [])).encode()).hexdigest()
+        marks = str(self.signature), self._digest
         if wheel_kernels.writing:
             self._through_cache()
             wheel_kernels.write(name, marks, self.overloads[tuple(self.signature.args)]._reduce())
@@ -405,7 +409,7 @@ class Kernel(_Dispatcher):
         self.enable_caching()
         cache_: _Numba = self._cache
         machine = self.targetctx.codegen().magic_tuple()
-        key = self.signature, machine, hashlib.sha256(repr(_marks(self.py_func, [])).encode()).hexdigest()
+        key = self.signature, machine, self._digest
         cache_._index_key = lambda signature, codegen: key
         base = f"{cache_._impl.filename_base}.{hashlib.blake2b(repr(key).encode(), digest_size=8).hexdigest()}"
         cache_._cache_file = IndexDataCacheFile(cache_.cache_path, base, cache_._impl.locator.get_source_stamp())
