@@ -14,8 +14,10 @@ if TYPE_CHECKING:
 def write(path: Path, solid: str) -> str:
     """Write a box of 10 x 8 x 6 or a ball of radius 4 [mm] as STEP or BREP; its path."""
     import gmsh
+    from raceway_meshing.gmsh import signals_as_before
 
-    gmsh.initialize([], readConfigFiles=False, interruptible=False)
+    with signals_as_before():
+        gmsh.initialize([], readConfigFiles=False, interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         if solid == "box":

@@ -6,7 +6,9 @@ Nothing is opened by ``gmsh.open``: it executes the .geo language, and for a fil
 
 from __future__ import annotations
 
+import ctypes
 import os
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -121,7 +123,8 @@ class Gmsh:
             import gmsh
         except OSError as why:  # of the loader of its library
             raise MeshError(f"mesh.kind = 'gmsh' cannot be used: {remedy('gmsh')} ({why})") from why
-        gmsh.initialize([], readConfigFiles=False, interruptible=False)
+        with signals_as_before():
+            gmsh.initialize([], readConfigFiles=False, interruptible=False)
         try:
             gmsh.option.setNumber("General.Terminal", 0)
             gmsh.option.setString("Geometry.OCCTargetUnit", "MM")  # OpenCASCADE's own, which outlives this session
@@ -208,6 +211,23 @@ def _refuse_file(path: str) -> None:
         with Path(path).open("rb") as file:
             if b"ISO-10303-21" not in file.read(4096):
                 raise MeshError(f"'{path}' cannot be read: it is not a STEP file (no ISO-10303-21 at its beginning)")
+
+
+@contextmanager
+def signals_as_before() -> Iterator[None]:
+    """Gmsh gives all signals back to the system: a closed pipe or connection would then end the process without a word."""
+    if sys.platform == "win32":
+        yield
+        return
+    sigaction = ctypes.CDLL(None).sigaction
+    actions = {number: ctypes.create_string_buffer(256) for number in signal.valid_signals()}  # longer than the structure
+    for number, action in actions.items():
+        sigaction(int(number), None, action)
+    try:
+        yield
+    finally:
+        for number, action in actions.items():
+            sigaction(int(number), action, None)
 
 
 @contextmanager

@@ -1,6 +1,8 @@
 """Meshes from files and from Gmsh: sets, other solids, and files that are not what they should be."""
 
 import re
+import signal
+from pathlib import Path
 
 import attrs
 import meshio
@@ -185,6 +187,21 @@ def solids(tmp_path_factory):
     for name in ("box", "ball"):
         write(folder / f"{name}.step", name)
     return folder
+
+
+def signal_actions() -> dict[str, str]:
+    """Masks of the signals that this process ignores and catches."""
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return dict(line.split(":\t") for line in lines if line.startswith(("SigIgn", "SigCgt")))
+
+
+@pytest.mark.needs("gmsh")
+def test_signals_are_answered_as_before_a_mesh():
+    """A server whose reader has gone is killed where SIGPIPE is the system's again."""
+    before = signal_actions()
+    assert int(before["SigIgn"], 16) >> (signal.SIGPIPE - 1) & 1
+    Gmsh.examples()[0].predict(BEARING)
+    assert signal_actions() == before
 
 
 @pytest.mark.needs("gmsh")
