@@ -237,9 +237,12 @@ def test_the_short_text_of_a_run_says_what_matters(moving, static):
 def test_a_number_below_its_error_is_none(moving):
     import attrs
 
-    spoilt = attrs.evolve(moving, error={**moving.error, "total": 2.0}, warnings=("Z is not resolved",))
+    def with_total(size):
+        return attrs.evolve(moving.errors, total=attrs.evolve(moving.errors.total, size=size))
+
+    spoilt = attrs.evolve(moving, errors=with_total(2.0), warnings=("Z is not resolved",))
     assert re.search(r"stiffness K +not resolved", repr(spoilt))
-    unknown = attrs.evolve(moving, error={**moving.error, "total": None})
+    unknown = attrs.evolve(moving, errors=with_total(None))
     assert unknown.equivalent_stiffness_error is None
     assert re.search(r"error of Z +not estimated", repr(unknown))
     assert "1 warning" in repr(spoilt) and "Z is not resolved" in repr(spoilt)

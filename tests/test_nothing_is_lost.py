@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import attrs
 import numpy as np
 import pytest
 from raceway_measure.fit.signals import recording_of, signals_of
@@ -14,7 +15,7 @@ from checks.validation.scenes import built_in
 from raceway import ConvergenceError, MeshError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.extend import HexMesh, resolve
 from raceway.framework.estimate import Estimate
-from raceway.pipeline.error import no_error
+from raceway.pipeline.error import Errors, Part
 from raceway.planning.resolve import fits, record_bytes, recorded_per_turn
 from raceway.testing import b7206c, run
 
@@ -56,8 +57,8 @@ def test_more_harmonics_than_samples_are_refused_by_the_plan():
 
 
 def test_a_number_below_its_error_is_not_resolved(monkeypatch):
-    table = {**no_error(Estimate.BEYOND_PLAN()), "total": 1.3}
-    monkeypatch.setattr("raceway.pipeline.run.error_table", lambda *_: table)
+    errors = attrs.evolve(Errors.unknown(Estimate.BEYOND_PLAN()), total=Part(1.3, Estimate.SUM()))
+    monkeypatch.setattr("raceway.pipeline.run.errors_of", lambda *_: errors)
     result = run(
         scene_from_dict(
             b7206c(rotor={"mass": 2.0}, excitation={"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 3e-4})

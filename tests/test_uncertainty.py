@@ -111,7 +111,8 @@ def test_a_quantity_without_an_uncertainty_says_why(moving):
     assert "roller" in rollers["why"]["l10r_million_revolutions"] and rollers["kxx"] is None
     pair = rw.run({"bearing": {"preset": 6205, "arrangement": "DB", "preload": 300.0}}).uncertainty  # a number for a name
     assert pair["running_preload"] is None and "data" in pair["why"]["running_preload"]
-    spoilt = attrs.evolve(moving, error={**moving.error, "unresolved": ["total"], "total": 2.0})
+    total = attrs.evolve(moving.errors.total, size=2.0)
+    spoilt = attrs.evolve(moving, errors=attrs.evolve(moving.errors, total=total))
     assert "not resolved" in spoilt.uncertainty["why"]["equivalent_stiffness"]
     endless = attrs.evolve(moving, equilibrium=attrs.evolve(moving.equilibrium, stiffness=np.full((5, 5), np.inf)))
     assert endless.uncertainty["kyy"] is None and "inf" in endless.uncertainty["why"]["kyy"]

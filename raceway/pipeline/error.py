@@ -1,4 +1,4 @@
-"""The table ``error`` of a result: relative errors of Z, each with how it was estimated.
+"""Relative errors of Z, each with how it was estimated.
 
 Notes
 -----
@@ -25,6 +25,7 @@ Trefethen, Weideman, SIAM Review 56 (2014), 385 (aliasing of the trapezoidal rul
 from __future__ import annotations
 
 from math import ceil, pi
+from typing import NotRequired, TypedDict, cast
 
 import attrs
 import numpy as np
@@ -61,7 +62,6 @@ _RIGHT = 3.0
 _OTHER_LAW = 0.5
 #: Relative difference of two speeds that are one; misfit over |Z| above which K and C describe no Z.
 _SAME_SPEED, _MISFIT = 1e-9, 0.05
-_NAMES = ("total", "time_step", "transient", "mesh", "contact", "identification")
 #: Why there is no total, of a Z that is identified.
 _TOTAL_UNKNOWN = (Estimate.MESH_UNKNOWN, Estimate.TURNS_DIFFER, Estimate.PART_UNKNOWN)
 
@@ -74,27 +74,80 @@ class Part:
     how: str
     shift: complex | None = None
 
+    @property
+    def estimate(self) -> Estimate | None:
+        """What the note is made of; None of a plain sentence."""
+        return self.how.estimate if isinstance(self.how, Note) else None
 
-def no_error(how: Note) -> Tables:
-    """The table without numbers, and one reason."""
-    return {**dict.fromkeys(_NAMES), "bodies": None, "how": dict.fromkeys(_NAMES, how)}
+
+class ErrorTable(TypedDict):
+    """``error`` of result.json: sizes relative to |Z|, None where not estimated; ``how`` and ``short`` have the same names."""
+
+    total: float | None
+    time_step: float | None
+    transient: float | None
+    mesh: float | None
+    contact: float | None
+    identification: float | None
+    bodies: float | None
+    how: dict[str, str]
+    unresolved: list[str]
+    model: NotRequired[Tables | None]
+    short: NotRequired[dict[str, str]]
 
 
-def body_errors(model: Model, equilibrium: Equilibrium, how: Note) -> Tables:
-    """The table with the errors of mesh and contacts, which the equilibrium has; of all else ``how``."""
-    table = no_error(how)
-    table["mesh"], table["how"]["mesh"] = model.bearing.mesh_error(model, equilibrium)
+@attrs.frozen
+class Errors:
+    """Of one run; ``bodies`` is the sum of mesh and calibration, of the size of Z alone and the same for all runs on these bodies."""
+
+    total: Part
+    time_step: Part
+    transient: Part
+    mesh: Part
+    contact: Part
+    identification: Part
+    bodies: float | None = None
+
+    @classmethod
+    def unknown(cls, how: Note) -> Errors:
+        """Without numbers, and one reason."""
+        part = Part(None, how)
+        return cls(part, part, part, part, part, part)
+
+    @property
+    def parts(self) -> dict[str, Part]:
+        """The total and its parts by their names."""
+        return {field.name: getattr(self, field.name) for field in attrs.fields(Errors) if field.name != "bodies"}
+
+    @property
+    def unresolved(self) -> list[str]:
+        """The total and the parts that are as large as what they are the error of: nothing identified says anything then.
+
+        Notes
+        -----
+        Estimates are those of small errors, to first order: of one that is not small nothing follows, neither for Z nor for K.
+        """
+        return [name for name, part in self.parts.items() if (part.size or 0.0) >= 1.0]
+
+    @property
+    def table(self) -> ErrorTable:
+        """Without what other hypotheses change."""
+        sizes, how = ({name: getattr(part, key) for name, part in self.parts.items()} for key in ("size", "how"))
+        return cast(ErrorTable, {**sizes, "bodies": self.bodies, "how": how, "unresolved": self.unresolved})
+
+
+def body_errors(model: Model, equilibrium: Equilibrium, how: Note) -> Errors:
+    """Those of mesh and contacts, which the equilibrium has; of all else ``how``."""
     has_contact = (equilibrium.contact_force > 0.0).any()
     contact = model.bearing.contact_error(model, equilibrium) if has_contact else (None, Estimate.UNLOADED())
-    table["contact"], table["how"]["contact"] = contact
-    return table
+    mesh = model.bearing.mesh_error(model, equilibrium)
+    return attrs.evolve(Errors.unknown(how), mesh=Part(*mesh), contact=Part(*contact))
 
 
-def error_table(run: Identified) -> Tables:
-    """The table ``error``."""
+def errors_of(run: Identified) -> Errors:
+    """Of what is identified in a run's motions."""
     model = run.model
-    table = body_errors(model, run.equilibrium, Estimate.NO_MOTION())
-    how: dict[str, str] = table["how"]
+    errors = body_errors(model, run.equilibrium, Estimate.NO_MOTION())
     parts = {"time_step": Part(TOLERANCE, Estimate.NO_TIME_STEP())}
     if run.motions:
         step, second = _time_step(run)
@@ -102,53 +155,35 @@ def error_table(run: Identified) -> Tables:
         if model.problem.depends_on_start and transient.size is not None:
             transient = _from_other_start(run, second or Run.of(run.motion), transient)
         parts = {"time_step": step, "transient": transient, "identification": _identification(run)}
-    parts["mesh"] = Part(table["mesh"], how["mesh"])
-    if model.traits.calibrated:
-        parts["contact"] = Part(table["contact"], how["contact"])
-    # The same for all runs on these bodies, and of the size of Z alone.
-    table["bodies"] = sum(parts[name].size or 0.0 for name in ("mesh", "contact") if name in parts)
-    for name, part in parts.items():
-        table[name], how[name] = part.size, part.how
-    why = _no_total(run, parts)
-    if why is not None:
-        how["total"] = why
-        return table
+    of_bodies = {"mesh": errors.mesh} | ({"contact": errors.contact} if model.traits.calibrated else {})
+    errors = attrs.evolve(errors, **parts, bodies=sum(part.size or 0.0 for part in of_bodies.values()))
+    parts |= of_bodies
+    if (why := _no_total(run, parts)) is not None:
+        return attrs.evolve(errors, total=Part(None, why))
     window = {"rpm": 60.0 * run.identification.frequency_hz}
-    how["total"] = Estimate.SUM_OF_LAST_WINDOW(**window) if run.identification.series_error else Estimate.SUM()
+    how = Estimate.SUM_OF_LAST_WINDOW(**window) if run.identification.series_error else Estimate.SUM()
     # Errors whose phases are known may cancel; half the larger is kept, because each is known to that only.
     estimates = [part for part in parts.values() if part.size is not None]
     sizes = [part.size or 0.0 for part in estimates if part.shift is None]
     shifts = [part.shift for part in estimates if part.shift is not None]
     together = max(abs(sum(shifts)), *(0.5 * abs(shift) for shift in shifts)) if shifts else 0.0
-    table["total"] = float(together + sum(sizes)) if estimates else None
-    return table
+    return attrs.evolve(errors, total=Part(float(together + sum(sizes)) if estimates else None, how))
 
 
-def unresolved(error: Tables) -> list[str]:
-    """The total and the parts that are as large as what they are the error of: nothing identified says anything then.
-
-    Notes
-    -----
-    Estimates are those of small errors, to first order: of one that is not small nothing follows, neither for Z nor for K.
-    """
-    return [name for name in _NAMES if (error[name] or 0.0) >= 1.0]
-
-
-def error_warnings(error: Tables, identified: bool) -> list[str]:
+def error_warnings(errors: Errors, identified: bool) -> list[str]:
     """What stands before a number: it is smaller than its error, its error is not known, its law is another one."""
-    names, warnings, contact = unresolved(error), list[str](), error["contact"] or 0.0
-    if names:
-        size, name = max((error[name], name) for name in names)
+    warnings, contact = list[str](), errors.contact.size or 0.0
+    if names := errors.unresolved:
+        size, name = max((errors.parts[name].size or 0.0, name) for name in names)
         cause = "its estimated error" if name == "total" else f"the error of {name.replace('_', ' ')}"
         number, what = ("Z", "K and C carry") if identified else ("the stiffness", "it carries")
         warnings.append(f"{number} is not resolved: {cause} is {size:.2g} times its size, so that {what} no information")
     elif contact >= _OTHER_LAW:
         warnings.append(
-            f"the contact law deviates from Hertz's by {contact:.2g}, which the stated error does not include: {error['how']['contact']}"
+            f"the contact law deviates from Hertz's by {contact:.2g}, which the stated error does not include: {errors.contact.how}"
         )
-    why = error["how"]["total"]
-    if identified and why.estimate in _TOTAL_UNKNOWN:
-        warnings.append(f"the error of Z is {why}")
+    if identified and errors.total.estimate in _TOTAL_UNKNOWN:
+        warnings.append(f"the error of Z is {errors.total.how}")
     return warnings
 
 
@@ -379,12 +414,12 @@ def _largest_misfit(run: Identified) -> tuple[float, float]:
     return max(misfits)
 
 
-def misfit_warnings(model: Model, error: Tables) -> list[str]:
+def misfit_warnings(model: Model, misfit: float | None) -> list[str]:
     """Says where Z over the whirl speeds is not what K and C make of it."""
     several_speeds = model.problem.several_speeds
-    if not several_speeds or (error["identification"] or 0.0) <= _MISFIT:
+    if not several_speeds or (misfit or 0.0) <= _MISFIT:
         return []
     return [
-        f"Z is not of the form K - m w^2 + j w C over these whirl speeds (misfit {error['identification']:.2g} of |Z|; free tilts, "
+        f"Z is not of the form K - m w^2 + j w C over these whirl speeds (misfit {misfit:.2g} of |Z|; free tilts, "
         "gyroscopic moments, a resonance): K and C belong to no speed: use identifier 'fft_1x' at each"
     ]

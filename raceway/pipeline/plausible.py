@@ -42,7 +42,7 @@ from raceway.pipeline.equilibrium import pressures, solve_equilibrium
 from raceway.pipeline.simulate import Simulation, last_turn
 from raceway.planning.resolve import Problem
 from raceway.planning.rules import refuse_what_cannot_run
-from raceway.storage.tables import Tables
+from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.columns import ColumnBearing
@@ -67,6 +67,41 @@ _SAME = 0.05
 _MOMENTS, _GROWTH = 3.0, 1.0
 
 Secant = Callable[[Model, Equilibrium], float]
+#: Values of keys of ``[kinematics]``; relative changes of quantities by their names, None of what is not known.
+Values = dict[str, Any]
+Changes = dict[str, float | None]
+
+
+@attrs.frozen
+class Spread:
+    """``error.model`` of result.json.
+
+    Attributes
+    ----------
+    ranges : of each quantity the least and largest relative change, 0 between them; None where a row lacks the number
+    hypotheses : each by itself: its key in ``[kinematics]``, its value and what it changes
+    bound : upper estimate of the relative change of kyy
+    """
+
+    ranges: dict[str, list[float] | None]
+    hypotheses: list[tuple[str, Any, Changes]]
+    bound: float
+
+    @classmethod
+    def over(cls, rows: list[tuple[Values, Changes]], bound: float) -> Spread:
+        """Of all hypotheses that were put into the ring, alone and together."""
+        ranges: dict[str, list[float] | None] = {}
+        for name in _QUANTITIES:
+            numbers = [number for _, change in rows if (number := change[name]) is not None]
+            complete = numbers and len(numbers) == len(rows)
+            ranges[name] = [min(0.0, *numbers), max(0.0, *numbers)] if complete else None
+        alone = [(key, value, change) for one, change in rows for key, value in one.items() if len(one) == 1]
+        return cls(ranges, alone, bound)
+
+    @property
+    def table(self) -> Tables:
+        hypotheses = [{"key": f"kinematics.{key}", "value": value, **change} for key, value, change in self.hypotheses]
+        return {**self.ranges, "hypotheses": hypotheses, "bound": self.bound}
 
 
 def refuse_impossible(model: Model, equilibrium: Equilibrium, record: Record) -> None:
@@ -167,7 +202,7 @@ def sliding_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
     ]
 
 
-def inertia_warnings(table: Tables | None, total: float | None) -> list[str]:
+def inertia_warnings(table: ReadTables | None, total: float | None) -> list[str]:
     """Where motions that follow at once are off by more than a result's stated error says, and by more than 1 %."""
     inertia = {} if table is None else table.get("inertia") or {}
     parts = {
@@ -188,21 +223,21 @@ def inertia_warnings(table: Tables | None, total: float | None) -> list[str]:
 
 def model_spread(
     model: Model, equilibrium: Equilibrium, identification: Identification | None, simulation: Simulation | None
-) -> tuple[Tables | None, Note]:
-    """``error.model`` of result.json, and ``error.how.model``."""
+) -> tuple[Spread | None, Note]:
+    """How far other hypotheses move the numbers, and how that was found or why not."""
     values, why = _alternatives(model.problem, compiled(model.system) is not None)
     if isinstance(why, Note):
         return None, why
     bound = _bound_of(model, equilibrium, values)
     if bound < NEGLIGIBLE:
-        return _spread_table([], bound), Estimate.BOUND(bound=bound, why=why)
+        return Spread.over([], bound), Estimate.BOUND(bound=bound, why=why)
     secant, how = _secant(model, equilibrium, identification, simulation)
     kinematics, own = model.problem.kinematics, _state_numbers(model, equilibrium)
-    rows: list[tuple[Tables, Tables]] = []
+    rows: list[tuple[Values, Changes]] = []
 
-    def solve(combination: Tables) -> None:
+    def solve(combination: Values) -> None:
         nonlocal how
-        change: Tables = dict.fromkeys(_QUANTITIES)
+        change: Changes = dict.fromkeys(_QUANTITIES)
         try:
             problem = attrs.evolve(model.problem, kinematics=attrs.evolve(kinematics, **combination))
             variant, state = _under(model, problem, equilibrium)
@@ -219,11 +254,11 @@ def model_spread(
         for value in others:
             solve({key: value})
     # Those of several keys that change a quantity most to either side, by what each changes alone.
-    combinations: list[Tables] = []
+    combinations: list[Values] = []
     for name, sign in product(_QUANTITIES, (-1.0, 1.0)):
-        together: Tables = {}
+        together: Values = {}
         for key in values:
-            alone = [(sign * change[name], one[key]) for one, change in rows if key in one and change[name] is not None]
+            alone = [(sign * by, one[key]) for one, change in rows if key in one and (by := change[name]) is not None]
             most, value = max(alone, key=lambda pair: pair[0], default=(0.0, None))
             if most > 0.0:
                 together[key] = value
@@ -231,7 +266,7 @@ def model_spread(
             combinations.append(together)
     for combination in combinations:
         solve(combination)
-    return _spread_table(rows, bound), Estimate.EACH_HYPOTHESIS(how=how, why=why)
+    return Spread.over(rows, bound), Estimate.EACH_HYPOTHESIS(how=how, why=why)
 
 
 def _state_numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float | None]:
@@ -399,14 +434,3 @@ def _secant(
         return float((z.real - base.real) / abs(base.real + model.mass_used * speed**2))
 
     return of_orbit, "of the steady orbit near the recorded one"
-
-
-def _spread_table(rows: list[tuple[Tables, Tables]], bound: float) -> Tables:
-    """``error.model``: ranges over all rows and 0, None where a row lacks the number; each hypothesis by itself; the bound."""
-    ranges: Tables = {}
-    for name in _QUANTITIES:
-        numbers = [change[name] for _, change in rows]
-        ranges[name] = [min(0.0, *numbers), max(0.0, *numbers)] if numbers and None not in numbers else None
-    alone = [(key, value, change) for changed, change in rows for key, value in changed.items() if len(changed) == 1]
-    hypotheses = [{"key": f"kinematics.{key}", "value": value, **change} for key, value, change in alone]
-    return {**ranges, "hypotheses": hypotheses, "bound": bound}

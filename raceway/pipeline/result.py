@@ -26,7 +26,8 @@ from raceway.framework.options import nearest
 from raceway.framework.shown import Fact, in_micro, largest_facts, number, tilt_words
 from raceway.framework.sources import blamed
 from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts, motion_table, pressures
-from raceway.pipeline.plausible import closed_bound, model_spread
+from raceway.pipeline.error import Errors, ErrorTable
+from raceway.pipeline.plausible import Spread, closed_bound, model_spread
 from raceway.pipeline.quantities import StatedQuantities
 from raceway.pipeline.simulate import Simulation
 from raceway.pipeline.uncertainty import stated, uncertainty_table
@@ -58,7 +59,8 @@ class Result(Answer):
     model : the bearing as it was computed; ``model.scene`` and ``model.plan`` are what it was made from
     equilibrium : the static state under the constant loads, with ``gap`` [m] and ``contact_force`` [N] of every contact
     identification, simulation : None in a static scene (simulation also where the identifier needs no motion)
-    error, cost, stability, environment : the tables of result.json
+    errors : of Z, by their parts, each with how it was estimated
+    cost, stability, environment : the tables of result.json
     bodies : the table ``model``: what elastic bodies change against rigid ones; None for rigid bodies
     stated : numbers, tables and warnings of plug-ins of quantities
     lines : spectral components of the motion, empty where it was not recorded or its speed changes
@@ -80,7 +82,7 @@ class Result(Answer):
     equilibrium: Equilibrium
     identification: Identification | None
     simulation: Simulation | None
-    error: Tables
+    errors: Errors
     cost: Tables
     stability: Tables
     environment: Tables
@@ -139,9 +141,14 @@ class Result(Answer):
     Z, K = dynamic_stiffness, equivalent_stiffness
 
     @property
+    def error(self) -> ErrorTable:
+        """The table ``error`` of result.json, but for ``model``, which takes solutions of its own."""
+        return self.errors.table
+
+    @property
     def equivalent_stiffness_error(self) -> float | None:
         """Estimated absolute error of K [N/m]; None where it is not estimated."""
-        total, z = self.error["total"], self.dynamic_stiffness
+        total, z = self.errors.total.size, self.dynamic_stiffness
         return None if total is None or z is None else total * abs(z)
 
     @property
@@ -211,9 +218,15 @@ class Result(Answer):
         return first_order_band(self.model, self.equilibrium)
 
     @cached_property
-    def model_spread(self) -> tuple[Tables | None, Note]:
-        """``error.model`` of result.json: change of K and kyy by hypotheses left at their defaults, and how it was found."""
+    def spread(self) -> tuple[Spread | None, Note]:
+        """Change of K and kyy by hypotheses left at their defaults, and how it was found."""
         return model_spread(self.model, self.equilibrium, self.identification, self.simulation)
+
+    @property
+    def model_spread(self) -> tuple[Tables | None, Note]:
+        """The same as ``error.model`` of result.json has it."""
+        spread, note = self.spread
+        return None if spread is None else spread.table, note
 
     @property
     def model_bound(self) -> float | None:
@@ -333,8 +346,8 @@ class Result(Answer):
 
     def to_dict(self) -> Tables:
         """The content of result.json: plain numbers, lists and tables, None where a number does not exist."""
-        model, note = self.model_spread
-        notes = {**self.error["how"], "model": note}
+        (model, note), error = self.model_spread, self.error
+        notes = {**error["how"], "model": note}
         how, few = ({name: words(note) for name, note in notes.items()} for words in (str, short))
         motion = self.simulation
         return without_nan(
@@ -352,7 +365,7 @@ class Result(Answer):
                 "motion": None if motion is None else {**motion_table(self.model, motion.record), "orbits": motion.orbits},
                 "uncertainty": self.uncertainty,
                 "tolerances": self.tolerances,
-                "error": {**self.error, "model": model, "how": how, "short": few},
+                "error": {**error, "model": model, "how": how, "short": few},
                 "cost": self.cost,
                 "stability": self.stability,
                 "environment": self.environment,
@@ -392,7 +405,7 @@ class Result(Answer):
 
     def _across(self) -> float | None:
         """Error of Z across its own direction, over |Z|: mesh and calibration change the size of a stiffness and turn no phase."""
-        total, bodies, z = self.error["total"], self.error.get("bodies") or 0.0, self.dynamic_stiffness
+        total, bodies, z = self.errors.total.size, self.errors.bodies or 0.0, self.dynamic_stiffness
         angle = abs(z.imag) / abs(z) if z else 0.0
         return None if total is None else max(total - bodies, 0.0) + bodies * angle
 
@@ -493,7 +506,7 @@ def facts(result: Result) -> list[Fact]:
 
 
 def _identified_facts(result: Result) -> list[Fact]:
-    z, band, total = result.identification, result.band, result.error["total"]
+    z, band, total = result.identification, result.band, result.errors.total.size
     if z is None:
         return []
     speed = f"{60.0 * z.frequency_hz:g} r/min, {tilt_words(result.model.problem.supports.tilt)}"
@@ -511,7 +524,7 @@ def _identified_facts(result: Result) -> list[Fact]:
             "semi-axes of the synchronous (1x) component",
         ),
     ]
-    rows = [(name, "not resolved" if result.error["unresolved"] else value, remark) for name, value, remark in rows]
+    rows = [(name, "not resolved" if result.errors.unresolved else value, remark) for name, value, remark in rows]
     error = "not estimated" if total is None else f"{total:.1e}"
     absolute = "" if total is None else f", of K {K.text(result.equivalent_stiffness_error, 2)}"
     return [*rows, ("error of Z", error, f"numerical, relative{absolute}")]

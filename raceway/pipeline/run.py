@@ -27,7 +27,7 @@ from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, Racew
 from raceway.framework.estimate import Estimate
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.error import body_errors, error_table, error_warnings, misfit_warnings, no_error, unresolved
+from raceway.pipeline.error import Errors, body_errors, error_warnings, errors_of, misfit_warnings
 from raceway.pipeline.front import PATIENCE
 from raceway.pipeline.plausible import (
     inertia_warnings,
@@ -153,7 +153,6 @@ def _run(
         move = partial(_motions, equilibrium=equilibrium, progress=progress, near=near, stay=stay)
         model, motions, doubts = _motion_of(model, move, allowance, registry)
         answer = _answer(model, equilibrium, motions, allowance, doubts)
-    answer.error["unresolved"] = unresolved(answer.error)
     end, processor = working_clock(), working_process_time() - processor
     compile_s = take_compile_seconds()
     bodies = model.bearing.report(model, equilibrium) or None
@@ -169,15 +168,15 @@ def _run(
     simulation = answer.motions[-1] if answer.motions else None
     quantities = _quantities_of(scene, model, equilibrium, simulation)
     # Each once: a mesh too coarse for its answer comes first, keys without effect last.
-    error, identification = answer.error, answer.identification
+    errors, identification = answer.errors, answer.identification
     warnings = [
         *answer.doubts,
-        *error_warnings(error, identification is not None),
-        *misfit_warnings(model, error),
-        *start_warnings(model, error),
+        *error_warnings(errors, identification is not None),
+        *misfit_warnings(model, errors.identification.size),
+        *start_warnings(model, errors.transient.size, errors.transient.how),
         *series_warnings(identification),
         *model.bearing.warnings(model, equilibrium),
-        *([] if identification is None else inertia_warnings(bodies, error["total"])),
+        *([] if identification is None else inertia_warnings(bodies, errors.total.size)),
         *pressure_warnings(model, equilibrium.contact_force),
         *equilibrium.warnings,
         *quantities.warnings,
@@ -190,7 +189,7 @@ def _run(
         equilibrium=equilibrium,
         identification=answer.identification,
         simulation=simulation,
-        error=answer.error,
+        errors=errors,
         cost={**times, **_work(answer.motions)},
         stability=_stability(answer.motions),
         environment=_environment(model.problem, registry),
@@ -205,7 +204,7 @@ def _run(
 class _Answer:
     """What a run has beside the equilibrium; ``doubts``: what went wrong on the way; ``error_s``: time of the error [s]."""
 
-    error: Tables
+    errors: Errors
     identification: Identification | None = None
     motions: list[Simulation] = attrs.field(factory=list)
     error_s: float = 0.0
@@ -232,11 +231,11 @@ def _answer(
     start = working_clock()
     if allowance.spent:  # what is computed is kept
         doubts = [allowance.words("the error is not estimated, because the run far exceeded its plan"), *doubts]
-        error = no_error(Estimate.BEYOND_PLAN())
+        errors = Errors.unknown(Estimate.BEYOND_PLAN())
     else:
-        error = error_table(at_value)
-    identification = with_series_error(at_value, error["time_step"])
-    return _Answer(error, identification, motions, working_clock() - start, tuple(doubts))
+        errors = errors_of(at_value)
+    identification = with_series_error(at_value, errors.time_step.size)
+    return _Answer(errors, identification, motions, working_clock() - start, tuple(doubts))
 
 
 def _motions(

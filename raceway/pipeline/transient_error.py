@@ -49,7 +49,6 @@ from raceway.framework.estimate import Estimate, Note
 from raceway.framework.registry import default_registry
 from raceway.pipeline.simulate import OnProgress, Simulation, SteadyMotions, settles_elsewhere, simulate, steady_record
 from raceway.plugins.identifiers.one_frequency import whole_turns
-from raceway.storage.tables import Tables
 
 #: Free vibrations below this share of the 1x power shift nothing that can be seen.
 _LEAST_FREE = 1e-10
@@ -262,13 +261,11 @@ def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None
     raise failure or ConvergenceError("no orbit was found to start on")
 
 
-def start_warnings(model: Model, error: Tables) -> list[str]:
+def start_warnings(model: Model, size: float | None, how: str) -> list[str]:
     """Says that an error is not known because no other start could be compared with."""
-    if not model.problem.depends_on_start or error["transient"] is not None:
+    if not model.problem.depends_on_start or size is not None:
         return []
-    return [
-        f"friction: the dependence of the answer on the start of the motion, and so its error, is unknown: {error['how']['transient']}"
-    ]
+    return [f"friction: the dependence of the answer on the start of the motion, and so its error, is unknown: {how}"]
 
 
 def with_series_error(run: Identified, time_step: float | None) -> Identification:

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import hypot, isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NotRequired, TypedDict
 
 import attrs
 
@@ -53,9 +53,32 @@ _TOLD, _SHOWN, _SIDE = 0.1, 0.1, 0.02
 Range = tuple[float, float]
 
 
-def combined(parts: Mapping[str, ReadTables]) -> Range:
+class Part(TypedDict):
+    """Relative change by one cause, None where it is not known, and how it was found; ``of`` has the causes of data by their names."""
+
+    low: float | None
+    high: float | None
+    how: str
+    part: NotRequired[str]
+    remedy: NotRequired[str]
+    of: NotRequired[list[Part]]
+
+
+class Interval(TypedDict):
+    """Of one quantity: its ends in its unit and relative to the value, by what parts, combined by which rule."""
+
+    value: float
+    unit: str
+    low: float
+    high: float
+    relative: list[float]
+    parts: dict[str, Part]
+    rule: str
+
+
+def combined(parts: Mapping[str, Part]) -> Range:
     """The interval of parts by ``RULE``, relative; 0 lies inside."""
-    intervals = {name: (part["low"], part["high"]) for name, part in parts.items() if part["low"] is not None}
+    intervals = {name: change for name, part in parts.items() if (change := _range(part)) is not None}
     same_sign = [_with_zero(intervals.pop(name)) for name in _SIGNED if name in intervals]
     return _squares([(sum(low for low, _ in same_sign), sum(high for _, high in same_sign)), *intervals.values()])
 
@@ -71,18 +94,22 @@ def _squares(changes: Iterable[Iterable[float]]) -> Range:
     return -hypot(*(low for low, _ in sides)), hypot(*(high for _, high in sides))
 
 
-def _part(change: Sequence[float] | None, how: str, **more: object) -> Tables:
+def _range(part: Part) -> Range | None:
+    return None if part["low"] is None or part["high"] is None else (part["low"], part["high"])
+
+
+def _part(change: Sequence[float] | None, how: str) -> Part:
     low, high = change or (None, None)
-    return {"low": low, "high": high, "how": str(how), **more}
+    return {"low": low, "high": high, "how": str(how)}
 
 
 def uncertainty_table(result: Result) -> Tables:
     """The table: quantity -> value, unit, low, high, relative, parts, rule; None with its reason in ``why``."""
-    table, why, unclear = dict[str, Tables | None](), dict[str, str](), ", ".join(result.error["unresolved"] or [])
+    table, why, unclear = dict[str, Interval | None](), dict[str, str](), ", ".join(result.errors.unresolved)
     lives = result.stated.missing.get(L10R.path.partition(".")[0], "no life is computed")
     absent = {K: "the scene is static", L10R: lives, PRELOAD: "the bearing has no preload"}
     scatters, hertz = _at_scatters(result), dict[str, float]()
-    if getattr(result.error["how"]["contact"], "estimate", None) is Estimate.AGAINST_HERTZ:  # the law is not Hertz's
+    if result.errors.contact.estimate is Estimate.AGAINST_HERTZ:  # the law is not Hertz's
         own, other = _rest_numbers(result.model, result.equilibrium), _rigid_numbers(result.model, result.model.problem)
         hertz = {name: other[name] / value - 1.0 for name, value in own.items() if name in other}
     elastic = elastic_change(result.model, result.equilibrium) if result.bodies is None else {}
@@ -100,13 +127,13 @@ def uncertainty_table(result: Result) -> Tables:
         # K changes as the radial stiffness does.
         static = (KYY if result.kyy_tilts_follow is None else FOLLOWS).name if quantity is K else name
         data = [*_geometry(result, quantity, scatters), *_tolerances(result, quantity)]
-        each = [{"part": word, **part} for word, part in data]
-        intervals = [part for part in each if part["low"] is not None]
+        each: list[Part] = [{"part": word, **part} for word, part in data]
+        intervals = [change for part in each if (change := _range(part)) is not None]
         how = "; ".join(f"{word}: {part['how']}" for word, part in data) or "the scene states its geometry"
-        parts = {
+        parts: dict[str, Part] = {
             "numerical": _numerical(result, quantity),
             "hypotheses": _hypotheses(result, name, static),
-            "data": _part(_squares((part["low"], part["high"]) for part in intervals) if intervals else None, how, of=each),
+            "data": {**_part(_squares(intervals) if intervals else None, how), "of": each},
             "contact": _contact(result, quantity, hertz.get(static)),
             "bodies": _bodies(elastic, KYY.name if quantity in (K, FOLLOWS) else name),
         }
@@ -132,15 +159,17 @@ def stated(quantity: Quantity, result: ReadTables) -> Fact:
     return quantity.label, number_within(value, _SHOWN * least * abs(value), quantity.read_unit), interval(entry)
 
 
-def interval(entry: ReadTables) -> str:
+def interval(entry: Interval) -> str:
     """An interval and its parts in a line, the largest first."""
     (low, high), parts = entry["relative"], entry["parts"]
-    by_name = {part["part"]: part for part in parts["data"]["of"]} or {"tolerances": parts["data"]}
-    by_name |= {words: parts[name] for name, words in _SIGNED.items()} | {"numerical": parts["numerical"]}
-    sizes = {words: max(abs(part["low"]), abs(part["high"])) for words, part in by_name.items() if part["low"] is not None}
+    causes = {part["part"]: part for part in parts["data"]["of"]} or {"tolerances": parts["data"]}
+    causes |= {words: parts[name] for name, words in _SIGNED.items()} | {"numerical": parts["numerical"]}
+    changes = {words: _range(part) for words, part in causes.items()}
+    known = {words: change for words, change in changes.items() if change is not None}
+    sizes = {words: max(map(abs, change)) for words, change in known.items()}
     largest = [words for words in sorted(sizes, key=lambda words: -sizes[words]) if sizes[words] > _TOLD * max(-low, high)]
-    each = ", ".join(f"{words} {_percents((by_name[words]['low'], by_name[words]['high']), '')}" for words in largest)
-    unknown = ", ".join(words for words in by_name if words not in sizes)
+    each = ", ".join(f"{words} {_percents(known[words], '')}" for words in largest)
+    unknown = ", ".join(words for words in changes if words not in known)
     return f"{_percents((low, high), '+- ')} %: {each}{unknown and f'; not estimated: {unknown}'}"
 
 
@@ -152,34 +181,34 @@ def _percents(change: Range, even: str) -> str:
     return percents(*(end for end in (low, high) if abs(end) > _SIDE * (high - low)))[:-2]
 
 
-def _numerical(result: Result, quantity: Quantity) -> Tables:
-    error, how = result.error, result.error["how"]
+def _numerical(result: Result, quantity: Quantity) -> Part:
+    errors = result.errors
     if quantity is K or (quantity in (PEAK_BALL_LOAD, P0) and result.simulation is not None):
-        if error["total"] is None:
-            return _part(None, how["total"])
-        calibration = (error["contact"] or 0.0) if result.model.traits.calibrated else 0.0
-        size = max(error["total"] - calibration, 0.0) * (Z.of(result) / abs(K.of(result)) if quantity is K else 1.0)
+        if errors.total.size is None:
+            return _part(None, errors.total.how)
+        calibration = (errors.contact.size or 0.0) if result.model.traits.calibrated else 0.0
+        size = max(errors.total.size - calibration, 0.0) * (Z.of(result) / abs(K.of(result)) if quantity is K else 1.0)
         return _part((-size, size), "error.total, over K" if quantity is K else "error.total, of the motion")
-    if error["mesh"] is None and result.bodies is not None:
-        return _part(None, how["mesh"])
-    size = TOLERANCE + (error["mesh"] or 0.0)
+    if errors.mesh.size is None and result.bodies is not None:
+        return _part(None, errors.mesh.how)
+    size = TOLERANCE + (errors.mesh.size or 0.0)
     return _part((-size, size), "residual of the equilibrium, error.mesh")
 
 
-def _hypotheses(result: Result, *names: str) -> Tables:
+def _hypotheses(result: Result, *names: str) -> Part:
     """Of the first name that ``error.model`` has."""
-    spread, note = result.model_spread
+    spread, note = result.spread
     if spread is None:
         return _part((0.0, 0.0) if note.estimate in _NOTHING else None, note)
-    if not spread["hypotheses"]:
-        return _part((-spread["bound"], spread["bound"]), note)
-    name = next((name for name in names if spread.get(name) is not None), None)
-    return _part(None, "not in error.model") if name is None else _part(spread[name], f"error.model.{name}")
+    if not spread.hypotheses:
+        return _part((-spread.bound, spread.bound), note)
+    name = next((name for name in names if spread.ranges.get(name) is not None), None)
+    return _part(None, "not in error.model") if name is None else _part(spread.ranges[name], f"error.model.{name}")
 
 
-def _contact(result: Result, quantity: Quantity, hertz: float | None) -> Tables:
-    size, note = result.error["contact"], result.error["how"]["contact"]
-    estimate = getattr(note, "estimate", None)
+def _contact(result: Result, quantity: Quantity, hertz: float | None) -> Part:
+    contact = result.errors.contact
+    size, note, estimate = contact.size, contact.how, contact.estimate
     if estimate in _NOTHING or size is None:
         return _part((0.0, 0.0) if estimate in _NOTHING else None, note)
     if estimate is Estimate.AGAINST_HERTZ:
@@ -190,7 +219,7 @@ def _contact(result: Result, quantity: Quantity, hertz: float | None) -> Tables:
     return _part((-size, size) if result.model.traits.calibrated else (0.0, size / max(1.0 - size, 1e-9)), note)
 
 
-def _bodies(elastic: Mapping[str, float] | str, name: str) -> Tables:
+def _bodies(elastic: Mapping[str, float] | str, name: str) -> Part:
     if not elastic:
         return _part((0.0, 0.0), "elastic as computed")
     if isinstance(elastic, str) or name not in elastic:
@@ -198,19 +227,20 @@ def _bodies(elastic: Mapping[str, float] | str, name: str) -> Tables:
     return _part(_with_zero([elastic[name]]), "walls below the grooves, and balls")
 
 
-def _geometry(result: Result, quantity: Quantity, scatters: Mapping[str, Range]) -> Iterator[tuple[str, Tables]]:
+def _geometry(result: Result, quantity: Quantity, scatters: Mapping[str, Range]) -> Iterator[tuple[str, Part]]:
     geometry = result.geometry
     if geometry is not None and quantity not in STIFFNESSES:
         yield "inferred geometry", _part(scatters.get(quantity.name), "inferred numbers at the ends of their uncertainties")
         for part in geometry["data"]:
             if part["part"] != "inferred geometry":
-                yield part["part"], _part(None, "known of stiffnesses alone", remedy=part["remedy"])
+                yield part["part"], {**_part(None, "known of stiffnesses alone"), "remedy": part["remedy"]}
     elif geometry is not None:
         for part in geometry["data"]:
-            yield part["part"], _part(part["axial" if quantity is KXX else "radial"], part["why"], remedy=part["remedy"])
+            change = part["axial" if quantity is KXX else "radial"]
+            yield part["part"], {**_part(change, part["why"]), "remedy": part["remedy"]}
 
 
-def _tolerances(result: Result, quantity: Quantity) -> Iterator[tuple[str, Tables]]:
+def _tolerances(result: Result, quantity: Quantity) -> Iterator[tuple[str, Part]]:
     if (band := result.tolerances) is not None:
         names = {PEAK_BALL_LOAD: "largest_ball_load", L10R: L10R.name}
         ends_of = band["quantities"].get(names.get(quantity, quantity.symbol)) or {"value": 0.0}

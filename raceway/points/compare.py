@@ -130,12 +130,12 @@ class Comparison(Answer, Findings):
         label = about.symbol
         changes = [
             (
-                " x ".join(names[key] for key in effect["term"]),
-                f"{effect['percent']:+.3g} %",
-                f"of {label} on average" if effect["order"] == 1 else f"interaction on {label}",
+                " x ".join(names[key] for key in effect.term),
+                f"{effect.percent:+.3g} %",
+                f"of {label} on average" if len(effect.term) == 1 else f"interaction on {label}",
             )
-            for effect in self.effects
-            if effect["quantity"] == first
+            for name, effect in self.terms
+            if name == first
         ]
         runs = [(", ".join(f"{names[key]} {shown(row.point[key])}" for key in names), *_number_of(row)) for row in self.rows]
         words: Fact = ("words", "", f"{len(self.words)} sentences in .words")

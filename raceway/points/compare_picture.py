@@ -186,9 +186,9 @@ def _by_interaction(comparison: Findings, along: str) -> list[str]:
 
     def strength(key: str) -> float:
         changes = [
-            abs(effect["log_change"])
-            for effect in comparison.effects
-            if effect["quantity"] in (K.name, KXX.name) and set(effect["term"]) == {key, along}
+            abs(effect.log_change)
+            for name, effect in comparison.terms
+            if name in (K.name, KXX.name) and set(effect.term) == {key, along}
         ]
         return max(changes, default=0.0)
 

@@ -247,6 +247,24 @@ class Row:
         return None
 
 
+@attrs.frozen(eq=False)
+class Course:
+    """How a quantity runs along an axis, the others held.
+
+    Attributes
+    ----------
+    axis : its key;  at : the other axes' values;  trend : "rises", "falls", "level", "not monotonic" or "unknown"
+    percent : change from the first to the last value, None where one of them is no number;  doubtful : rows that are left out
+    """
+
+    quantity: str
+    axis: str
+    at: Tables
+    trend: str
+    percent: float | None
+    doubtful: int
+
+
 @attrs.frozen(eq=False, slots=False)
 class Findings:
     """Findings of a comparison.
@@ -320,19 +338,26 @@ class Findings:
         return complete_factorial(np.array(usable).reshape(self._corners.shape))
 
     @cached_property
+    def terms(self) -> list[tuple[str, Effect]]:
+        """Of each quantity main effects and two-axis interactions, and the larger ones of higher order; the largest first."""
+        return [
+            (quantity, effect)
+            for quantity, factorial in self.factorials.items()
+            for effect in factorial.effects
+            if len(effect.term) <= 2 or abs(effect.log_change) >= _LEAST_HIGH_ORDER
+        ]
+
+    @property
     def effects(self) -> list[Tables]:
-        """Main effects and two-axis interactions, and the larger ones of higher order; the largest first."""
-        terms = []
-        for quantity, factorial in self.factorials.items():
-            for effect in factorial.effects:
-                if len(effect.term) <= 2 or abs(effect.log_change) >= _LEAST_HIGH_ORDER:
-                    plain = attrs.asdict(effect)
-                    terms.append({"quantity": quantity, "order": len(effect.term), **plain, "error": factorial.error})
-        return terms
+        """The terms, as tables."""
+        return [
+            {"quantity": name, "order": len(effect.term), **attrs.asdict(effect), "error": self.factorials[name].error}
+            for name, effect in self.terms
+        ]
 
     @cached_property
-    def trends(self) -> list[Tables]:
-        """Trend of each quantity along each axis of three or more numbers, for every combination of the others."""
+    def courses(self) -> list[Course]:
+        """Of each quantity along each axis of three or more numbers, for every combination of the others."""
         courses = []
         for axis in self.varied:
             if not axis.numeric or len(axis.values) < 3:
@@ -347,26 +372,29 @@ class Findings:
                 if axis.values[0] > axis.values[-1]:
                     good.reverse()
                 for quantity in self.factorials or self.quantities:
-                    courses.append({"quantity": quantity, "axis": axis.key, "at": at, **_trend(quantity, good, rows, axis)})
+                    courses.append(_course(quantity, good, len(rows) - len(good), axis, at))
         return courses
+
+    @property
+    def trends(self) -> list[Tables]:
+        """The courses, as tables."""
+        return [attrs.asdict(course, recurse=False) for course in self.courses]
 
 
 def _same(a: object, b: object) -> bool:
     return isinstance(a, bool) == isinstance(b, bool) and a == b
 
 
-def _trend(quantity: str, good: list[Row], rows: list[Row], axis: Axis) -> Tables:
+def _course(quantity: str, good: list[Row], doubtful: int, axis: Axis, at: Tables) -> Course:
     values = [row.value(quantity) or 0.0 for row in good]
     reaches = (
         len(good) > 1
         and min(values) > 0.0
         and all(any(_same(row.point[axis.key], end) for row in good) for end in axis.ends)
     )
-    return {
-        "trend": trend(values, [row.error_of(quantity) for row in good]) if len(good) > 1 else "unknown",
-        "percent": 100.0 * (values[-1] / values[0] - 1.0) if reaches else None,
-        "doubtful": len(rows) - len(good),
-    }
+    runs = trend(values, [row.error_of(quantity) for row in good]) if len(good) > 1 else "unknown"
+    percent = 100.0 * (values[-1] / values[0] - 1.0) if reaches else None
+    return Course(quantity, axis.key, at, runs, percent, doubtful)
 
 
 #: A change of less than half a percent "hardly matters".
@@ -457,11 +485,9 @@ def _courses(comparison: Findings) -> list[str]:
     quantity, factorial = next(iter(comparison.factorials.items()))
     label, words = comparison.quantities[quantity].symbol, []
     for axis in (axis for axis in comparison.varied if axis.numeric and axis.key in factorial.keys):
-        trends = [
-            t for t in comparison.trends if (t["axis"], t["quantity"]) == (axis.key, quantity) and t["percent"] is not None
-        ]
-        changes = [math.log1p(t["percent"] / 100.0) for t in trends]
-        if len(trends) < 2 or max(changes) - min(changes) < _HARDLY:
+        along = [c for c in comparison.courses if (c.axis, c.quantity) == (axis.key, quantity)]
+        changes = {c: math.log1p(c.percent / 100.0) for c in along if c.percent is not None}
+        if len(changes) < 2 or max(changes.values()) - min(changes.values()) < _HARDLY:
             continue
         partners = [key for key in factorial.keys if key != axis.key]
         partner = comparison.axis(
@@ -473,13 +499,13 @@ def _courses(comparison: Findings) -> list[str]:
             )
         )
         for value in partner.values:
-            here = [t for t in trends if t["at"][partner.key] == value]
+            here = [c for c in changes if c.at[partner.key] == value]
             parts = []
             for kind in ("rises", "falls", "level", "not monotonic"):
-                part = [math.log1p(t["percent"] / 100.0) for t in here if t["trend"] == kind]
+                part = [changes[c] for c in here if c.trend == kind]
                 verb = kind if kind in ("rises", "falls") else f"is {kind}"
                 parts += [f"{verb} in {len(part)} of {len(here)} settings ({_span(part)})"] if part else []
-            left_out = sum(t["doubtful"] for t in here)
+            left_out = sum(c.doubtful for c in here)
             note = f"; doubtful runs between the ends left out: {left_out}" if left_out else ""
             if parts:
                 words.append(
