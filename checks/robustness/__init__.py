@@ -3,14 +3,13 @@
 fuzz                  scenes that nobody would write, made from the schema, and calls with wrong arguments
 damage                stores and caches that were damaged
 signals               commands that are asked to end, or killed
-dask                  workers that are killed, unfit or silent
+dask                  workers that are killed
 types                 what editors and type checkers see of the package
 words                 length of the documents, terms that the field does not know
 pages                 pages in a real browser
 unchanged             numbers of results, compared with another commit: --base COMMIT
-fmu                   exported FMUs against runs and kernels, a rotor on them, time of a step
+fmu                   map of an exported FMU against runs, time of a step
 points                time of a point of ``raceway.function``, and equality with runs
-quantities            lives, ratings, friction and temperatures against published numbers and hand calculations
 app                   time from a change to its picture in the application, memory, numbers beside those of runs
 uncertainty           elastic bodies without a mesh against condensed ones; default hypotheses inside the range of the others
 extremes              what runs at the edges say of errors that are not estimated, or larger than Z

@@ -12,7 +12,6 @@ from checks import damaged_stores
 from checks.faulty_caches import SAME, TOLD
 from checks.robustness import Row, below
 
-TITLE = "Damaged stores and caches: the same numbers or one message"
 _STORES, _KERNELS, _ARRAYS = 150, 150, 50
 #: Damages after which a store goes on: what is not as it was written is computed again.
 _MENDED = ("two rows swapped", "row of another store", "digit of a value", "another file's journal")

@@ -3,28 +3,20 @@
 from __future__ import annotations
 
 import random
-import socket
 import tempfile
-import time
-import warnings
 from pathlib import Path
 
-import attrs
-
-from checks.robustness import Row, below
+from checks.robustness import Row
 from checks.validation.cluster import POINTS, START_S, Cluster, installed, prepared
 from checks.validation.cluster import rows as rows_of
 from checks.validation.scenes import built_in
-from raceway import PluginError
 from raceway.points.sweep import fill_store
 
 Dask = built_in("executor", "dask")
 Serial = built_in("executor", "serial")
 
-TITLE = "Sweeps on a dask scheduler: killed, unfit and silent partners"
 COMMAND = "python -m checks dask"
-TEST = "python -m pytest tests/test_dask.py"
-_KILLS, _SEED, _PATIENCE_S = 20, 20, 2.0
+_KILLS, _SEED = 20, 20
 
 
 def rows() -> list[Row]:
@@ -35,7 +27,7 @@ def rows() -> list[Row]:
         with installed(folder / "site") as plugin:
             cluster = Cluster(folder / "cluster", plugin)
             try:
-                return [*_kills(cluster, folder), *_unfit(cluster, folder), _silent(folder)]
+                return _kills(cluster, folder)
             finally:
                 cluster.stop()
 
@@ -76,62 +68,3 @@ def _kills(cluster: Cluster, folder: Path) -> list[Row]:
         ),
         Row("of these, sweeps with the bits of one in a single process", equal, f"{_KILLS}", equal == _KILLS, COMMAND),
     ]
-
-
-def _unfit(cluster: Cluster, folder: Path) -> list[Row]:
-    """A worker without the plug-in, then workers of another version."""
-    cluster.bare_worker("without")
-    cluster.wait_for_workers(3)
-    with warnings.catch_warnings(record=True) as told:
-        warnings.simplefilter("always")
-        with fill_store(prepared(folder / "unfit"), Dask(scheduler=cluster.address, patience=START_S)) as store:
-            done = store.status()["done"]
-            pids = {int(cost["worker"].rpartition(":")[2]) for cost in store.costs(int)}
-    words = [str(one.message) for one in told if "elsewhere" in str(one.message)]
-    refused = bool(words) and cluster.running["without"].pid not in pids and done == POINTS
-    said = words[0].partition(" gets ")[2] if words else "nothing is said"
-    found = prepared(folder / "version")
-    wanted = {**found.facts["identity"], "raceway": "9.9"}
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            fill_store(attrs.evolve(found, facts={**found.facts, "identity": wanted}), Dask(scheduler=cluster.address))
-        version = "computed all the same"
-    except PluginError as error:
-        version = str(error).partition(": tcp")[0] + ": " + str(error).rpartition(": ")[2]
-    return [
-        Row(
-            "a worker without the plug-in, beside two that have it",
-            f"gets {said}",
-            "named, and gets no points",
-            refused,
-            TEST,
-        ),
-        Row(
-            "all workers of another version",
-            version.split(";")[0],
-            "named, nothing is computed",
-            "instead of 9.9" in version,
-            TEST,
-        ),
-    ]
-
-
-def _silent(folder: Path) -> Row:
-    """A port that is open and never says anything."""
-    with socket.socket() as door:
-        door.bind(("127.0.0.1", 0))
-        door.listen()
-        start = time.monotonic()
-        try:
-            fill_store(
-                prepared(folder / "silent"), Dask(scheduler=f"tcp://127.0.0.1:{door.getsockname()[1]}", patience=_PATIENCE_S)
-            )
-        except PluginError:
-            waited = time.monotonic() - start
-        else:
-            waited = float("inf")
-    return below(
-        f"seconds until a scheduler that does not answer is given up, patience {_PATIENCE_S:g} s", waited, _PATIENCE_S + 5.0, TEST,
-        "the bound leaves room for a busy machine",
-    )  # fmt: skip

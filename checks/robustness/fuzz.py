@@ -18,7 +18,6 @@ from checks.robustness._doors import fronts
 from checks.robustness._fuzz import ASLEEP_S, CALLS, CHECK_S, RUN_S
 from checks.robustness._scenes import scene_keys
 
-TITLE = "Fuzz: random scenes and calls"
 COMMAND = "python -m checks fuzz"
 #: Scenes, runs and processes of a whole report; the environment may ask for fewer scenes, and the report says how many there were.
 SCENES = int(os.environ.get("RACEWAY_FUZZ_SCENES", "10000"))

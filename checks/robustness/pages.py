@@ -13,7 +13,6 @@ from checks.validation.browser.chromium import WIDTHS, Browser
 from checks.validation.browser.pages import PAGES as CHEAP
 from raceway.cli.main import main
 
-TITLE = "Pages in headless chromium: whole, readable, without a network"
 PICTURES = Path(__file__).resolve().parents[2] / "docs" / "pictures" / "view"
 #: Words of the command, its page.
 PAGES = {"view": (("view", "examples/b7206.toml", "--html"), "view.html"), "map": (("study", "map"), "map.html")}

@@ -13,9 +13,7 @@ import raceway as rw
 from checks.robustness import Row, below
 from checks.validation.columns import compare
 
-TITLE = "The bearing as a function: time of a point, and equality with runs"
 COMMAND = "python -m checks points"
-TEST = "python -m pytest tests/test_function.py"
 _MANY, _BLOCK = 10**7, 100_000
 #: Of a worker: pages of a block's arrays stay with the process, see docs/points.md.
 _MEMORY = {"MALLOC_MMAP_THRESHOLD_": 2**25, "MALLOC_TRIM_THRESHOLD_": 2**28}

@@ -7,7 +7,6 @@ import os
 from checks import signals
 from checks.robustness import Row, below
 
-TITLE = "Signals: commands that are asked to end, and killed"
 _COMMAND = "python -m checks.signals"
 _ASKED, _KILLED = 100, 30
 

@@ -16,7 +16,6 @@ import raceway as rw
 from checks.robustness import Row, below
 from raceway.answers.quantities import IDENTIFIED
 
-TITLE = "Types: a script under pyright, completion by jedi"
 COMMAND = "python -m checks types"
 ROOT = Path(__file__).parents[2]
 

@@ -26,7 +26,6 @@ from checks.robustness import Row
 from checks.robustness._unchanged_scenes import SCENES
 from raceway.extend import write_whole
 
-TITLE = "Numbers of results, compared with another commit"
 #: Relative difference that is allowed: the last digits, should an order of sums have to change.
 _LIMIT = 1e-13
 #: Parts of a result that depend on the machine and its load.

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from checks.robustness import Row, below
 
-TITLE = "Words: length of the documents, terms that the field does not know"
 COMMAND = "python -m checks words"
 ROOT = Path(__file__).parents[2]
 #: Pages whose length follows from the program or from measurements.
