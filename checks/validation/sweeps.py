@@ -137,57 +137,6 @@ def killed(times: int = 20, count: int = 120, seed: int = 8) -> dict[str, int]:
     return found
 
 
-def worker_killed(count: int = 200) -> dict[str, Any]:
-    """One of two processes killed half-way: the sweep ends by itself, with the same rows."""
-    with tempfile.TemporaryDirectory() as folder:
-        whole, store = Path(folder) / "whole", Path(folder) / "s"
-        _finish(words(count, whole))
-        with _running(words(count, store, "--executor", "processes")) as process:
-            _until(store, process, count // 3)
-            with open_store(store) as there:
-                worker = int(there.costs(int)[0]["worker"].rpartition(":")[2])
-            os.kill(worker, signal.SIGKILL)
-            code = process.wait(300)
-        return {"code": code, "equal": rows_of(store) == rows_of(whole)}
-
-
-def full_disk(limits: tuple[int, ...] = (20_000, 40_000, 80_000, 120_000), count: int = 200) -> dict[str, int]:
-    """Files that cannot grow beyond a limit: a message and code 2, and the same rows once there is space."""
-    found = {"tried": 0, "told": 0, "equal": 0}
-    with tempfile.TemporaryDirectory() as folder:
-        whole = Path(folder) / "whole"
-        _finish(words(count, whole))
-        for limit in limits:
-            store = Path(folder) / f"s{limit}"
-            code = (
-                "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
-                f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}));"
-                "from raceway.cli.main import main; main(sys.argv[1:])"
-            )
-            done = subprocess.run(
-                [sys.executable, "-c", code, *words(count, store)], capture_output=True, text=True, check=False
-            )
-            found["tried"] += 1
-            found["told"] += done.returncode == 2 and "ree some space" in done.stderr and "Traceback" not in done.stderr
-            _finish([*words(count, store), "--resume"])
-            found["equal"] += rows_of(store) == rows_of(whole)
-    return found
-
-
-def interrupted(count: int = 600) -> dict[str, Any]:
-    """Ctrl-C in the first tenth or soon after: exit code 130, results.nc is there, and it goes on to the same rows."""
-    with tempfile.TemporaryDirectory() as folder:
-        whole, store = Path(folder) / "whole", Path(folder) / "s"
-        _finish(words(count, whole))
-        with _running(words(count, store, "--executor", "processes")) as process:
-            _until(store, process, count // 10)
-            os.killpg(process.pid, signal.SIGINT)
-            code = process.wait(120)
-        there = (store / "results.nc").is_file()
-        _finish([*words(count, store), "--resume"])
-        return {"code": code, "results": there, "equal": rows_of(store) == rows_of(whole), "orphans": len(left(process.pid))}
-
-
 def continuation(count: int = 100) -> dict[str, dict[str, float]]:
     """Largest relative change of Z by starting from a neighbour, and the evaluations that it takes, cold and warm."""
     found = {}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 
-import attrs
 import numpy as np
 import pytest
 
@@ -12,14 +11,9 @@ from checks.validation.command_line import EXAMPLES, invoke
 from raceway import SceneError, make_plan, scene_from_dict
 from raceway.bodies.elastic_change import elastic_change
 from raceway.core.fem import structural as calibration
-from raceway.core.fem.revolution.body import seat_areas
 from raceway.testing import b7206c, run, settled
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
-
-
-#: Walls of 1.24 mm.
-THIN = {"bore": 34e-3, "outer_diameter": 58e-3}
 
 
 def tables(**changes):
@@ -47,20 +41,6 @@ def test_whole_bearing(supports, displacement, diagonal):
         assert 1e6 * found.displacement[index] == pytest.approx(value, rel=0.01)
     for index, value in enumerate(diagonal):
         assert value is None or 1e-6 * found.stiffness[index, index] == pytest.approx(value, rel=0.01)
-
-
-@pytest.mark.parametrize("seats", [pytest.param(("outer",), marks=pytest.mark.slow), ("inner", "outer")])
-def test_rings_that_do_not_deform_are_in_series_with_their_beds(seats):
-    """Axially exact: 1 / K = 1 / K on rigid seats + 1 / (bed area); 1e-3 for the angles' table over which c is a spline."""
-    rings = {"rings": {"young": 2e15, "poisson": 0.29}}
-    plain = {"bearing": rings, "load": {"axial": 1000.0}}
-    firm = at_rest(**plain, supports={"tilt": "locked"})[1].stiffness[0, 0]
-    bed = 5e10
-    case, found = at_rest(**plain, supports={"tilt": "locked", **{f"{seat}_seat": bed for seat in seats}})
-    areas = (seat_areas(case.bearing.ring_section(case, seat == "inner"), 360).sum() * 360 for seat in seats)
-    expected = 1.0 / (1.0 / firm + sum(1.0 / (bed * area) for area in areas))
-    assert expected < 0.8 * firm
-    assert found.stiffness[0, 0] == pytest.approx(expected, rel=1e-3)
 
 
 @pytest.mark.parametrize("tilt", ["locked", "free"])
@@ -160,18 +140,6 @@ def test_rings_that_lag_by_more_than_the_stated_error_are_told(speed_rpm, told):
     assert any("inner ring is quasi-static" in text for text in result.warnings) is told
 
 
-@pytest.mark.slow
-def test_the_damping_of_an_equilibrium_is_that_of_its_motion():
-    """Balls and elastic rings move with the ring, slowly: C of a motion of 1 N at 10 Hz, which knows nothing of the matrix."""
-    given = b7206c(
-        bodies={"kind": "condensed"}, contact={"damping": 300.0}, kinematics={"spin_speed_rpm": 20000.0}, rotor={"mass": 2.0},
-        integrator={"kind": "periodic"}, supports={"tilt": "locked", "axial": "displacement"},
-        excitation={"kind": "bidirectional", "speed_rpm": 600.0, "amplitude": "constant", "force": 1.0},
-    )  # fmt: skip
-    result = run(scene_from_dict(given))
-    assert result.identification.equivalent_damping == pytest.approx(result.equilibrium.damping[1, 1], rel=1e-5)
-
-
 def test_limit_takes_away_an_error_of_order_two_and_gives_the_tangent():
     """Of c = c0 + t log(Q / Q0) with errors 1 / n^2: secants become exact, the tangent d(c Q) / dQ is c0 + t."""
     nodes = np.array(calibration.POINTS)[:, None]
@@ -182,23 +150,6 @@ def test_limit_takes_away_an_error_of_order_two_and_gives_the_tangent():
     assert found.uncertainty == pytest.approx(3e-9 / calibration.POINTS[1] ** 2, rel=1e-9)
     # At the typical load the tangent is right and the secant off by the trend.
     assert found.error(np.array([200.0])) == pytest.approx(found.uncertainty + found.trend)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("tilt", ["locked", "free"])
-def test_thin_walls_are_within_what_is_stated_of_pressures_at_surface_points(tilt):
-    """Four points along a semi-axis are 0.6 % softer than their limit; matched at depth alone kyy was 3.5 % too high."""
-    model, ours = at_rest(bearing=THIN, supports={"tilt": tilt})
-    _, theirs = at_rest(
-        bearing=THIN, supports={"tilt": tilt}, contact={"kind": "unilateral", "discretisation": "nodal"},
-        mesh={"kind": "structured", "nodes_per_semi_axis": 4},
-    )  # fmt: skip
-    stated, how = model.bearing.contact_error(model, ours)
-    assert "surface points" in how and 0.005 < stated < 0.02
-    for index in range(3):
-        assert ours.stiffness[index, index] == pytest.approx(theirs.stiffness[index, index], rel=stated + 0.006)
-    matched = attrs.evolve(model.bearing.compliances, calibrations=(None, None))
-    assert matched.at(0.3)[0] < 1.08 * model.bearing.compliances.at(0.3)[0]
 
 
 def test_the_calibration_holds_for_both_signs_of_the_angle():

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from io import StringIO
-
 import numpy as np
 import pytest
-from rich.console import Console
 
 from checks.validation.scenes import built_in
 from raceway import ConvergenceError, SceneError, make_plan, run, scene_from_dict
@@ -296,36 +293,6 @@ def test_constants_of_a_moment_are_those_of_a_steady_scene(built, bodies):
     assert now.at_speed(0.4) is now and model.system.scalars[CAGE] > now.scalars[CAGE]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("first", "last", "integrator"),
-    [
-        (6000.0, 15000.0, "newmark"),
-        (15000.0, 6000.0, "newmark"),
-        (6000.0, 15000.0, "central_difference"),
-        (15000.0, 6000.0, "quasi_static"),
-    ],
-)
-def test_stiffness_over_a_run_up_is_that_of_steady_runs(first, last, integrator):
-    """0.5 %, where the constants of the last speed make -17 and +23 %; near 6150 and 14 900 r/min an independent program's."""
-    result = run(turning(first, last, integrator={"kind": integrator, "steps_per_turn": 120}))
-    mass, found = result.model.mass_used, result.identification.series
-    speeds = np.array([w for w, _ in found])
-    chosen = [int(np.argmin(np.abs(speeds - rpm * np.pi / 30.0))) for rpm in (6150.0, 10000.0, 14900.0)]
-    stiffness = {}
-    for k in chosen:
-        w, z = found[k]
-        excitation = {"kind": "bidirectional", "speed_rpm": float(w) * 30.0 / np.pi, "unbalance": 1e-4}
-        same = {"kind": integrator, "turns": 3}
-        one = run(b7206c(**ROTOR, excitation=excitation, integrator=same)).identification
-        stiffness[k] = z.real + mass * w**2
-        assert stiffness[k] == pytest.approx(one.equivalent_stiffness, rel=5e-3)
-    if integrator == "newmark":
-        k, told = (chosen[0], 182.1) if first < last else (chosen[-1], 147.7)
-        assert 1e-6 * stiffness[k] == pytest.approx(told, rel=5e-3)
-    assert result.stability["energy_drift"] is None  # what changes the balls' speed does work
-
-
 @pytest.mark.parametrize("integrator", ["newmark", "central_difference"])
 def test_steps_from_python_follow_the_speed(built, integrator):
     """The loops in Python take the same steps as the compiled ones."""
@@ -365,69 +332,11 @@ def test_bodies_whose_forces_do_not_follow_are_refused(tables):
     make_plan(scene_from_dict(turning(6000.0, 15000.0, **more, kinematics={"spin_speed_rpm": 9000.0})))
 
 
-def crossing(duration, **tables):
-    """100 kg on 5000 N s/m: through the resonance near 14 300 r/min, whose half bandwidth is 240 r/min."""
-    excitation = {
-        "kind": "run_up", "first_speed_rpm": 6000.0, "speed_rpm": 20000.0, "duration_s": duration, "unbalance": 1e-5,
-    }  # fmt: skip
-    rotor = {"mass": 100.0, "damping": 5000.0}
-    return b7206c(
-        excitation=excitation, rotor=rotor, identifier={"kind": "order_tracking"}, integrator={"steps_per_turn": 120},
-        **tables,
-    )  # fmt: skip
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("tilt", ["locked", "free"])
-def test_every_window_of_a_run_up_states_its_error(tilt):
-    """0.5 s: Z is off by more than its size near the resonance, where one total of 2 % at the end stood for all windows.
-
-    Notes
-    -----
-    Free tilts resonate below the first speed: what the first windows hold is the lag that the start leaves.
-    """
-    result = run(crossing(0.5, supports={"tilt": tilt}))
-    found, told = result.identification, np.array(result.identification.series_error)
-    assert len(told) == len(found.series) > 20
-    true = []
-    for k in range(0, len(told), 6):
-        w, z = found.series[k]
-        tables = crossing(0.5, supports={"tilt": tilt})
-        tables |= {"integrator": {"kind": "periodic"}, "identifier": {"kind": "fft_1x"}}
-        tables["excitation"] = {"kind": "bidirectional", "speed_rpm": w * 30.0 / np.pi, "unbalance": 1e-5}
-        expected = run(tables).identification.dynamic_stiffness
-        true.append(abs(z - expected) / min(abs(z), abs(expected)))
-    # Both are steady motions, each solved to 1e-8 of its displacement.
-    assert told[::6] == pytest.approx(true, rel=1e-3, abs=1e-6)
-    # Of the record alone, with the steps in time: a lag that is no longer small is told to a factor.
-    own = np.array(
-        result.model.scene.identifier.method.identify([result.simulation.record], None, result.model).series_error
-    )
-    assert (told < 5.0 * (own + result.error["time_step"])).all()
-    rows = result.to_dict()["identification"]["series"]
-    assert [row["error"] for row in rows] == told.tolist()
-    worst = rows[int(told.argmax())]["speed_rpm"]
-    assert told.max() > (0.5 if tilt == "locked" else 0.05)
-    assert any(f"(at {worst:.0f} r/min)" in text and "windows" in text for text in result.warnings)
-    assert "of the last window alone" in result.error["how"]["total"]
-    shown = Console(width=200, record=True, file=StringIO())
-    shown.print(result.screen())
-    assert f"at {worst:.6g} r/min; of {len(told)} windows" in shown.export_text()
-
-
 def test_windows_of_a_slow_run_up_have_small_errors_and_no_warning():
     """Z of each window is within 0.2 % of a steady run's (above), and says so within a factor of 2 of that."""
     result = run(rising())
     assert 0.0 < max(result.identification.series_error) < 4e-3
     assert not any("windows" in text for text in result.warnings)
-
-
-@pytest.mark.slow
-def test_windows_without_a_steady_motion_have_the_error_of_their_record():
-    """Equilibria have no steady motion to be held against: what a bend of the amplitude would change is told."""
-    result = run(turning(6000.0, 15000.0, integrator={"kind": "quasi_static", "steps_per_turn": 120}))
-    told = result.identification.series_error
-    assert len(told) == len(result.identification.series) and 1e-8 < min(told) <= max(told) < 5e-3
 
 
 def test_friction_of_a_run_up_sees_the_growth_of_the_ring():

@@ -14,11 +14,9 @@ import pytest
 
 from checks.validation.condensed import cost, largest, quantities, tables
 from checks.validation.scenes import rotating
-from raceway.core.fem.revolution.body import Revolution, seat_areas
-from raceway.core.fem.revolution.sections import ball_profile, coarse_profile, dofs, graded_profile
+from raceway.core.fem.revolution.body import seat_areas
 from raceway.extend import Schedule, from_orbit, integrate, steady_orbit
 from raceway.testing import model_of, settled
-from tests.revolution.sections import STEEL, shape
 
 pytestmark = pytest.mark.night
 
@@ -27,7 +25,6 @@ SAME_LAW = {
     "locked": {"x": 28.691, "y": 1.957, "kxx": 65.00, "kyy": 254.8, "kzz": 255.5, "k tilt_y": 17.51, "k tilt_z": 17.48},
     "free": {"x": 26.921, "y": 13.676, "tilt_z": 1.5447, "kxx": 65.60, "kyy": 267.5, "kzz": 253.8},
 }
-SPLIT = (-0.60, -0.62, -0.304, 0.167)
 #: The same bodies with 8 points along a semi-axis.
 POINTS = {
     "locked": {"x": 28.837, "y": 1.972, "kxx": 65.52, "kyy": 256.0, "kzz": 257.3},
@@ -40,60 +37,6 @@ SCENE = "B7206C, 1000 N axial, 500 N radial"
 RIGID = 2e17
 #: Bore and outer diameter [mm] by the wall below both grooves.
 WALLS = {3.24: (30.0, 62.0), 2.0: (32.48, 59.52), 1.24: (34.0, 58.0)}
-
-
-def test_sampled_harmonics(claim):
-    apart = []
-    for inner, seat in ((True, "clamped"), (False, 5e11)):
-        profile = graded_profile(shape(inner), 0.13e-3, (0.2, 0.4), 0.1e-3, 0.8e-3)
-        body, at = Revolution(profile, 4800, *STEEL, seat=seat), dofs(profile.race[::4], (0, 1, 2))
-        offsets = np.concatenate([np.arange(9), [400, 800]])
-        every, sampled = (body.compliance(at, at, offsets, which) for which in ("all", "sampled"))
-        apart.append(np.abs(every - sampled).max() / np.abs(every).max())
-    quantity = "compliances of rings of 4800 sectors, sampled harmonics: largest difference"
-    source = "all harmonics; a thousandth of the 1 % that a result states"
-    claim(quantity, max(apart), at_most=1e-5, basis="own other method", source=source)
-
-
-def test_first_frequencies(claim):
-    """Of rings with shoulders at 41.2 and 51.8 mm, elements of 0.5 mm."""
-    errors = []
-    for inner, seat, expected, harmonic in (
-        (True, "free", 10.53e3, 2), (True, "clamped", 132.9e3, 1), (False, "clamped", 159.0e3, 0), (False, "free", 3.69e3, 2),
-    ):  # fmt: skip
-        size = 0.5e-3
-        divisions = 12 * round(2.0 * np.pi * (18e-3 if inner else 28e-3) / size / 12)
-        profile = coarse_profile(shape(inner, 20.6e-3 if inner else 25.9e-3), size, size)
-        found = Revolution(profile, divisions, *STEEL, seat=seat).frequencies(range(6), 2)
-        assert np.unravel_index(np.argmin(found), found.shape)[0] == harmonic
-        errors.append(abs(found.min() / expected - 1.0))
-    quantity = "first elastic frequency of both rings, free and held: largest relative error"
-    source = f"{PROTOTYPE}; elements of 1 mm instead of 0.5 mm change it by up to 0.8 %"
-    claim(quantity, max(errors), at_most=0.01, basis="own other method", source=source)
-
-
-def test_first_frequency_of_a_ball(claim):
-    radius = 4.7625e-3
-    found = Revolution(ball_profile(radius, *4 * [0.4e-3]), 72, *STEEL, seat="free").frequencies(range(4), 2).min()
-    young, poisson, density = STEEL
-    torsion = 2.5011 * np.sqrt(young / (2.0 * (1.0 + poisson)) / density) / (2.0 * np.pi * radius)
-    source = "Lamb (1881), torsion, j_2(x) = x j_3(x); 12 elements along a radius, lumped masses: (2.5 / 12)^2 / 6 = 0.7 %"
-    claim(
-        "first elastic frequency of a ball", found / 1e3, near=torsion / 1e3, within=0.01, unit="kHz", basis="closed form",
-        source=source,
-    )  # fmt: skip
-
-
-def test_structural_compliances(claim):
-    bodies = settled(tables())[0].bearing.compliances
-    own = [np.interp(np.radians(18.65), ring.angles, ring.direct) for ring in (bodies.inner, bodies.outer)]
-    apart = max(
-        abs(1e9 * found - wanted)
-        for found, wanted in zip([*own, bodies.ball_direct, bodies.ball_opposite], SPLIT, strict=True)
-    )
-    quantity = "structural compliances of rings and ball: largest difference"
-    source = f"{PROTOTYPE}; two ways of splitting a contact's approach differ by as much there"
-    claim(quantity, apart, at_most=0.03, unit="nm/N", basis="own other method", source=source)
 
 
 @pytest.mark.parametrize("tilt", ["locked", "free"])

@@ -10,7 +10,6 @@ import time
 import numpy as np
 import pytest
 
-from checks.validation.block import Block
 from checks.validation.command_line import EXAMPLES
 from checks.validation.impact import MODULUS, expected, model, moving, structural_compliances
 from checks.validation.scenes import built_in
@@ -99,30 +98,6 @@ def test_impact(claim):
     claim("impact of a ball: contact time: difference", abs(lasting[1] / lasting[0] - 1.0), **bounds)
 
 
-def test_block_on_a_plane(claim):
-    """Pressed with mu = 0.3 it slides at 1 m/s and stops; pulled below the limit it sticks."""
-    weight, mu, speed = 2.0, 0.3, 1.0
-    velocities, places, losses = [], [], []
-    for method in (Newmark(), CentralDifference()):
-        block = Block(weight, mu)
-        slowing = mu * weight / block.mass
-        lasts, way = speed / slowing, 0.5 * speed**2 / slowing
-        steps = 200 if method.implicit else int(1.4 * lasts / (0.8 * block.stable_step()))
-        record = integrate(method, block, block.at_rest(speed), Schedule(1.4 * lasts / steps, steps, 1))
-        x, v, t = record.displacement[:, 0], record.velocity[:, 0], record.time
-        sliding = t < 0.9 * lasts
-        velocities.append(np.abs(v[sliding] - (speed - slowing * t[sliding])).max() / speed)
-        places.append(np.abs(x[t > 1.1 * lasts] - way).max() / way)
-        losses.append(abs(float(record.energies["friction"][-1] / (0.5 * block.mass * speed**2)) - 1.0))
-    bounds = {"at_most": 0.01, **CLOSED, "source": "Coulomb; 200 steps, and the same of explicit ones"}
-    claim("block on a plane: velocity while it slides: largest error", max(velocities), **bounds)
-    claim("block on a plane: where it stops: largest relative error", max(places), **bounds)
-    claim("block on a plane: energy lost in friction: largest relative error", max(losses), **bounds)
-    block = Block(weight, mu, lambda t: 0.3 * mu * weight * np.sin(np.pi * min(t / 4e-3, 1.0)) ** 2, stick=1e11)
-    lost = float(integrate(Newmark(), block, block.at_rest(), Schedule(4e-5, 125, 1)).energies["friction"][-1])
-    claim("block pulled with 0.3 of mu N: energy lost", lost, at_most=0.0, unit="J", **CLOSED, source="it sticks")
-
-
 @pytest.fixture(scope="module")
 def bearing():
     """Model and the start on its orbit."""
@@ -156,28 +131,6 @@ def test_bearing_by_two_integrators(claim, bearing):
     why = "one element to the semi-axis: its bending and contact are hourglass modes"
     source = "a mode that real bodies do not have; coefficient 0.05"
     claim(f"{where}: hourglass energy over elastic energy", share, at_most=0.02, **CLOSED, source=source, misses=why)
-
-
-@pytest.mark.parametrize(("method", "factor", "count", "bound"), [
-    (CentralDifference(), 1.0, 20, 0.0), (Newmark(tolerance=1e-9), 100.0, 4, 1e-8)
-], ids=["central_difference", "newmark"])  # fmt: skip
-def test_restart(claim, bearing, method, factor, count, bound):
-    built, found, start = bearing
-    step = 0.7 * factor * built.system.critical_time_step(found.stiffness)
-    whole = integrate(method, built.system, start, Schedule(step, count, 1))
-    first = integrate(method, built.system, start, Schedule(step, count // 2, 1))
-    second = integrate(method, built.system, first.final, Schedule(step, count // 2, 1, first=count // 2))
-    apart = (
-        np.abs(second.final.full_state["u"] - whole.final.full_state["u"]).max() / np.abs(whole.final.full_state["u"]).max()
-    )
-    source = "the same steps" if bound == 0.0 else "Newton's tolerance: linear solves remember their factors"
-    claim(
-        f"two halves, {method.name}: largest relative difference of all unknowns",
-        apart,
-        at_most=bound,
-        **CLOSED,
-        source=source,
-    )
 
 
 def test_iterations_with_friction(claim, bearing):

@@ -7,24 +7,11 @@ import time
 import numpy as np
 import pytest
 
-from checks.validation.film import (
-    OIL,
-    ROLLED,
-    SPINDLE,
-    inlet_film,
-    motion,
-    pair,
-    preload_by_hand,
-    regimes,
-    rolled,
-    scene,
-    skf_reduction,
-    springs,
-)  # fmt: skip
+from checks.validation.film import OIL, ROLLED, SPINDLE, motion, rolled, scene, skf_reduction  # fmt: skip
 from checks.validation.ross_rotor import in_ross
 from checks.validation.scenes import built_in
 from raceway import build_model, scene_from_dict
-from raceway.core.contact.film import REGIMES, film, thermal_reduction
+from raceway.core.contact.film import film, thermal_reduction
 from raceway.extend import TIME_CONSTANTS, run, simulate, solve_equilibrium
 from raceway.scene.lubricant import GRADES, Walther
 
@@ -34,31 +21,6 @@ pytestmark = pytest.mark.night
 
 HERTZ = {"kind": "hertz"}
 INTEGRATORS = ("newmark", "generalized_alpha", "central_difference")
-
-
-def test_formulas(claim):
-    rng, n, alpha = np.random.default_rng(22), 1000, 2e-8
-    along, across = 10.0 ** rng.uniform(-3.0, -1.0, n), 10.0 ** rng.uniform(-2.0, 0.0, n)
-    modulus, load, k = 10.0 ** rng.uniform(7.0, 11.5, n), 10.0 ** rng.uniform(-1.0, 4.0, n), rng.uniform(1.0, 10.0, n)
-    viscous = 10.0 ** rng.uniform(-4.0, 1.0, n)
-    found = film(viscous, alpha, modulus, along, across, load, k)
-    off, met = 0.0, set()
-    for i in range(n):
-        size = modulus[i] * along[i]
-        each = regimes(viscous[i] / size, alpha * modulus[i], load[i] / (size * along[i]), k[i], across[i] / along[i])
-        best = max(range(4), key=lambda one: each[one][1])
-        met.add(REGIMES[best])
-        for value, formula in zip((found.central[i], found.minimum[i]), each[best], strict=True):
-            off = max(off, abs(value / (formula * along[i]) - 1.0))
-    assert met == set(REGIMES)
-    quantity = f"h_c and h_min of {n} random contacts in all four regimes: largest relative error"
-    claim(
-        quantity,
-        off,
-        at_most=1e-12,
-        basis="published",
-        source="the regimes' formulas, written out again (checks/validation/film.py)",
-    )
 
 
 @pytest.mark.parametrize(
@@ -77,16 +39,6 @@ def test_ball_on_a_plate(claim, path, printed, misses):
     source = "printed exercise in the notation of Stachowiak and Batchelor; three decimals"
     within = 5e-4 / float(printed)
     claim(quantity, value, near=float(printed), within=within, unit="um", basis="published", source=source, misses=misses)
-
-
-def test_heat_of_the_inlet(claim):
-    off = max(
-        abs(float(thermal_reduction(np.array(one))) / inlet_film(one) - 1.0)
-        for one in (0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
-    )
-    quantity = "thermal reduction at loading 0.1 to 100: largest relative difference"
-    source = "Grubin's inlet with the heat of shear, integrated; Murch and Wilson's fit, both of Wilson and Sheu's print"
-    claim(quantity, off, at_most=0.15, basis="own other method", source=source)
 
 
 def test_heat_of_the_inlet_of_oils(claim):
@@ -124,73 +76,6 @@ def test_heat_of_the_inlet_of_oils(claim):
         basis="regression",
         source="the requirement's estimate, 'about half', at beta = 0.035 1/K, where it is 0.61",
         misses="beta is the slope of the oil's own line, 0.043 1/K",
-    )
-
-
-def test_no_warning_of_usual_films(claim):
-    warned = 0
-    for name in ("B7206C", "7014C", "B7206E", "7014A"):
-        for load in (100.0, 400.0, 1600.0):
-            tables = {"bearing": {"preset": name}, "load": {"axial": load}, "kinematics": {"spin_speed_rpm": 3000.0}}
-            warned += any(
-                "film" in text for text in run(scene_from_dict({**tables, "contact": {**OIL, "roughness": None}})).warnings
-            )
-    quantity, source = (
-        "of 12 bearings at 3000 r/min in VG 32: those with a warning of their film",
-        "formulas are valid there",
-    )
-    claim(quantity, warned, at_most=0, basis="closed form", source=source)
-
-
-def test_no_film(claim):
-    """Without viscosity, or without speed."""
-    moved, stiffness = [], []
-    for viscosity, spin in ((1e-30, 12000.0), (0.03, 1e-15)):
-        tables = {"kinematics": {"spin_speed_rpm": spin}, "load": {"radial": [200.0, 0.0]}}
-        wet, dry = (run(scene(law, **tables)) for law in ({"kind": "film", "viscosity": viscosity}, HERTZ))
-        moved.append(np.abs(wet.displacement - dry.displacement).max() / np.abs(dry.displacement).max())
-        stiffness.append(abs(wet.equivalent_stiffness / dry.equivalent_stiffness - 1.0))
-    where, source = "viscosity 1e-30 Pa s, and 1e-15 r/min", "law hertz"
-    claim(f"{where}: displacement, relative difference", max(moved), at_most=1e-12, basis="closed form", source=source)
-    claim(f"{where}: K, relative difference", max(stiffness), at_most=1e-9, basis="closed form", source=source)
-
-
-def test_gain_of_preload(claim):
-    off, held = [], []
-    for speed in (1000.0, 5000.0, 10000.0, 15000.0):
-        wet = run(pair(OIL, "rigid", speed))
-        content, basis = wet.to_dict()["equilibrium"], wet.model.basis
-        films = tuple(content["balls"][0][f"{race}_film_central_m"] for race in ("inner", "outer"))
-        hand = preload_by_hand(1000.0, (basis.inner.factor, basis.outer.factor), films)
-        off.append(abs((content["preload"]["running_n"] - 1000.0) / (hand - 1000.0) - 1.0))
-        held.append(abs(run(pair(OIL, "spring", speed)).to_dict()["equilibrium"]["preload"]["running_n"] / 1000.0 - 1.0))
-    where = "DB pair of B7206C, 1 kN, VG 32 at 40 C, 1000 to 15 000 r/min"
-    quantity = f"{where}: gain of a rigid preload, largest relative error"
-    claim(
-        quantity,
-        max(off),
-        at_most=0.02,
-        basis="own other method",
-        source="films in series with Hertz by hand, balls without mass",
-    )
-    quantity = f"{where}: change of a spring's preload, relative"
-    claim(quantity, max(held), at_most=1e-6, basis="closed form", source="a spring keeps its force")
-
-
-def test_damping(claim):
-    off = []
-    for law, tau in [(law, tau) for law in (HERTZ, OIL) for tau in TIME_CONSTANTS]:
-        found = run(scene({**law, "time_constant": tau}, kinematics={"ball_inertia": False}))
-        off.append(abs(found.equivalent_damping / (tau * springs(found.model, found.equilibrium)) - 1.0))
-    found = run(scene({**HERTZ, "loss_factor": 0.01}, kinematics={"ball_inertia": False}))
-    off.append(abs(found.dynamic_stiffness.imag / springs(found.model, found.equilibrium) / 0.01 - 1.0))
-    quantity = "C of tau = 2.5 and 25 us and of a loss factor of 0.01, laws hertz and film: largest relative error"
-    claim(
-        quantity,
-        max(off),
-        at_most=0.01,
-        basis="closed form",
-        source="tau k of the springs; a small force that turns, tilt locked",
     )
 
 

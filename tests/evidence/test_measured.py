@@ -7,7 +7,7 @@ within a factor of 2 of that.  A bound of what is not random may hold all.
 from __future__ import annotations
 
 from functools import cache
-from math import pi, sqrt
+from math import pi
 from pathlib import Path
 
 import attrs
@@ -19,7 +19,7 @@ from raceway_measure.fit.synchronous import slow_roll
 from raceway_measure.rig.signals import quiet_signals, record, response, slow_roll_record, white_noise
 from raceway_measure.rig.study import rig as rig_study
 from raceway_rotor.rig_table import Rig, rig_of
-from raceway_rotor.shaft import balance, bearing, make_beam, rotor, shaft
+from raceway_rotor.shaft import balance, bearing, rotor
 
 from checks.validation.shaker import hammer_record
 from checks.validation.shaker import record as record_of_shaker
@@ -82,38 +82,6 @@ def undisturbed(rig: Rig, own, state, signals, true=None):
     return identify_recording(record(rig, response(rig, true or own, state, signals), signals, 1), rig, own)
 
 
-def test_beam(claim):
-    young, diameter, span, a, mass = 212e9, 0.03, 0.175, 0.025, 4.0
-    stiffness = 48.0 * young * pi / 64.0 * diameter**4
-    line = make_beam(np.array([0.0, a, 0.5 * span, span]), diameter, young, 0.29, 1e-6, shear=False)
-    line = line.with_spring(0.0, 1e16).with_spring(span, 1e16)
-    load = np.zeros(len(line.stiffness))
-    load[2 * line.node(0.5 * span)] = 1.0
-    deflection = np.linalg.solve(line.stiffness, load)[2 * line.node(a)]
-    error = abs(deflection / (a * (3.0 * span**2 - 4.0 * a**2) / stiffness) - 1.0)
-    quantity, source = (
-        "simply supported shaft, deflection 25 mm from the support: relative error",
-        "P a (3 L^2 - 4 a^2) / (48 E I)",
-    )
-    claim(quantity, error, at_most=1e-6, basis="closed form", source=f"{source}; supports of 1e16 N/m")
-    speed = line.with_disc(0.5 * span, mass, 0.0, 0.0).critical_speeds()[0]
-    error = abs(speed / sqrt(stiffness / span**3 / mass) - 1.0)
-    source = "sqrt(48 E I / (L^3 m)); supports of 1e16 N/m"
-    claim(
-        "critical speed of a disc on a massless shaft: relative error",
-        error,
-        at_most=1e-6,
-        basis="closed form",
-        source=source,
-    )
-    coarse, fine = (rotor(RIG, 1500.0, shaft(RIG, finer=n)) for n in (1, 2))
-    change = float(np.abs(fine.ring / coarse.ring - 1.0).max())
-    quantity = "the rig's compliance with elements half as long: largest relative change"
-    claim(
-        quantity, change, at_most=1e-6, basis="own other method", source="shape functions exact at rest; (w h)^4 of inertia"
-    )
-
-
 def test_inverted_beam(claim):
     clean, noisy, ratios = [], [], {"inside": [], "outside": []}
     for side, kept in ratios.items():
@@ -140,61 +108,6 @@ def test_inverted_beam(claim):
     claim(quantity, share, at_least=SHARE, basis="closed form", source="95 % less 1.4 standard deviations of 60")
     quantity = f"K of {len(noisy)} of these records: rms of error over half-width, furthest from 0.51"
     claim(quantity, min(map(rms, ratios.values())), **WIDTH, misses=WIDE.format(4, 14))
-
-
-def test_files(claim, tmp_path):
-    found = studied()[0]
-    found.write_signals(tmp_path)
-    stiffness, wide, uneven, random = [], [], [], np.random.default_rng(11)
-    drifting = attrs.evolve(quiet_signals(RIG.signals), speed_drift=0.01, sampling_hz=8e4)
-    for point, (state, own) in zip(found.points, points(), strict=True):
-        loaded = with_number(SCENE, "load.axial", point.axial)
-        signals, slow = (tmp_path / f"{kind}-{point.name}.csv" for kind in ("signals", "slow-roll"))
-        back = identify(signals, loaded, slow_roll=slow)
-        stiffness.append(abs(back.state.stiffness / point.identified.state.stiffness - 1.0))
-        wide.append(abs(back.uncertainty[0] / point.identified.uncertainty[0] - 1.0))
-        complete = record(RIG, response(RIG, own, state, drifting), drifting, 1)
-        groups = len(complete.time) // 8
-        part = complete.part(8 * np.arange(groups) + random.integers(0, 8, groups))
-        path = write_recording(attrs.evolve(part, speed=None), tmp_path / "uneven.csv")
-        uneven.append(off(identify(path, loaded), state))
-    source = "the study, before its signals were rounded to six digits"
-    quantity = "`raceway identify` on the rig's own CSV against the study, six points"
-    claim(
-        f"{quantity}: K, largest relative difference", max(stiffness), at_most=1e-5, basis="own other method", source=source
-    )
-    claim(f"{quantity}: uncertainty of K", max(wide), at_most=0.01, basis="own other method", source=source)
-    quantity = (
-        "CSV with intervals from 1/8 to 15/8 of the usual one, 1 % of speed drift, six points: largest relative error of K"
-    )
-    claim(quantity, max(uneven), at_most=0.01, basis="own other method", source="the bearing that made the signals")
-
-
-@pytest.mark.parametrize(
-    ("words", "changes", "limit"),
-    [
-        ("speed drifts by 5 %, or 20 turns or less", ({"speed_drift": 0.05}, {"duration": 0.08}), 0.01),
-        ("speed drifts by 9 %", ({"speed_drift": 0.09},), 0.02),
-        ("4 turns or less", ({"duration": 0.02},), 0.03),
-    ],
-)
-def test_speed_and_length(claim, words, changes, limit):
-    errors = []
-    for change in changes:
-        signals = attrs.evolve(quiet_signals(RIG.signals), **change)
-        errors += [off(undisturbed(RIG, own, state, signals), state) for state, own in points()]
-    quantity = f"clean signals, {words}, six points: largest relative error of K"
-    claim(quantity, max(errors), at_most=limit, basis="own other method", source="the bearing that made the signals")
-
-
-def test_speed_column_instead_of_a_mark(claim):
-    """The phase is taken as zero, and C is not identified."""
-    errors, signals = [], quiet_signals(RIG.signals)
-    for state, own in points():
-        without = attrs.evolve(record(RIG, response(RIG, own, state, signals), signals, 1), key=None)
-        errors.append(off(identify_recording(attrs.evolve(without, speed=1.001 * without.speed), RIG, own), state))
-    quantity = "clean signals, a speed column that is 0.1 % off instead of a mark, six points: largest relative error of K"
-    claim(quantity, max(errors), at_most=0.01, basis="own other method", source="the bearing that made the signals")
 
 
 def test_damping(claim):

@@ -12,10 +12,7 @@ import numpy as np
 import pytest
 
 from checks.validation.condensed import largest, quantities, tables
-from checks.validation.reference.mindlin import Mindlin
-from checks.validation.single import single
 from raceway import scene_from_dict
-from raceway.core.fem.patches.friction import Friction
 from raceway.testing import model_of, run, settled, simulate, solve_equilibrium
 
 pytestmark = pytest.mark.night
@@ -33,91 +30,11 @@ PROTOTYPE = {
 }  # fmt: skip
 SEPARATE = "a separate program with incompatible elements, 8 points per semi-axis"
 OWN = {"basis": "own other method"}
-#: Coefficient and load [N] of the single contact.
-MU, LOAD = 0.1, 300.0
 
 
 @cache
 def solved(tilt, points):
     return settled(tables(tilt, points))
-
-
-def test_pressure_of_a_single_contact(claim):
-    hertz, fine = {}, []
-    for load in (100.0, 300.0, 1000.0):
-        coarse, many = (case.peak(case.at_load(load)[1]) for case in (single(4, load), single(12, load)))
-        hertz[load] = abs(coarse / float(single(4, load).ellipse.peak_pressure(load)) - 1.0)
-        fine.append(abs(coarse / many - 1.0))
-    quantity, source = "single contact, 4 points per semi-axis, peak pressure: largest relative error", "Hertz"
-    claim(f"{quantity}, 100 and 300 N", max(hertz[100.0], hertz[300.0]), at_most=0.01, basis="closed form", source=source)
-    source = "Hertz; the groove's torus is no paraboloid: 12 points give 1.5 % more"
-    claim(f"{quantity}, 1000 N", hertz[1000.0], at_most=0.015, basis="closed form", source=source)
-    claim(f"{quantity}, 100 to 1000 N", max(fine), at_most=0.005, **OWN, source="12 points")
-
-
-def test_structural_compliance_of_a_single_contact(claim):
-    case = single(8, 300.0, room=1.9)
-    rest = [1e9 * (case.at_load(load)[0] - float(case.ellipse.approach(load))) / load for load in (100.0, 300.0, 1000.0)]
-    quantity = "single contact, (approach - Hertz's) / load at 100, 300 and 1000 N: spread"
-    source = "a structural compliance does not depend on the load; 6 % of it"
-    claim(quantity, max(rest) - min(rest), at_most=0.05, unit="nm/N", basis="closed form", source=source)
-
-
-def test_friction_of_a_single_contact(claim):
-    """8 points along a semi-axis, pressed by 300 N and pulled along the groove."""
-    case = single(8, LOAD, shear=True)
-    answer = case.at_load(LOAD)[1]
-    a, b = (float(axis) for axis in case.ellipse.semi_axes(LOAD))
-    mindlin = Mindlin(a, b, 212e9, 0.29, MU * float(answer.load.sum()))
-    friction, none = Friction(case.patch, MU), np.zeros(case.patch.rows * case.patch.columns)
-
-    def at_force(pull):
-        low, high = 0.0, 4.0 * float(mindlin.displacement(0.999 * mindlin.limit))
-        for _ in range(50):
-            middle = 0.5 * (low + high)
-            found = friction.pull(answer.nodes, answer.load, middle, none)
-            low, high = (middle, high) if found.force < pull else (low, middle)
-        return middle, found
-
-    moved, sticks, rest = [], [], []
-    for share in (0.25, 0.5, 0.75, 0.9):
-        pull = share * mindlin.limit
-        (displacement, found), closed = at_force(pull), float(mindlin.displacement(pull))
-        moved.append(abs(displacement / closed - 1.0))
-        rest.append(1e9 * (displacement - closed) / pull)
-        sticks.append(abs(float((found.sliding == 0).mean()) / mindlin.stick_share(pull) - 1.0))
-    word, source = "single contact, 300 N, pulled by 0.25 to 0.9 mu Q", "Mindlin (1949), Cattaneo (1938)"
-    claim(
-        f"{word}: displacement: largest relative error", max(moved), at_most=0.03, basis="closed form",
-        source=f"{source}; finite bodies",
-    )  # fmt: skip
-    claim(
-        f"{word}: share of points that stick: largest relative error", max(sticks), at_most=0.1, basis="closed form",
-        source=f"{source}; half a row of points around the ellipse",
-    )  # fmt: skip
-    claim(
-        f"{word}: (displacement - Mindlin's) / pull: spread", max(rest) - min(rest), at_most=0.3, unit="nm/N", basis="closed form",
-        source="a structural compliance does not depend on the pull; 2 % of Mindlin's 14 nm/N",
-    )  # fmt: skip
-    slides = friction.pull(answer.nodes, answer.load, 3e-6, none).force / mindlin.limit
-    claim(
-        "single contact pulled further: force over mu Q",
-        slides,
-        near=1.0,
-        within=1e-9,
-        basis="closed form",
-        source="Coulomb",
-    )
-    end, first = at_force(0.75 * mindlin.limit)
-    slip, lost = first.slip, 0.0
-    for place in np.concatenate([np.linspace(end, -end, 80)[1:], np.linspace(-end, end, 80)[1:]]):
-        found = friction.pull(answer.nodes, answer.load, place, slip)
-        slip, lost = found.slip, lost + found.lost
-    quantity, loop = (
-        "single contact, cycle of +-0.75 mu Q: energy lost over Mindlin's loop",
-        mindlin.loop(0.75 * mindlin.limit),
-    )
-    claim(quantity, lost / loop, near=1.0, within=0.03, basis="closed form", source=f"{source}; 160 steps of a cycle")
 
 
 def held_poles(model, found):
@@ -206,20 +123,6 @@ def test_friction_of_a_bearing(claim, force):
     why = "a resultant has Mindlin's first stiffness until it slides, points give half as much again before they do"
     source = "all contacts slide: the same mu Q over the same way"
     claim(f"{quantity}: damping", damping, within=0.15, **bounds, source=source, misses=why if force == 200.0 else "")
-
-
-def test_gyroscopic_moments(claim):
-    apart = []
-    for rpm in (15000.0, 40000.0):
-        more = {
-            "load": {"axial": 1000.0, "radial": [300.0, 0.0]},
-            "kinematics": {"gyroscopic": "shared", "spin_speed_rpm": rpm},
-        }
-        one, two = (quantities(settled(tables("free", points, **more))[1]) for points in (4, None))
-        apart.append(largest(one, {name: value for name, value in two.items() if not name.startswith("k")}))
-    quantity = "gyroscopic moments at 15 000 and 40 000 r/min, 4 points: displacements: largest difference"
-    source = "resultants of the same bodies: 1 % without moments, and half of that for them"
-    claim(quantity, max(apart), at_most=0.015, **OWN, source=source)
 
 
 def dynamic_stiffness(model):

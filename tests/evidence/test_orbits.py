@@ -12,17 +12,16 @@ from scipy.linalg import expm
 import raceway as rw
 from checks.validation import followed, several
 from checks.validation.crossed import compared, crossed
-from checks.validation.oscillators import Oscillator, Pressed, natural_frequency
 from checks.validation.reference.ring import Ring
 from checks.validation.reference.shooting import periodic as shooting
 from checks.validation.reference.shooting import rotating as turning
 from checks.validation.reference.shooting import swinging
 from checks.validation.scenes import built_in, rig_force, rotating
-from raceway.core.periodic.branch import DOUBLING, FOLD, PAIR, Branch, doubled, special_points
+from raceway.core.periodic.branch import FOLD, PAIR
 from raceway.core.periodic.branches import force_continuation
 from raceway.core.periodic.collocation import one_turn
 from raceway.core.periodic.refinement import displacements, states
-from raceway.core.periodic.search import directly, highest_order, mesh_of, problem_of
+from raceway.core.periodic.search import highest_order, mesh_of, problem_of
 from raceway.core.signals import stiffness
 from raceway.extend import Motion, Schedule, integrate
 from raceway.scene.growth import ring_inertia
@@ -101,22 +100,6 @@ def test_cost(claim):
         misses="a transient starts on the orbit too, and with the tilt free the search for it is most of either time",
         machine=True,
     )
-
-
-def test_one_ball_pitch_instead_of_a_turn(claim):
-    pair = {"arrangement": "DB", "row_distance": 0.016}
-    off = []
-    for tables in (
-        scene(), scene(tilt="free", inertia=True), scene(200.0), scene(contact={"damping": 500.0}), scene(bodies={"kind": "condensed"}),
-        scene(inertia=True, kinematics={"gyroscopic": "shared"}, bearing=pair),
-    ):  # fmt: skip
-        both = [solved(tables, kind="periodic", tolerance=1e-9, symmetry=kind) for kind in ("auto", "none")]
-        pitch, turn = (one.simulation.record.displacement[:, :3] for one in both)
-        off.append(np.abs(pitch - turn).max() / (0.5 * np.ptp(turn[:, 1])))
-        sizes = [np.sort([one["abs"] for one in result.stability["floquet"]["multipliers"]]) for result in both]
-        np.testing.assert_allclose(sizes[0], sizes[1], atol=1e-8)
-    quantity = "motion of one ball pitch against that of a turn over its amplitude, six scenes: largest distance"
-    claim(quantity, max(off), at_most=1e-8, basis="closed form", source="symmetry; tolerance 1e-9 of either")
 
 
 def farthest(floquet, wanted) -> float:
@@ -261,46 +244,6 @@ def test_random_scenes_by_two_integrators(claim):
         claim(quantity, good / len(judged), at_least=share, basis="own other method", source=source)
 
 
-def walked(branch, here, size, until):
-    points, found = [], []
-    while not until(here):
-        there = branch.step(here, size)
-        found += special_points(branch, here, there, size)
-        size *= branch.growth(there)
-        here = there
-        points.append(here)
-    return points, found
-
-
-def test_folds_of_a_duffing_oscillator(claim):
-    one = Oscillator(damping=2e-4, factor=1e-3, force=2e-4)
-    branch = Branch(one.problem, 1e-3, 1.0, 1e-10, 512, aim=1e-3)
-    first = branch.start(one.orbit(0.995, one.force / (1.0 - 0.995**2)), 0.995)
-    _, found = walked(branch, first, 0.1, lambda point: point.parameter > 1.002)
-    points = [special.point for special in found if special.kind == FOLD]
-    sizes = [float(np.abs(point.solved.path.q[:, 0]).max()) for point in points]
-    wanted = one.folds([(point.parameter, size) for point, size in zip(points, sizes, strict=True)])
-    error = max(abs(point.parameter / w - 1.0) for point, (w, _) in zip(points, wanted, strict=True))
-    quantity = "Duffing oscillator: frequency of both folds, largest relative error"
-    source = "first harmonic alone, which leaves (b A^2 / k)^2 3/128 = 2e-8 of the frequency out"
-    claim(quantity, error, at_most=1e-6, basis="closed form", source=source)
-
-
-def amplitude(point) -> float:
-    return float(np.abs(displacements(point.solved, np.array([0.0, np.pi]))[:, 0]).max())
-
-
-def test_backbone_of_a_hertzian_spring(claim):
-    one = Oscillator(stiffness=0.0, factor=2.0, exponent=1.5, force=1e-8)
-    start = float(natural_frequency(2.0, 1.5, 1.0, np.array(1.0)))
-    branch = Branch(one.problem, start, 1.0, 1e-6, 8, aim=1e-3)
-    points, _ = walked(branch, branch.start(one.orbit(start, 1.0, 80), start), 0.01, lambda point: amplitude(point) > 10.0)
-    sizes = np.array([amplitude(point) for point in points])
-    error = np.abs(np.array([point.parameter for point in points]) / natural_frequency(2.0, 1.5, 1.0, sizes) - 1.0).max()
-    quantity = "backbone of a mass on k x^1.5, amplitudes 1 to 10: frequency, largest relative error"
-    claim(quantity, error, at_most=1e-6, basis="closed form", source="c A^(1/4), under a force of 1e-8 of the spring's")
-
-
 def test_curve_over_speed(claim):
     """B7206C, 400 N, tilt free, 40 N along one direction, rotor.damping 200 N s/m, 500 to 30 000 r/min."""
     curve, spent = rw.follow(followed.SCENE, followed.OVER), []
@@ -359,21 +302,3 @@ def transient(point, turns, steps, rest) -> complex:
     last = integrate(Newmark(), system, first.final, Schedule(dt, steps, 1, 1, first=steps * (turns - 1)))
     turned = 2.0 / steps * np.exp(-1j * w * last.time)
     return complex(stiffness(turned @ last.force, turned @ last.displacement))
-
-
-def test_doubled_period(claim):
-    """A mass on a Hertzian contact near twice its natural frequency, begun 1 % off."""
-    one = Pressed()
-    q = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
-    first = directly(one.problem(2.3), q, one.problem(2.3).system.evaluate(q).stiffness, 1e-8).solved
-    branch = Branch(one.problem, 0.1, first.size, 1e-7, 512, aim=1e-3)
-    _, found = walked(branch, branch.start(first, 2.3, -1.0), 0.1, lambda point: point.parameter < 1.7)
-    flip = next(special.point for special in found if special.kind == DOUBLING)
-    longer, here = doubled(branch, flip)
-    last = walked(longer, here, 0.05, lambda point: abs(point.parameter - flip.parameter) > 0.05)[0][-1]
-    path, w = last.solved.path, last.solved.problem.speed
-    section = one.section(last.parameter, (1.01 * path.q[0, 0], 1.01 * w * path.v[0, 0]), 2000)[-2:, 0]
-    own = displacements(last.solved, np.array([0.0, 2.0 * np.pi]))[:, 0]
-    off = min(np.abs(section - own).max(), np.abs(section - own[::-1]).max()) / last.solved.size
-    quantity = "period-2 orbit of a mass on a Hertzian contact: distance over its size"
-    claim(quantity, off, at_most=1e-5, basis="own other method", source="Poincare section of 2000 turns; DOP853 at 1e-9")

@@ -248,16 +248,3 @@ def test_extreme_scenes(claim):
     largest = max(max(tally.residuals) for _, tally in found)
     source = "rounding of 20 kN of centrifugal force beside 1 mN of load"
     claim(f"{where}: residual over the sum of forces", largest, at_most=EXTREME_RESIDUAL, basis="closed form", source=source)
-
-
-def test_a_pair_is_two_rows(claim):
-    from raceway_checks.verify.study import verify
-
-    rows = verify(only=["nsk-7206C-stiffness", "nsk-7206A-stiffness"]).rows
-    single, pair = ([row.computed for row in rows if ("as pair" in row.quantity) == wanted] for wanted in (False, True))
-    assert len(pair) == 14
-    error = np.abs(np.array(pair) / np.array(single) - 1.0).max()
-    quantity = (
-        "DB pairs 7206C, 7206A at 50 to 630 N: axial and radial stiffness over twice one row's: largest relative error"
-    )
-    claim(quantity, error, at_most=1e-8, basis="closed form", source="symmetry; both are solved to 1e-11 of the forces")

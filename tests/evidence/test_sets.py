@@ -8,7 +8,7 @@ from time import process_time
 import numpy as np
 import pytest
 
-from checks.validation.reference.mounted import FORCE, approach, axial, row, secant
+from checks.validation.reference.mounted import approach, axial, row
 from checks.validation.reference.ring import Ring
 from checks.validation.reference.row_set import RowSet, press, press_together, warmed
 from raceway import build_model, load_scene, run, scene_from_dict
@@ -167,35 +167,6 @@ def pair(**tables):
     return ran(bearing={"preset": "B7206C", "arrangement": "DB", "preload": 300.0}, **tables)
 
 
-def test_running_pairs(claim):
-    stiffness, preload, grown, x = [], [], [], approach(row(), 300.0)
-    for rpm in (6000.0, 12000.0, 15000.0, 20000.0, 30000.0):
-        result = pair(excitation={"kind": "bidirectional", "speed_rpm": rpm, "amplitude": "constant", "force": FORCE})
-        found, running = result.identification, row(rpm)
-        stiffness.append(found.equivalent_stiffness / secant(running, None, 2, found.mass_used, found.speed, x) - 1.0)
-        preload.append(result.to_dict()["equilibrium"]["preload"]["running_n"] / axial(running, x) - 1.0)
-    for growth in (-2e-6, 2e-6, 5e-6):
-        k = np.diag(pair(kinematics={"radial_expansion": growth}).equilibrium.stiffness)
-        expected = 2.0 * np.diag(row(growth=growth)(np.array([x, 0.0, 0.0, 0.0, 0.0]))[1])
-        grown += list(k[:2] / expected[:2] - 1.0)
-    for quantity, errors in (
-        ("K of a DB pair, 300 N mounted, 6000 to 30 000 r/min", stiffness),
-        ("running preload of the same pair", preload),
-        ("kxx and kyy of the same pair at rest, inner raceway grown by -2, 2 and 5 um", grown),
-    ):
-        claim(f"{quantity}: largest relative error", np.abs(errors).max(), at_most=1e-3, **RING)
-
-
-def test_held_displacement(claim):
-    errors, x = [], approach(row(), 400.0)
-    for rpm in (15000.0, 30000.0):
-        now = ran(load={"axial": 400.0}, supports={"axial": "displacement"}, kinematics={"spin_speed_rpm": rpm}).equilibrium
-        expected = row(rpm)(np.array([x, 0.0, 0.0, 0.0, 0.0]))[1][1, 1]
-        errors += [now.displacement[0] / x - 1.0, now.stiffness[1, 1] / expected - 1.0]
-    quantity = "displacement of 400 N held, 15 000 and 30 000 r/min: displacement and kyy, largest relative error"
-    claim(quantity, np.abs(errors).max(), at_most=1e-3, **RING)
-
-
 LIGHT = {"load": {"axial": 400.0}, "rotor": {"mass": 2.0}}
 
 
@@ -237,37 +208,6 @@ def test_run_ups(claim):
         basis="closed form",
         source=source,
     )
-
-
-def test_fits_over_whirl_speeds(claim):
-    off, stated, identifier = [], [], {"kind": "impedance_fit", "speeds_rpm": [11000.0, 13000.0, 15000.0]}
-    for unbalance in (1e-4, 3.2e-4):
-        excitation = {"kind": "bidirectional", "speed_rpm": 15000.0, "unbalance": unbalance}
-        fitted, one = (
-            ran(**LIGHT, excitation=excitation, identifier=identifier),
-            ran(**LIGHT, excitation=excitation).identification,
-        )
-        off.append(abs(fitted.identification.equivalent_stiffness - one.equivalent_stiffness) / abs(one.dynamic_stiffness))
-        stated.append(off[-1] / fitted.error["identification"])
-    where = "impedance_fit at 11 000 to 15 000 r/min, two unbalances"
-    source = f"{STEADY}; what the amplitude changes is left"
-    claim(f"{where}: largest error of K over |Z|", max(off), at_most=0.02, basis="own other method", source=source)
-    claim(
-        f"{where}: error of K over the stated one, larger", max(stated), at_most=2.0, basis="own other method", source=STEADY
-    )
-    rotor = {"mass": 2.0, "polar_inertia": 5e-3, "transverse_inertia": 3e-3}
-    excitation = {"kind": "bidirectional", "speed_rpm": 13000.0, "unbalance": 1e-4}
-    common = {**LIGHT, "rotor": rotor, "supports": {"tilt": "free"}, "excitation": excitation}
-    one, stated = ran(**common, integrator={"kind": "periodic"}).identification, []
-    for speeds in ([11e3, 12e3, 13e3, 14e3, 15e3], [12e3, 14e3], [1e3, 2e3, 3e3], [16e3, 20e3]):
-        fitted = ran(**common, identifier={"kind": "impedance_fit", "speeds_rpm": speeds})
-        found = fitted.identification
-        stated.append(
-            abs(found.dynamic_stiffness - one.dynamic_stiffness) / abs(found.dynamic_stiffness) / fitted.error["total"]
-        )
-        assert abs(found.mass_used - one.mass_used) <= 1e-9
-    quantity = "impedance_fit, free tilts with a disc, 1000 to 20 000 r/min: error of Z over the stated one, largest"
-    claim(quantity, max(stated), at_most=1.01, basis="own other method", source="steady orbit; never stated too small")
 
 
 def test_run_ups_through_a_resonance(claim):

@@ -67,13 +67,3 @@ def test_kills(claim):
     source = "workers end with their parent"
     words = quantity.format("processes left 5 s later")
     claim(words, found["orphans"], at_most=0, basis="closed form", source=source)
-
-
-def test_interruptions(claim):
-    """One of two processes killed half-way; Ctrl-C with two processes; disks full at different points."""
-    worker, stopped, disk = sweeps.worker_killed(), sweeps.interrupted(), sweeps.full_disk()
-    assert worker["code"] == 0 and disk["told"] == disk["tried"]
-    assert (stopped["code"], stopped["results"], stopped["orphans"]) == (130, True, 0)
-    wrong = (not worker["equal"]) + (not stopped["equal"]) + disk["tried"] - disk["equal"]
-    quantity = f"of a killed worker, Ctrl-C and {disk['tried']} full disks: those that do not lead to the same values"
-    claim(quantity, wrong, at_most=0, **KEPT)
