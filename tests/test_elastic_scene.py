@@ -172,19 +172,6 @@ def test_implicit_steps_run_from_the_scene(kind):
     assert found["error"]["total"] is None
 
 
-@pytest.mark.slow
-def test_explicit_steps_run_from_the_scene():
-    found = run(scene(**QUICK, integrator={"kind": "central_difference", "turns": 1, "start": "static"})).to_dict()
-    json.dumps(found, allow_nan=False)
-    steps, stability = found["cost"]["steps"], found["stability"]
-    # By itself a run takes 0.8 of the stable step of elements and contacts, in whole multiples of 360 steps per turn.
-    assert 0.3 < 6e-6 / steps / stability["critical_time_step_s"] < 1.0
-    # Of second order, and the motion takes hundreds of steps.
-    assert stability["energy_drift"] < 1e-4
-    planned = make_plan(scene(**QUICK, integrator={"kind": "central_difference", "turns": 1, "start": "static"}))
-    assert 0.5 < planned.predicted_steps / steps < 2.0  # what the plan's cost rests on
-
-
 def test_a_step_above_the_stable_limit_is_refused_with_the_limit():
     steps = {"kind": "central_difference", "turns": 1, "start": "static", "steps_per_turn": 100}
     with pytest.raises(RacewayError, match="above the stable limit of 'central_difference', 2.* s. Use at least"):

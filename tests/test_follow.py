@@ -10,7 +10,7 @@ import pytest
 
 import raceway as rw
 from checks.validation.command_line import invoke
-from checks.validation.followed import OVER, SCENE, beside, by_harmonic_balance, by_integration, z_of
+from checks.validation.followed import OVER, SCENE, by_integration
 from checks.validation.oscillators import Oscillator, Pressed, natural_frequency
 from checks.validation.reference.harmonic_balance import harmonic_balance
 from raceway import ConvergenceError, SceneError
@@ -239,23 +239,6 @@ def test_balls_that_graze_their_races_do_not_lose_the_curve():
     scene = rw.evolve("examples/b7206.toml", {"load.axial": 400.0, "supports.tilt": "free"})
     curve = rw.follow(scene, "excitation.speed_rpm=500:30000")
     assert len(curve.rows) > 50 and curve.end
-
-
-@pytest.mark.slow  # tests/evidence/test_orbits.py compares some points
-def test_k_and_multipliers_by_other_methods(curve):
-    """The reference ring's forces in harmonic balance, and a turn of DOP853 with its variational equations."""
-    fold = next(label.point for label in curve.labels if label.kind == FOLD)
-    points = [*beside(fold), *(label.point for label in curve.labels if label.kind == PAIR)]
-    assert {point.floquet.verdict for point in points[:2]} == {"stable", "unstable"}
-    for point in points:
-        z = z_of(point)
-        assert abs(by_harmonic_balance(point) - z) < 1e-6 * abs(z)
-        by_turn, flow, gap = by_integration(point)
-        assert abs(by_turn - z) < 1e-6 * abs(z)
-        assert np.abs(gap[:3]).max() < 1e-6 * point.solved.size
-        own = point.floquet.multipliers
-        for multiplier in flow:
-            assert np.abs(own - multiplier).min() < 1e-5
 
 
 def test_a_branch_does_not_jump_to_its_neighbour():

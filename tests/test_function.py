@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -31,15 +30,6 @@ def test_points_are_what_runs_give(first: int) -> None:
     assert compared.worst < 1e-9
     assert compared.moved < 1e-8
     assert compared.status["COMPUTED"] >= 30
-
-
-@pytest.mark.night
-def test_points_of_many_random_scenes_are_what_runs_give(record_property: Callable[[str, object], None]) -> None:
-    compared = compare(range(2000), processes=2)
-    record_property("compared", compared)
-    assert compared.worst < 1e-9
-    assert compared.moved < 1e-8
-    assert compared.status["COMPUTED"] > 0.9 * compared.status.total()
 
 
 def test_sets_and_gyroscopic_moments_are_among_the_cases() -> None:

@@ -224,15 +224,6 @@ def test_preload_of_a_running_set(rpm):
     )
 
 
-@pytest.mark.slow
-def test_condensed_rows():
-    """Elastic rings and balls: a set of equal rows is its rows, too."""
-    (_, pair), (_, four) = (
-        built(word, 200.0, {"preload_of": "row"}, bodies={"kind": "condensed"}) for word in ("DB", "QBC")
-    )
-    np.testing.assert_allclose(np.diag(four.stiffness)[:3], 2.0 * np.diag(pair.stiffness)[:3], rtol=1e-7)
-
-
 @pytest.mark.parametrize(
     ("word", "told"), [("DB", (2.95, 2.95)), ("TBT", (5.91, 2.95)), ("QBC", (5.91, 5.91)), ("QBT", (8.87, 2.95))]
 )

@@ -307,19 +307,6 @@ def test_steps_from_python_follow_the_speed(built, integrator):
     assert np.abs(stepped.displacement - compiled.displacement).max() < 1e-6 * np.abs(compiled.displacement).max()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("damping", [0.0, 500.0])
-@pytest.mark.parametrize("tilt", ["locked", "free"])
-def test_a_changing_speed_is_not_told_as_damping(damping, tilt):
-    """Without subtraction C is m (w' + 2 w A' / A) / w, some 5 m w' / w: 12 to 31 N s/m here; left are 0.5, and 1 % of C."""
-    rotor = {"mass": 2.0, "transverse_inertia": 2e-4, "damping": damping}
-    more = {"rotor": rotor, "supports": {"tilt": tilt}, "load": {"axial": 2000.0}}
-    result = run(turning(6000.0, 15000.0, **more))
-    found = np.array([z.imag / w for w, z in result.identification.series])
-    assert len(found) > 30
-    assert np.abs(found - damping).max() < 0.5 + 0.01 * damping
-
-
 @pytest.mark.parametrize("tables", [{"bodies": {"kind": "elastic"}}, {"contact": {"discretisation": "nodal"}}])
 def test_bodies_whose_forces_do_not_follow_are_refused(tables):
     """With a speed of their own they run."""

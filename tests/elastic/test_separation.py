@@ -12,7 +12,7 @@ from raceway.core.fem.elastic.surface import Facets
 from raceway.core.fem.mesh.ball_mesh import ball_mesh
 from raceway.extend import HexOperator
 
-STEEL = YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
+STEEL = YOUNG, POISSON, _ = 212e9, 0.29, 7810.0
 #: Thickness of a clamped block, four times as wide as thick, and radius of a ball [m].
 THICK, RADIUS = 3e-3, 4.7625e-3
 DOWN = np.array([0.0, 0.0, -1.0])

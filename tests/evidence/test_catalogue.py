@@ -238,17 +238,3 @@ def test_time(claim):
     spent = sum(one[1] for one in (inferred("nsk", "--conformity", "0.522"), inferred("gmn"), of_scenes("nsk")))
     quantity = "processor time of both inferences and 384 scenes"
     claim(quantity, spent, at_most=10.0, unit="s", basis="regression", source="a catalogue is made while one waits")
-
-
-def test_ball_pass_frequencies(claim):
-    bearing = {
-        "ball_count": 9, "ball_diameter": "7.9375 mm", "pitch_diameter": "38.5 mm", "conformity_inner": 0.52,
-        "conformity_outer": 0.53, "contact_angle_deg": 0.0,
-    }  # fmt: skip
-    (found,) = rw.run({"bearing": bearing, "load": {"radial": [1.0, 0.0]}}).to_dict()["ball_pass"]["rows"]
-    printed = {"ftf": (0.3969, 5e-5), "bpfo": (3.572, 5e-4), "bpfi": (5.428, 5e-4), "bsf": (2.32, 5e-3)}
-    off = max(abs(found[name] - value) / digit for name, (value, digit) in printed.items())
-    quantity = (
-        "FTF, BPFO, BPFI, BSF over the shaft's speed, 9 balls of 7.9375 mm on 38.50 mm: error over half a printed digit"
-    )
-    claim(quantity, off, at_most=1.0, basis="published", source="printed with a public data set: 0.3969, 3.572, 5.428, 2.32")

@@ -69,33 +69,6 @@ def test_time_for_an_error(claim, error, limit):
     claim(quantity, fastest, at_most=limit, unit="ms", basis="regression", source=source)
 
 
-def test_orders(claim):
-    ladder = [row for row in studied()[1] if row["family"] == "time step"]
-    orders = [row["order"] for row in ladder if row["order"] is not None]
-    assert {row["setting"]["integrator.kind"] for row in ladder} == {"newmark", "generalized_alpha", "central_difference"}
-    furthest = max(orders, key=lambda order: abs(order - 2.0))
-    claim(
-        "observed order of three integrators, furthest from 2",
-        furthest,
-        near=2.0,
-        within=0.05,
-        basis="closed form",
-        source="2",
-    )
-    errors = {
-        tuple(row["setting"][f"integrator.{key}"] for key in ("kind", "steps_per_turn")): row["error"] for row in ladder
-    }
-    ratios = [error / errors["newmark", steps] for (kind, steps), error in errors.items() if kind == "central_difference"]
-    claim(
-        "error of central_difference over newmark's at equal steps, furthest from 1/2",
-        max(ratios, key=lambda ratio: abs(ratio - 0.5)),
-        near=0.5,
-        within=0.05,
-        basis="closed form",
-        source="(2/dt sin(w dt/2))^2 and (2/dt tan(w dt/2))^2 for w^2: -dt^2/12 against +dt^2/6",
-    )
-
-
 def with_penalty():
     """The fused loops with the penalty law written into them: kernels are compiled for one law."""
     spec = spec_from_file_location("fused_loop_of_a_penalty", fused_loop.__file__)

@@ -9,7 +9,6 @@ from raceway import ConvergenceError, SceneError, band, build_model, load_scene,
 from raceway.core.jit import working_processor_time
 from raceway.extend import continuous_keys, run, solve_equilibrium, with_number
 from raceway.pipeline.gradient import Gradients, NoDerivative, SteadyOrbit
-from raceway.points.band import design, indices
 from raceway.scene.catalogue import single_presets
 
 pytestmark = pytest.mark.night
@@ -201,19 +200,6 @@ def test_cost_of_all_derivatives(claim):
             f"all derivatives over the run, processor time, {words}: larger",
             max(ratios), at_most=limit, basis="regression", source="as dear as a run, two of a motion", misses=misses.get(words), machine=True,
         )  # fmt: skip
-
-
-def test_sobol_indices(claim):
-    """As `raceway band` makes and reads its samples."""
-    a, b = 7.0, 0.1
-    x = np.pi * (2.0 * design(4096, 3, seed=1) - 1.0)
-    own = indices((np.sin(x[:, 0]) + a * np.sin(x[:, 1]) ** 2 + b * x[:, 2] ** 4 * np.sin(x[:, 0]))[None], 3)
-    v1, v2, v13 = 0.5 * (1.0 + b * np.pi**4 / 5.0) ** 2, a**2 / 8.0, b**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
-    exact = np.array([[v1, v2, 0.0], [v1 + v13, v2, v13]]) / (v1 + v2 + v13)
-    error = max(float(np.abs(one[0] - other).max()) for one, other in zip((own.first, own.total), exact, strict=True))
-    quantity = "Ishigami's function, first-order and total indices of 4096 samples: largest error"
-    source = "Ishigami and Homma, ISUMA 1990: sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1; 1 / sqrt(4096)"
-    claim(quantity, error, at_most=0.02, basis="published", source=source)
 
 
 def test_preload_moves_stiffness(claim):

@@ -24,7 +24,6 @@ from checks.validation.groove import HERTZ, pressed, solve
 from checks.validation.scenes import built_in
 from raceway import load_scene, scene_from_dict
 from raceway.extend import mesh_bodies, resolve
-from raceway.scene.growth import ring_inertia
 from raceway.testing import run, settled
 
 Vtu = built_in("format", "vtu")
@@ -271,28 +270,6 @@ def test_example(claim):
     ):  # fmt: skip
         error = abs(at(found) / at(wanted) - 1.0)
         claim(f"examples/b7206_elastic.toml: {words}: relative error", error, at_most=0.01, **OWN, source="condensed bodies")
-
-
-def test_penalty_of_rigid_bodies(claim):
-    plain = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
-    stiff = run(scene_from_dict({**plain, "contact": {"kind": "penalty", "stiffness": 1e15}}))
-    ratio = stiff.to_dict()["equilibrium"]["balls"][0]["peak_pressure_inner_pa"] / (1e15 * -float(stiff.equilibrium.gap[0]))
-    exact = {"basis": "closed form", "near": 1.0}
-    claim("penalty of 1e15 N/m3: peak pressure over k delta", ratio, **exact, within=1e-9, source="p = k delta; rounding")
-    load = run(scene_from_dict(plain)).to_dict()["equilibrium"]["balls"][0]["load_inner_n"]
-    error = run(scene_from_dict({**plain, "contact": {"kind": "penalty", "calibrate_at": load}})).error["contact"]
-    source = "at Hertz's approach its stiffness is 2 Q / delta, not 3 Q / (2 delta)"
-    claim("penalty calibrated at the load: three times its stated error", 3.0 * error, **exact, within=1e-3, source=source)
-
-
-def test_inertia_of_the_inner_ring(claim):
-    mesh = {"kind": "structured", "element_size": 0.5e-3, "nodes_per_semi_axis": 2}
-    scene = scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "mesh": mesh})
-    ring = mesh_bodies(resolve(scene))["inner_ring"]
-    place, volume = ring.points[ring.cells].mean(axis=1), ring.cell_volumes()
-    solid = scene.bearing.rings.density * float(volume @ (0.5 * (place[:, 1] ** 2 + place[:, 2] ** 2) + place[:, 0] ** 2))
-    quantity, source = "transverse inertia of the inner ring: relative error", "0.5 mm hexahedra: chords, cells as points"
-    claim(quantity, abs(ring_inertia(scene.bearing)[1] / solid - 1.0), at_most=0.005, **OWN, source=source)
 
 
 def test_kernels(claim):

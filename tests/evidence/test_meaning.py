@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import time
 from itertools import product
-from math import pi
 
 import numpy as np
 import pytest
@@ -108,27 +106,6 @@ def test_cost_of_hypotheses(claim):
     claim(quantity, 1e3 * max(spent), at_most=50.0, unit="ms", basis="regression", source=source)
 
 
-def test_a_loose_ring(claim):
-    """7014C, DB, 20 000 r/min, three fits: annuli in plane stress under their own centrifugal force, on a solid shaft."""
-    bearing = {"preset": "7014C", "arrangement": "DB", "preload": 500.0}
-    b, off = bearing_of("7014C"), []
-    inside, land, steel = 0.5 * b.bore, 0.5 * (b.pitch_diameter - b.ball_diameter) + 0.2 * b.ball_diameter, b.rings
-    factor = steel.density * (20000.0 * pi / 30.0) ** 2 * inside / (4.0 * steel.young)
-    ring = factor * ((1.0 - steel.poisson) * inside**2 + (3.0 + steel.poisson) * land**2)
-    lost = 2e6 * (ring - factor * (1.0 - steel.poisson) * inside**2)
-    for fit in (0.0, 1.0, 5.0):
-        kinematics, mounting = {"ring_growth": True, "spin_speed_rpm": 20000.0}, {"shaft_interference": 1e-6 * fit}
-        text = next(
-            one
-            for one in rw.run({"bearing": bearing, "kinematics": kinematics, "mounting": mounting}).warnings
-            if "loose on" in one
-        )
-        off.append(abs(float(re.search(r"([\d.]+) µm, on the diameter", text)[1]) / (lost - fit) - 1.0))
-    quantity = "7014C, 20 000 r/min, interference of 0, 1 and 5 um: loose by what is warned of, largest relative error"
-    source = "Timoshenko & Goodier, section 32; three digits"
-    claim(quantity, max(off), at_most=5e-3, basis="closed form", source=source)
-
-
 def test_no_warnings_of_usual_scenes(claim):
     """Loads over Z D^2 12 MPa, about the static rating, axial and radial, and speeds n d_m; preload of sets 2 %."""
     words = (
@@ -178,20 +155,6 @@ def small(identifier, integrator, share, speed, changes):
     for name, table in changes.items():
         tables[name] = {**tables.get(name, {}), **table}
     return rw.run(tables)
-
-
-def test_tangent_of_damped_contacts(claim):
-    off = []
-    orbiting = {"kinematics": {"orbiting": True}, "excitation": {"kind": "bidirectional"}}
-    for tau, changes in ((2.5e-5, {}), (1e-4, {}), (1e-4, {"bodies": {"kind": "condensed"}}), (1e-4, orbiting)):
-        given = {**changes, "contact": {"time_constant": tau}}
-        tangent, motion = (small(kind, "periodic", 1e-4, 24000.0, given).identification for kind in ("tangent", "fft_1x"))
-        off.append(abs(tangent.equivalent_stiffness / motion.equivalent_stiffness - 1.0))
-        off.append(abs(tangent.equivalent_damping / motion.equivalent_damping - 1.0))
-    quantity = (
-        "tangent with tau = 25 and 100 us at 24 000 r/min, rigid, condensed, orbiting: K and C, largest relative difference"
-    )
-    claim(quantity, max(off), at_most=1e-6, basis="own other method", source="motion under 1e-4 of the preload")
 
 
 def test_small_forces(claim):

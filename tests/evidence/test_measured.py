@@ -230,20 +230,6 @@ def furthest(shares) -> float:
     return float(max(shares, key=lambda share: abs(share - 0.95)))
 
 
-def test_force_and_displacement(claim):
-    shares, count = [], 200
-    for mass, free in ((0.0, "K,C"), (2.0, "K,C,mass"), (2.0, "K,C")):
-        true = {"K": 5e7, "C": 800.0, "mass": mass}
-        names = free.split(",")
-        inside = np.zeros(len(names))
-        for seed in range(count):
-            found = fit(record_of_shaker(5e7, 800.0, mass, seed), free=free, mass=None if "mass" in names else mass)
-            inside += [abs(found[name] - true[name]) <= found.half_width(name) for name in names]
-        shares += list(inside / count)
-    quantity = f"F(t) and x(t) with 40 dB of noise on both: share of true K, C, mass within the stated 95 %, {count} seeds, three fits"
-    claim(quantity, furthest(shares), **SHARES, source="95 % within three standard deviations of 200 (two above)")
-
-
 def test_contact_angle_fitted_to_stiffness_over_load(claim):
     """Weights by one relative error, which the scatter of half a per cent shows."""
     loads, count, random, inside = (400.0, 600.0, 900.0, 1300.0, 1800.0, 2400.0), 100, np.random.default_rng(5), 0

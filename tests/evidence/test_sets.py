@@ -8,7 +8,6 @@ from time import process_time
 import numpy as np
 import pytest
 
-from checks.validation.reference.mounted import approach, axial, row
 from checks.validation.reference.ring import Ring
 from checks.validation.reference.row_set import RowSet, press, press_together, warmed
 from raceway import build_model, load_scene, run, scene_from_dict
@@ -240,65 +239,6 @@ def test_run_ups_through_a_resonance(claim):
     quantity = f"{where}: error over that of the record alone, largest"
     source = "one record gives the error to a factor: a motion that lags behind its force is not linear in the lag"
     claim(quantity, max(alone), at_most=5.0, basis="own other method", source=source)
-
-
-SPRUNG = {"preset": "B7206C", "preload": 300.0, "preload_kind": "spring"}
-
-
-def sprung(arrangement, rpm, load):
-    tables = {
-        "kinematics": {"spin_speed_rpm": rpm},
-        "load": {"axial": float(load[0]), "radial": [float(one) for one in load[1:]]},
-    }
-    return ran(bearing={**SPRUNG, "arrangement": arrangement}, **tables)
-
-
-def slopes(arrangement, rpm, load):
-    """(3, 3) stiffness by motions of complete runs under loads along x, y, z [N/m]; steps of 3 N, differences of fourth order."""
-    weights = {-2: 1.0, -1: -8.0, 1: 8.0, 2: -1.0}
-    columns = [
-        sum(w * sprung(arrangement, rpm, load + 3.0 * k * axis).displacement[:3] for k, w in weights.items())
-        for axis in np.eye(3)
-    ]
-    return np.linalg.inv(np.column_stack(columns) / 36.0)
-
-
-def test_rows_on_a_spring(claim):
-    off = []
-    for arrangement, rpm, load in (
-        *((word, rpm, (0.0, 0.0, 0.0)) for word in ("DB", "DF", "TBT") for rpm in (0.0, 12000.0)), ("TBT", 12000.0, (50.0, 200.0, 80.0))
-    ):  # fmt: skip
-        result, known = sprung(arrangement, rpm, load), slopes(arrangement, rpm, np.array(load))
-        scale = np.sqrt(np.outer(np.diag(known), np.diag(known)))
-        off.append(np.abs((result.stiffness[:3, :3] - known) / scale).max())
-    quantity = "DB, DF, TBT of B7206C, 300 N on a spring, 0 and 12 000 r/min, under loads: entries of K, largest difference"
-    source = "slopes of complete runs, whose own error is below 1e-7"
-    claim(quantity, max(off), at_most=1e-6, basis="own other method", source=source)
-    contact = {"time_constant": 2.5e-6}
-    pair_on_a_spring = ran(bearing={**SPRUNG, "arrangement": "DB"}, load={"axial": 0.0}, contact=contact)
-    single = ran(load={"axial": 300.0}, contact=contact)
-    off = abs(pair_on_a_spring.damping[0, 0] / single.damping[0, 0] - 1.0)
-    quantity, source = "DB on a spring: cxx, relative difference", "one row under the spring's force"
-    claim(quantity, off, at_most=1e-6, basis="closed form", source=source)
-    second = ran(bearing={**SPRUNG, "arrangement": "TBT", "second_preload": 600.0}, load={"axial": 0.0})
-    preload = second.to_dict()["equilibrium"]["preload"]
-    assert [preload[f"{word}_n"] for word in ("mounted", "running")] == pytest.approx([600.0, 600.0], rel=1e-8)
-
-
-def test_forces_before_mounting_mounted_and_running(claim):
-    """8 um of interference on the shaft, 1 um of growth at 20 000 r/min; a displacement that 500 N give before mounting, held at rest."""
-    mounting, fit = {"shaft_interference": 8e-6}, 0.5 * 8e-6 * 30e-3 / (46e-3 - 9.525e-3)
-    turning = {"kinematics": {"spin_speed_rpm": 20000.0, "radial_expansion": 1e-6}}
-    preload = pair(load={"axial": 0.0}, mounting=mounting, **turning).to_dict()["equilibrium"]["preload"]
-    x = approach(row(), 300.0)
-    known = [300.0, axial(row(growth=fit), x), axial(row(20000.0, fit + 1e-6), x)]
-    held = ran(load={"axial": 500.0}, supports={"axial": "displacement"}, mounting=mounting).to_dict()["equilibrium"][
-        "held_axial"
-    ]
-    known += [500.0, *2 * [axial(row(growth=fit), approach(row(), 500.0))]]
-    own = [one[f"{word}_n"] for one in (preload, held) for word in ("before_mounting", "mounted", "running")]
-    quantity = "preload and held force before mounting, mounted and running, tight fit: largest relative error"
-    claim(quantity, np.abs(np.array(own) / known - 1.0).max(), at_most=1e-6, **RING)
 
 
 def test_hybrid_balls_that_warm_up(claim):

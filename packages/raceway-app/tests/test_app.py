@@ -221,8 +221,3 @@ def test_the_page_is_whole_and_fit_for_screen_readers(browser, application, widt
 def test_random_changes_leave_no_stale_number(tab):
     """Sequences of a person in a hurry; the night's are 200."""
     assert hurry(tab, sequences=2, seed=1) == []
-
-
-@pytest.mark.night
-def test_two_hundred_random_sequences_leave_no_stale_number(tab):
-    assert hurry(tab, sequences=200, seed=2) == []

@@ -166,12 +166,6 @@ def test_runs_of_scan_and_rig_that_fail_are_listed_and_leave_an_empty_cell(tmp_p
         assert "nan" not in path.read_text(encoding="utf-8"), path.name
 
 
-def test_a_picture_is_drawn():
-    found = study(curves(lambda s, load, w: 1e8 * (1.0 + w)))
-    drawn = next(one for one in drawings(found) if one.name == "tilt-stiffness")
-    assert isinstance(drawn, Picture) and drawn.figure().axes[0].get_xscale() == "log"
-
-
 def test_the_scene_that_comes_along_is_the_examples():
     """Only the title and the integrator differ: the study solves for the steady orbit."""
     own, example = read_toml(ARTICLE), read_toml(EXAMPLES / "b7206.toml")
@@ -216,20 +210,3 @@ def test_a_scene_without_unbalance_is_refused(tmp_path):
     scene.write_text(re.sub(r"\[excitation\].*?(?=\n\[)", "", text, flags=re.DOTALL), encoding="utf-8")
     found = invoke("study", "article", scene, "--out", tmp_path / "out")
     assert found.exit_code == 2 and "`excitation.unbalance`" in found.stderr
-
-
-@pytest.mark.slow
-def test_where_no_ring_stays_on_a_steady_motion_it_is_told_what_it_does_instead():
-    """600 N: unstable; 400 N against the shaft under m e w² along one direction: no steady motion is found."""
-    registry, made = default_registry(), design(article_tables())
-    constant, growing = (
-        Setting("unidirectional", a, t, True, "rigid") for a, t in (("constant", "free"), ("unbalance", "shaft"))
-    )
-    points = made.point(constant, 600.0, 13492.5, registry), made.point(growing, 400.0, 14497.5, registry)
-    first, second = (driver.rows_of_curve([point], registry)[0] for point in points)
-    assert (first["status"], second["status"]) == ("unstable", "unsteady") and "k" in first and "k" not in second
-    for one in (first, second):
-        instead = one["instead"]
-        assert instead["kind"] != "not integrated" and instead["words"] in one["reason"]
-        # The force moves the ring by some µm a turn at least, and contacts that are lost do not let it go further than their slack.
-        assert 1e-6 < instead["least"] < instead["most"] < 2e-4

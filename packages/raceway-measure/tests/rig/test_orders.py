@@ -93,21 +93,6 @@ def test_noise_on_the_probe_moves_no_mark_on_the_whole(rate, part):
     assert abs(np.mean(off)) < 3.5 * np.std(off) / np.sqrt(20) + 0.02 / rate
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("options", [{}, {"rate": 100e3, "duration": 0.06}, {"duration": 0.03}])
-@pytest.mark.parametrize("part", [0.0, 0.01, 0.02, 0.05])
-def test_the_phase_lies_within_the_doubt_of_noisy_marks(options, part):
-    record, inside, over = made(**options), 0, []
-    for seed in range(40):
-        found = synchronous(rotation_of(noisy(record, part, seed)))
-        assert found.turns == int(record.time[-1] * HZ - 1.0 + 1.0 / (2.0 * np.pi))
-        error = abs(np.angle(found.forward / LINE))
-        inside += error <= found.angle_error + 2.0 * found.error / abs(LINE)
-        over.append(error / found.angle_error)
-    assert inside >= 36  # 0.90 of 40
-    assert part == 0.0 or np.sqrt(np.mean(np.square(over))) > 0.1  # the doubt is no excuse
-
-
 FAULTY = {
     "a mark that is missing": (
         lambda r: attrs.evolve(r, key=np.where((r.time > 0.2) & (r.time < 0.2 + 1.0 / HZ), 0.0, r.key)),
