@@ -1,14 +1,11 @@
-"""An explicit step of elastic bodies on the article's mesh, one thread against all: ``python -m checks.explicit_step [--json]``.
+"""An explicit step of elastic bodies on the article's mesh, one thread against all: ``python -m checks.explicit_step``.
 
-Times are minima over steps, CPU and on the wall; the forces of the elements alone are measured in the same run.  Wall times
-of several threads mean something only while the machine is otherwise idle.
+CPU times are minima over steps; the forces of the elements alone are measured in the same run.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
-import os
 import time
 from typing import Any
 
@@ -61,19 +58,19 @@ def bearing(scene: Any) -> ElasticBearing:
 
 
 class _Timed(Recorder):
-    """Notes both clocks after every step."""
+    """Notes the processor time after every step."""
 
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
-        self.clocks: list[tuple[float, float]] = []
+        self.clocks: list[float] = []
 
     def accept(self, state: State, velocity: np.ndarray | None = None, outer: np.ndarray | None = None) -> None:
         super().accept(state, velocity, outer)
-        self.clocks.append((time.process_time(), time.perf_counter()))
+        self.clocks.append(time.process_time())
 
 
-def steps(built: ElasticBearing, threads: int, recorded: bool = False) -> tuple[float, float, State]:
-    """CPU and wall time of the quickest step [s], and the state after all; ``recorded``: each step is kept in the record."""
+def steps(built: ElasticBearing, threads: int) -> tuple[float, State]:
+    """CPU time of the quickest step [s], and the state after all."""
     system = built.system
     assembly, contact = system.assembly, system.contact
     assert contact is not None
@@ -85,12 +82,11 @@ def steps(built: ElasticBearing, threads: int, recorded: bool = False) -> tuple[
     if contact.friction is not None:
         contact.friction.begin((contact.move @ assembly.nodal(y)).reshape(-1, 3))
     zero = np.zeros(system.size)
-    schedule = Schedule(_STEP, _STEPS, 1, 1 if recorded else 2 * _STEPS)
+    schedule = Schedule(_STEP, _STEPS, 1, 2 * _STEPS)
     with system.threads:
         recorder = _Timed(system, State(y, zero, zero.copy()), schedule, None)
         central_difference(system, recorder)
-    cpu, wall = np.diff(np.array(recorder.clocks), axis=0).min(axis=0)
-    return float(cpu), float(wall), recorder.state
+    return float(np.diff(recorder.clocks).min()), recorder.state
 
 
 def forces_s(built: ElasticBearing) -> float:
@@ -107,55 +103,17 @@ def forces_s(built: ElasticBearing) -> float:
     return least(all_of_them, 7)
 
 
-def measure(scene: Any = None, threads: int | None = None) -> dict[str, Any]:
-    """The table; ``threads`` are all cores that this process may use unless it says less."""
-    scene = load_scene(ARTICLE) if scene is None else scene
-    threads = usable_cores() if threads is None else threads
-    built = bearing(scene)
-    quiet = os.getloadavg()[0] <= 1.3  # this process itself is 1
+def measure() -> dict[str, Any]:
+    """Ratios of CPU times, one thread's and that of all cores that this process may use; whether both give the same digits."""
+    built = bearing(load_scene(ARTICLE))
     force = forces_s(built)
     # In turns, so that what else the machine does hits both alike.
-    rounds = [[steps(built, count) for count in (1, threads)] for _ in range(_ROUNDS)]
-    kept = [[steps(built, count, recorded=True)[1] for count in (1, threads)] for _ in range(_ROUNDS)]
-    (one_cpu, one_wall), (all_cpu, all_wall) = (
-        (min(one[k][0] for one in rounds), min(one[k][1] for one in rounds)) for k in (0, 1)
-    )
-    alone, shared = rounds[0][0][2], rounds[0][1][2]
-    cells = built.cells
+    rounds = [[steps(built, count) for count in (1, usable_cores())] for _ in range(_ROUNDS)]
+    one, all_of_them = (min(each[k][0] for each in rounds) for k in (0, 1))
+    alone, shared = (state for _, state in rounds[0])
     same = all(np.array_equal(getattr(alone, name), getattr(shared, name)) for name in ("u", "v", "a"))
-
-    def us(seconds: float) -> float:
-        return 1e6 * seconds / cells
-
-    return {
-        "elements": cells,
-        "threads": threads,
-        "quiet": quiet,
-        "forces_us_per_element": us(force),
-        "step_us_per_element": us(one_cpu),
-        "step_wall_us_per_element": us(one_wall),
-        "all_threads_cpu_us_per_element": us(all_cpu),
-        "all_threads_wall_us_per_element": us(all_wall),
-        "recorded_step_wall_us_per_element": us(min(one for one, _ in kept)),
-        "all_threads_recorded_wall_us_per_element": us(min(both for _, both in kept)),
-        "step_over_forces": one_cpu / force,
-        "cpu_ratio": all_cpu / one_cpu,
-        "wall_ratio": one_wall / all_wall,
-        "same_digits": same,
-    }
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--json", action="store_true", help="machine-readable answer")
-    options = parser.parse_args()
-    found = measure()
-    if options.json:
-        print(json.dumps(found, indent=1))
-        return
-    for name, value in found.items():
-        print(f"{name:42}", value if isinstance(value, (str, bool, int)) else f"{value:.4g}")
+    return {"elements": built.cells, "step_over_forces": one / force, "cpu_ratio": all_of_them / one, "same_digits": same}
 
 
 if __name__ == "__main__":
-    main()
+    print(json.dumps(measure(), indent=1))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-import warnings
 
 import numpy as np
 import pytest
@@ -224,13 +223,6 @@ def test_the_command_reads_no_arrays():
         "-c", "import sys; from raceway.storage import array_cache; array_cache.entries(); print('numpy' in sys.modules)"
     )
     assert found.stdout == "False\n", found.stderr
-
-
-def test_kept_arrays_warn_of_nothing(folder):
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        get(Maker())
-        get(Maker())
 
 
 def test_a_disk_without_room_costs_one_warning_and_no_answer(folder, monkeypatch):

@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import pytest
 
-from checks.validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, install, invoke, law, raceway
+from checks.validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, install, invoke, raceway
 from raceway import SceneError
 from raceway.extend import read_toml
 
@@ -133,47 +133,6 @@ def test_a_plug_in_that_fails_to_import(tmp_path):
     assert used.returncode == 2 and "Not loaded: plug-in `broken (broken)`" in used.stderr
 
 
-KERNELS = {
-    "other signature": (
-        """
-        from raceway.core.jit import jit
-        from raceway.core.signatures import FORCE
-
-        @jit(FORCE)
-        def kernel(t, params, out):
-            out[0] = 1.0
-
-        return kernel
-        """,
-        "its kernel has none(float64, float64[::1], float64[::1])",
-    ),
-    "not compiled": ("return lambda gap, *others: None", "which is not compiled"),
-    "other arguments": (
-        """
-        from raceway.core.jit import jit
-        from raceway.core.signatures import LAW
-
-        @jit(LAW)
-        def kernel(gap, force):
-            force[:] = 0.0
-
-        return kernel
-        """,
-        "9 argument types given, but function takes 2",
-    ),
-    "raises": ("raise KeyError('stiffness')", "kernel() raises KeyError"),
-}
-
-
-@pytest.mark.parametrize("case", KERNELS)
-def test_a_kernel_with_a_wrong_signature(case, tmp_path):
-    code, words = KERNELS[case]
-    (tmp_path / "odd.py").write_text(law("odd", code))
-    found = invoke("run", MINIMAL, "--plugin", tmp_path / "odd.py", "--set", "contact.kind=odd", "--out", tmp_path / "out")
-    assert found.exit_code == 2
-    assert "contact law 'odd'" in found.stderr and words in found.stderr and found.stderr.count("error: ") == 1
-
-
 def test_a_traceback_is_shown_where_it_is_asked_for():
     assert "Traceback" in raceway("check", "nowhere.toml", "--debug").stderr
 
@@ -198,30 +157,6 @@ def test_a_file_that_cannot_be_read(tmp_path, monkeypatch):
     assert "cannot be read: Permission denied" in found.stderr
 
 
-def test_a_folder_as_scene(tmp_path):
-    found = invoke("run", tmp_path)
-    assert found.exit_code == 2
-    assert "is a folder without a scene" in found.stderr
-    (tmp_path / "one.toml").write_text("")
-    assert "one.toml" in invoke("run", tmp_path).stderr
-
-
-def test_two_plug_ins_of_one_name(tmp_path):
-    install(tmp_path, "first", law("twin"), entry="same")
-    install(tmp_path, "second", law("twin"), entry="same")
-    used = raceway("check", MINIMAL, "--set", "contact.kind=twin", PYTHONPATH=tmp_path)
-    assert used.returncode == 2
-    for word in ("two plug-ins claim the name 'twin'", "of first", "of second", "RACEWAY_DISABLE"):
-        assert word in used.stderr
-    listed = raceway("dev", "plugins", "--json", PYTHONPATH=tmp_path)
-    assert listed.returncode == 2
-    content = json.loads(listed.stdout)
-    assert [p["distribution"] for p in content["plugins"] if p["name"] == "twin"] == ["first", "second"]
-    assert "claimed by two" in content["errors"][0]["message"]
-    one = raceway("check", MINIMAL, "--set", "contact.kind=twin", PYTHONPATH=tmp_path, RACEWAY_DISABLE="second")
-    assert one.returncode == 0, one.stderr
-
-
 def test_a_singular_equilibrium_names_the_free_motion(tmp_path):
     """Two balls on the y axis leave a rotation about it, and one loaded ball leaves the motion across it."""
     scene = ["--set", "load.axial=0", "--set", "load.radial=[100.0, 0.0]", "--set", "supports.tilt=free"]
@@ -230,12 +165,6 @@ def test_a_singular_equilibrium_names_the_free_motion(tmp_path):
     assert "the equilibrium is singular: no stiffness against" in found.stderr
     assert "tilt" in found.stderr
     assert (tmp_path / "failure.json").exists()
-
-
-def test_nothing_loads_the_bearing(tmp_path):
-    found = invoke("run", MINIMAL, "--set", "load.axial=0", "--out", tmp_path)
-    assert found.exit_code == 1
-    assert "Set `load.axial`" in found.stderr
 
 
 #: Stable at rest (0.29 ms), far above the limit once the force has pressed the balls (0.01 ms): grows within a turn.

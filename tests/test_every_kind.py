@@ -164,23 +164,6 @@ def test_a_report_that_raises_is_named_after_the_result_is_saved(tmp_path, body,
     assert "tangent kxx" in found.stdout
 
 
-def test_json_holds_the_result_and_the_reports_failure(tmp_path):
-    bad = report(tmp_path, "bad", "print('a word'); raise ValueError('no ink')")
-    words = ("--set", "identifier.kind=tangent", "--plugin", bad, "--report", "bad", "--json")
-    found = invoke("run", MINIMAL, *words, "--out", tmp_path / "out")
-    content = json.loads(found.stdout)
-    assert found.exit_code == 2 and "format 'bad'" in content["errors"][0]["message"] and content["equilibrium"]
-
-
-def test_two_reports_of_one_name_are_refused_before_the_run(tmp_path):
-    twins = [report(tmp_path, "twin", "return []", cls) for cls in ("One", "Two")]
-    words = [word for path in twins for word in ("--plugin", path)]
-    found = invoke("run", MINIMAL, *words, "--report", "twin", "--out", tmp_path / "out")
-    told = one_message(found)
-    assert "two plug-ins claim the name 'twin' as format: `One` of twin_One.py and `Two` of twin_Two.py" in told
-    assert not (tmp_path / "out").exists()
-
-
 def test_two_formats_of_one_ending_are_refused_by_name(tmp_path):
     registry = Registry(third_party=False)
     assert registry.format_of("ring.VTU").name == "vtu"

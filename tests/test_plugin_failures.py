@@ -167,12 +167,6 @@ def test_two_plugins_of_one_name_shadow_each_other(site):
     assert ("contact_law", "twin") in registry.shadowed()
 
 
-def test_a_built_in_cannot_be_replaced_silently(site):
-    site.install("other", LAW.format(name="hertz", cls="OtherHertz"))
-    with pytest.raises(PluginError, match="`Hertz` of raceway and `OtherHertz` of other"):
-        Registry().find("contact_law", "hertz")
-
-
 def test_names_of_places_shadow_each_other_and_one_class_in_two_forms_is_one(site):
     site.install("other", AT_PLACE.format(place="nowhere:Law").replace("lazy", "hertz"))
     same = "from raceway import hookimpl\nfrom raceway.contact_laws.line import Line\n@hookimpl\ndef raceway_contact_laws(): return [Line]"
@@ -183,14 +177,6 @@ def test_names_of_places_shadow_each_other_and_one_class_in_two_forms_is_one(sit
     assert (
         registry.shadowed() == [("contact_law", "hertz")] and registry.find("contact_law", "line").distribution == "raceway"
     )
-
-
-def test_equal_entry_point_names_of_two_distributions_both_load(site):
-    site.install("alpha", LAW.format(name="alpha_law", cls="Alpha"), entry="laws")
-    site.install("beta", LAW.format(name="beta_law", cls="Beta"), entry="laws")
-    registry = Registry()
-    assert not [f for f in registry.faults if "laws" in f.source]
-    assert {"alpha_law", "beta_law"} <= set(registry.names("contact_law"))
 
 
 @pytest.mark.parametrize("blocked", ["two", "entry-two", " two , other"])
@@ -236,18 +222,6 @@ def raceway_run_failed(error): calls.append(error)
 """
 
 
-def test_life_cycle_hooks_name_the_plugin_that_fails(tmp_path):
-    path = tmp_path / "watcher.py"
-    path.write_text(LIFE_CYCLE)
-    registry = Registry(third_party=False)
-    registry.load_file(path)
-    registry.notify("raceway_chunk_done", done=3, total=4)
-    registry.notify("raceway_run_finished", result="result")
-    registry.notify("raceway_run_failed", error=ValueError())
-    with pytest.raises(PluginError, match=r"watcher\.py.*raceway_plan_made.*ZeroDivisionError: in the plug-in"):
-        registry.notify("raceway_plan_made", plan="plan")
-
-
 def test_one_off_file(tmp_path):
     path = tmp_path / "my_law.py"
     path.write_text(LAW.format(name="one_off", cls="OneOff"))
@@ -285,30 +259,6 @@ def test_one_off_file_that_cannot_be_used(tmp_path, name, source, reason):
         registry.load_file(tmp_path / name)
     assert [e.plugin for e in registry.all()] == before and not registry.faults
     assert registry.find("contact_law", "hertz").name == "hertz"
-
-
-def test_modules_are_added_under_their_own_names():
-    from types import ModuleType
-
-    from raceway import hookimpl
-    from tests.broken_laws import OwnUnits, Thawed
-
-    @hookimpl
-    def raceway_contact_laws():
-        return [OwnUnits]
-
-    @hookimpl(specname="raceway_contact_laws")
-    def more():
-        return [Thawed]
-
-    registry = Registry(third_party=False)
-    for name, function in (("first", raceway_contact_laws), ("second", more)):
-        module = ModuleType(name)
-        setattr(module, function.__name__, function)
-        registry.add(module)
-    assert not registry.faults
-    assert registry.find("contact_law", "own_units").source == "first"
-    assert registry.find("contact_law", "thawed").source == "second"
 
 
 def test_an_object_that_cannot_be_hashed_is_a_fault_of_its_own(site):

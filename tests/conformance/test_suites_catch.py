@@ -102,10 +102,6 @@ def test_a_suite_survives_what_it_tests(plugin, check, how, monkeypatch):
     assert suite.row("declaration").good, "the next duty is looked at"
 
 
-def test_a_sound_law_fails_nothing():
-    assert failed(ContactLawSuite, Hertz()) == {}
-
-
 @attrs.frozen(kw_only=True)
 class WrongExcitation(Bidirectional):
     """Declares something else than it does."""
@@ -320,12 +316,6 @@ def test_an_unlisted_failure_fails_under_pytest(expecting):
     plugin = expecting(WRONG, "")
     with pytest.raises(AssertionError, match="a dimensional number hides"):
         type("Case", (ContactLawSuite,), {"plugin": plugin})().test_unit_invariance()
-
-
-class TestHertzBySubclassing(ContactLawSuite):
-    """What a third party writes."""
-
-    plugin = Hertz()
 
 
 def test_every_suite_says_its_duties():

@@ -167,7 +167,7 @@ def test_predicted_work(claim):
 
 
 def test_explicit_step_of_the_article_s_mesh(claim):
-    words = [sys.executable, "-m", "checks.explicit_step", "--json"]
+    words = [sys.executable, "-m", "checks.explicit_step"]
     found = json.loads(subprocess.run(words, cwd=EXAMPLES.parent, stdout=subprocess.PIPE, check=True).stdout)
     assert found["same_digits"]
     name, once = "explicit step, a million elements, friction", {"basis": "regression", "source": "ratios of one run"}

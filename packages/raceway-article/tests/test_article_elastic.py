@@ -10,11 +10,11 @@ import tomllib
 
 import pytest
 from raceway_article import elastic
-from raceway_article.elastic import SCENE, ElasticDesign, ElasticRun, design
+from raceway_article.elastic import SCENE, ElasticDesign, design
 from raceway_article.elastic_page import drawings, page
 
 import raceway as rw
-from checks.validation.article_study import elastic_rows, elastic_study
+from checks.validation.article_study import elastic_study
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway import ConvergenceError, SceneError
 from raceway.extend import RemainingTime, read_toml
@@ -272,9 +272,3 @@ def test_progress_tells_the_run_and_when_all_of_them_end(monkeypatch):
     now[0] = 80.0 + 481.0
     progress("newmark, 80 steps", 70, 80)
     assert told[-1][0].startswith("run 3 of 3: end unknown, elastic in motion") and told[-1][1:] == (560, 560)
-
-
-def test_rows_of_bodies_name_their_runs():
-    assert ElasticRun("elastic", 400.0).name == "static 400 N axial with elastic bodies"
-    assert ElasticRun("rigid", 1000.0, 500.0).case == "1000 N axial + 500 N radial"
-    assert len(elastic_rows()) == 18

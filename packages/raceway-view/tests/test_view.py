@@ -12,7 +12,7 @@ from raceway_view.bodies import ball as solid_ball
 from raceway_view.pictures import LETTERS, ball_labels, contacts
 from raceway_view.view import at_peak, at_rest
 
-from checks.validation.command_line import COARSE, EXAMPLES, MINIMAL, invoke, python
+from checks.validation.command_line import COARSE, MINIMAL, invoke, python
 from checks.validation.scenes import built_in
 from raceway import scene_from_dict
 from raceway.extend import picture, ring_shape
@@ -197,13 +197,6 @@ def test_mesh_counts_and_files(tmp_path):
     assert len(balls.cells) == sum(sizes.values()) and set(sizes) <= set(balls.node_sets)
 
 
-def test_a_format_goes_by_the_ending_of_its_files_too(tmp_path):
-    for word in ("inp", "abaqus"):
-        found = invoke("view", "--mesh", MINIMAL, *COARSE, "--format", word, "--out", tmp_path / word)
-        assert found.exit_code == 0, found.output
-    assert (tmp_path / "inp/balls.inp").read_bytes() == (tmp_path / "abaqus/balls.inp").read_bytes()
-
-
 def test_the_axial_load_sets_the_patch(tmp_path):
     widths = []
     for axial in (50.0, 5000.0):
@@ -254,10 +247,3 @@ def test_what_a_plug_in_mesher_must_not_return(tmp_path, answer, words):
     found = invoke("view", "--mesh", MINIMAL, *given)
     assert found.exit_code == 2
     assert words in " ".join(found.output.split())
-
-
-def test_the_documents_mesher_runs(tmp_path):
-    words = ("view", "--mesh", MINIMAL, "--plugin", EXAMPLES / "plugins" / "one_cell.py", "--set", "mesh.kind=one_cell")
-    found = invoke(*words, "--out", tmp_path / "out", "--json")
-    assert found.exit_code == 0
-    assert json.loads(found.stdout)["elements"] == 1
