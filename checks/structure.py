@@ -40,6 +40,8 @@ _IRREGULAR = {
     "come", "gone", "become", "forgotten", "frozen", "bent", "hung",
 }  # fmt: skip
 _NOUNS = {"speed", "seed", "need", "feed", "shed"}
+#: What plug-ins import, beside ``raceway`` itself.
+_DOORS = {"raceway.extend", "raceway.testing", "raceway.ross"}
 _BRANCH = re.compile(r"(?:bodies|integrator|identifier|contact|excitation)\.(?:name|kind) ?(?:==|!=|in|not in) ?[\(\"\']")
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 _SMALLEST = """
@@ -66,6 +68,15 @@ def product() -> dict[str, ast.Module]:
 
 def tests() -> dict[str, ast.Module]:
     return trees("tests", "checks", "packages/*/tests")
+
+
+def third_parties() -> dict[str, ast.Module]:
+    """Examples, and the templates of new plug-ins with any name in the places that are filled in."""
+    templates = (ROOT / "raceway/data/templates").glob("*/*.py.txt")
+    return trees("examples") | {
+        path.relative_to(ROOT).as_posix(): ast.parse(re.sub(r"\$\{\w+\}", "name", path.read_text(encoding="utf-8")))
+        for path in templates
+    }
 
 
 def lines(names: Iterator[str] | list[str] | dict[str, ast.Module]) -> int:
@@ -213,6 +224,7 @@ def held() -> list[Row]:
     long = [f"{path}: {f.name}" for path, f in functions() if (f.end_lineno or 0) - f.lineno >= 80]
     packages = {path: tree for path, tree in product().items() if path.startswith("packages/")}
     deep = {module for module in foreign(packages)[0] if module.startswith("raceway.") and module != "raceway.extend"}
+    beside = {module for module in foreign(third_parties())[0] if module.startswith("raceway.")} - _DOORS
     branches = [path for path in trees("raceway") if _BRANCH.search((ROOT / path).read_text(encoding="utf-8"))]
     return [
         row("functions whose name occurs once beside their definition", len(once), 650),
@@ -224,6 +236,12 @@ def held() -> list[Row]:
         ),
         row("functions over 80 lines", len(long), 0, "; ".join(long)),
         row("modules of raceway that packages import beside raceway.extend", len(deep), 0, ", ".join(sorted(deep))),
+        row(
+            "modules of raceway that examples and templates import beside its doors",
+            len(beside),
+            0,
+            ", ".join(sorted(beside)),
+        ),
         row("branches on the name of a plug-in in raceway/", len(branches), 0, ", ".join(branches)),
     ]
 

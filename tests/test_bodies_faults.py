@@ -35,7 +35,7 @@ def raceway_bodies():
         ("traits", "raise SystemExit(3)", "traits() raises SystemExit: 3"),
         ("stable_step", "return 'short'", "stable_step() returned str; it must be float or None"),
         ("cost", "raise ValueError('no idea')", "cost() raises ValueError: no idea"),
-        ("build", "return 7", "build() returned int; it must be a raceway.bodies.model.Bearing"),
+        ("build", "return 7", "build() returned int; it must be a raceway.extend.BuiltBearing"),
         ("build", "raise KeyError('x')", "build() raises KeyError: 'x'"),
     ],
 )

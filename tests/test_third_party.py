@@ -77,6 +77,14 @@ def test_both_scenes_run_and_say_whose_plugins_they_used(installed):
     assert answers["both"]["c"] > 0.0
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PACKAGES)
+def test_their_own_tests_pass(installed, name):
+    words = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(EXAMPLES / name / "tests")]
+    done = subprocess.run(words, env={**os.environ, "PYTHONPATH": str(installed)}, cwd=installed, text=True, stdout=subprocess.PIPE, check=False)  # fmt: skip
+    assert done.returncode == 0, done.stdout
+
+
 def test_installed_plugins_conform(installed):
     code = """
 import json

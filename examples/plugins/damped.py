@@ -3,7 +3,7 @@ from typing import ClassVar
 import attrs
 
 from raceway import between, hookimpl, option
-from raceway.core.time.schemes import OneStep
+from raceway.extend import OneStep
 
 
 @attrs.frozen

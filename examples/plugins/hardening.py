@@ -6,7 +6,7 @@ from typing import Any
 import attrs
 
 import raceway as rw
-from raceway.answers.picture import new_figure
+from raceway.extend import new_figure
 
 
 @attrs.frozen(eq=False, repr=False)

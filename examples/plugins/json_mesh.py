@@ -5,7 +5,7 @@ import attrs
 import numpy as np
 
 from raceway import RacewayError, hookimpl
-from raceway.core.fem.mesh.hex_mesh import HexMesh
+from raceway.extend import HexMesh
 
 
 @attrs.frozen

@@ -4,8 +4,7 @@ import attrs
 import numpy as np
 
 from raceway import hookimpl, option, positive
-from raceway.contact_laws.hertz import Hertz
-from raceway.framework.contracts import LawReport
+from raceway.extend import Hertz, LawReport
 
 
 @attrs.frozen

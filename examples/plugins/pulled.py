@@ -3,7 +3,7 @@ from typing import ClassVar
 import attrs
 
 from raceway import at_least, hookimpl, option
-from raceway.plugins.excitations.harmonic import Unidirectional
+from raceway.extend import Unidirectional
 
 
 @attrs.frozen(kw_only=True)

@@ -4,15 +4,29 @@ import attrs
 import numpy as np
 
 from raceway import Mistake, at_least, hookimpl, jit, option
-from raceway.bodies.basis import changing_speed, contact_pairs, excitation, linear_parts, make_basis
-from raceway.bodies.model import Bearing
-from raceway.core.ring import kernels as rows
-from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.system import System
-from raceway.core.signatures import SYSTEM
-from raceway.framework.contracts import Cost, Traits
-from raceway.framework.duties import law_params
-from raceway.planning.cost import START_S, Times, compiled_motion
+from raceway.extend import (
+    CONTACT_FORCE,
+    FORCE_BY_GAP,
+    FORCE_BY_RATE,
+    GAP,
+    GAP_RATE,
+    SHIFT,
+    START_S,
+    SYSTEM,
+    BuiltBearing,
+    Cost,
+    System,
+    Times,
+    Traits,
+    changing_speed,
+    compiled_motion,
+    contact_pairs,
+    excitation,
+    law_params,
+    layout,
+    linear_parts,
+    make_basis,
+)
 
 # Rows of `work` behind the law's five: azimuth, approach of both races, its speed, force on the ring, tangents of two rows.
 DIRECTION, APPROACH, SPEED, CARRIED, STIFF, VISCOUS = 5, 6, 7, 8, 9, 11
@@ -21,28 +35,28 @@ DIRECTION, APPROACH, SPEED, CARRIED, STIFF, VISCOUS = 5, 6, 7, 8, 9, 11
 @jit(SYSTEM)
 def radial(t, q, v, balls, contacts, constants, response):
     (scalars, table), (f, K, C, work) = constants, response
-    z, gap, rate, force = table.shape[0], work[rows.GAP], work[rows.GAP_RATE], work[rows.CONTACT_FORCE]
-    d_gap, d_rate = work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE]
-    ring.place(t, q, v, constants, work, (DIRECTION, APPROACH, SPEED))
+    z, gap, rate, force = table.shape[0], work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
+    d_gap, d_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
+    layout.place(t, q, v, constants, work, (DIRECTION, APPROACH, SPEED))
     for k in range(z):
         half, speed = 0.5 * work[APPROACH, z + k], 0.5 * work[SPEED, z + k]
         balls.position[k, 0], balls.position[k, 1] = 0.0, half
         gap[k], gap[z + k], rate[k], rate[z + k] = -half, -half, -speed, -speed
-        work[rows.SHIFT, k] = work[rows.SHIFT, z + k] = 0.0
+        work[SHIFT, k] = work[SHIFT, z + k] = 0.0
     contacts.law(gap, rate, contacts.params, contacts.old, contacts.new, contacts.dt, force, d_gap, d_rate)
     for k in range(z):
         work[CARRIED, k], work[CARRIED, z + k] = 0.0, force[k]
         for row in (STIFF, VISCOUS):
             work[row, k], work[row, z + k], work[row + 1, k] = 0.0, 0.0, 0.0
         work[STIFF + 1, z + k], work[VISCOUS + 1, z + k] = -0.5 * d_gap[k], -0.5 * d_rate[k]
-    ring.ring_force(table, scalars[ring.TILT_ARM], work, DIRECTION, CARRIED, f)
+    layout.ring_force(table, scalars[layout.TILT_ARM], work, DIRECTION, CARRIED, f)
     if K.size > 0:
-        ring.ring_tangent(table, scalars[ring.TILT_ARM], work, DIRECTION, STIFF, K)
-        ring.ring_tangent(table, scalars[ring.TILT_ARM], work, DIRECTION, VISCOUS, C)
+        layout.ring_tangent(table, scalars[layout.TILT_ARM], work, DIRECTION, STIFF, K)
+        layout.ring_tangent(table, scalars[layout.TILT_ARM], work, DIRECTION, VISCOUS, C)
     return 0
 
 
-class RadialBearing(Bearing):
+class RadialBearing(BuiltBearing):
     """Balls in one plane, whose contact angle is 0."""
 
     def has_places(self, balls):
@@ -103,10 +117,14 @@ class RadialBalls:
         basis, z = make_basis(problem), problem.bearing.ball_count
         params = law_params(problem.contact.law, contact_pairs(problem, basis))
         params[z:] = params[:z]
-        scalars, table = np.zeros(ring.SCALARS), np.zeros((z, ring.COLUMNS))
-        scalars[ring.REST_RADIAL] = self.interference + problem.kinematics.radial_expansion
-        scalars[ring.TILT_ARM] = 0.5 * problem.bearing.pitch_diameter
-        table[:, ring.COSINE], table[:, ring.SINE], table[:, ring.SIDE] = np.cos(basis.azimuth), np.sin(basis.azimuth), 1.0
+        scalars, table = np.zeros(layout.SCALARS), np.zeros((z, layout.COLUMNS))
+        scalars[layout.REST_RADIAL] = self.interference + problem.kinematics.radial_expansion
+        scalars[layout.TILT_ARM] = 0.5 * problem.bearing.pitch_diameter
+        table[:, layout.COSINE], table[:, layout.SINE], table[:, layout.SIDE] = (
+            np.cos(basis.azimuth),
+            np.sin(basis.azimuth),
+            1.0,
+        )
         memory = np.zeros((2 * z, problem.contact.law.state_size))
         kernels = {"kernel": radial, "base_kernel": radial, "law": problem.contact.law.kernel()}
         arrays = {"law_params": params, "law_state": memory, "scalars": scalars, "table": table}

@@ -15,7 +15,7 @@ class ThreeHarmonics:
     definition: ClassVar[str] = "secant: 1x force over 1x displacement in the direction of the force"
 
     def identify(self, records, equilibrium, model):
-        from raceway.core.signals import fit_harmonics, identification
+        from raceway.extend import fit_harmonics, identification
 
         record, frequency = records[0], model.excitation.frequency_hz
         lines, _ = fit_harmonics(record.time, np.hstack([record.force, record.displacement]), frequency, 3)

@@ -4,8 +4,7 @@ import attrs
 import numpy as np
 
 from raceway import hookimpl
-from raceway.core.record import State
-from raceway.core.time.schemes import Drivers
+from raceway.extend import Drivers, State
 
 
 def steps(system, recorder):

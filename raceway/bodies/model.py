@@ -37,7 +37,7 @@ Told = tuple[float | None, str]
 
 
 @attrs.frozen(eq=False)
-class Bearing(ABC):
+class BuiltBearing(ABC):
     """A bearing of one kind of bodies.
 
     Attributes
@@ -176,7 +176,7 @@ class Model:
 
     problem: Problem
     plan: ScenePlan
-    bearing: Bearing
+    bearing: BuiltBearing
     system: Ring
 
     @property
@@ -260,9 +260,9 @@ def build_model(
 def model_of(problem: Problem, plan: ScenePlan) -> Model:
     """The same as ``build_model``, of a problem."""
     bearing = problem.body_kind.build(plan)
-    if not isinstance(bearing, Bearing):
+    if not isinstance(bearing, BuiltBearing):
         raise PluginError(
-            f"bodies '{problem.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.bodies.model.Bearing"
+            f"bodies '{problem.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.extend.BuiltBearing"
         )
     return Model(problem, plan, bearing, bearing.system)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from raceway.bodies.basis import Basis, changing_speed, contact_pairs, excitation, linear_parts, make_basis
 from raceway.bodies.contacts import against_hertz
-from raceway.bodies.model import Bearing, Told
+from raceway.bodies.model import BuiltBearing, Told
 from raceway.bodies.mounting import place_ring
 from raceway.core.columns import Number, per_ball
 from raceway.core.contact.geometry import BallBearing
@@ -35,7 +35,7 @@ _SHARES = {"outer_race": (0.0, 2.0), "shared": (1.0, 1.0), "traction": (1.0, 1.0
 _TRACTION = 0.04
 
 
-class RigidBearing(Bearing):
+class RigidBearing(BuiltBearing):
     """Rigid rings and balls: the error of their law is all there is to report."""
 
     def mesh_error(self, model: Model, equilibrium: Equilibrium) -> Told:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import attrs
 
 from raceway.framework.contracts import said
-from raceway.planning.parts import Balls, Motion
+from raceway.planning.parts import Balls, PlannedMotion
 from raceway.planning.resolve import Problem, recorded_per_turn
 
 if TYPE_CHECKING:
@@ -50,12 +50,12 @@ class Times:
     search: float
 
 
-def runs(problem: Problem, motion: Motion) -> float:
+def runs(problem: Problem, motion: PlannedMotion) -> float:
     """Motions that are integrated for the answer and its error, over those without memory of the start."""
     return _FROM_ANOTHER_START if motion.recorded and problem.depends_on_start else 1.0
 
 
-def compiled_motion(problem: Problem, balls: Balls, motion: Motion, times: Times, more: float = 0.0) -> float:
+def compiled_motion(problem: Problem, balls: Balls, motion: PlannedMotion, times: Times, more: float = 0.0) -> float:
     """Processor time of the motion of a compiled ring [s]; ``more`` : of a step with 12 balls."""
     if not motion.recorded:
         return 0.0

@@ -70,7 +70,7 @@ class Balls:
 
 
 @attrs.frozen
-class Motion:
+class PlannedMotion:
     """Motion that is integrated: none, where ``recorded`` is False."""
 
     recorded: bool
@@ -118,7 +118,7 @@ def decide_balls(problem: Problem, parts: Decisions) -> Balls:
     return Balls(kind, inertia, moments, friction)
 
 
-def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: bool) -> Motion:
+def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: bool) -> PlannedMotion:
     """Coordinates that move, and the turns that are integrated."""
     dynamic, integrator, identifier = problem.excitation is not None, problem.integrator, problem.identifier
     spins = problem.inertia.polar > 0.0 and problem.spin_speed != 0.0
@@ -126,7 +126,7 @@ def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: boo
     parts.decide(spins and tilts and dynamic, part, why, "no spin on free tilts")
     form = "steady orbit" if integrator.method.steady else "time integration"
     if not parts.decide(problem.recorded, f"{form} ({integrator.kind})", problem.why("recorded")):
-        return Motion(False, 0, 0)
+        return PlannedMotion(False, 0, 0)
     turns = problem.turns
     # Only what turns alike every turn needs one turn; a window over several turns needs them.
     repeats = problem.contact.law.state_size == 0 and not friction and not problem.kinematics.orbiting
@@ -138,10 +138,10 @@ def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: boo
         parts.leave_out(f"{turns - 1} of {turns} turns", f"{motion} repeats every turn")
         turns = 1
     parts.decide(problem.depends_on_start, "run from another start", problem.why("depends_on_start"))
-    return Motion(True, turns, problem.steps_per_turn)
+    return PlannedMotion(True, turns, problem.steps_per_turn)
 
 
-def decide_output(problem: Problem, parts: Decisions, motion: Motion) -> None:
+def decide_output(problem: Problem, parts: Decisions, motion: PlannedMotion) -> None:
     """What of the answer is not made."""
     every = motion.steps_per_turn
     samples = recorded_per_turn(every, motion.turns, problem.integrator.method.inertial) if motion.recorded else 0

@@ -41,6 +41,8 @@ _PUBLIC = {
     # What tests of single steps need beside the public functions.
     **dict.fromkeys(("b7206c", "model_of", "settled"), "raceway.testing.scenes"),
     **dict.fromkeys(("Registry", "default_registry"), "raceway.framework.registry"),
+    "drive": "raceway.testing.contact_law",
+    "samples": "raceway.testing.signals",
     "Model": "raceway.bodies.model",
     "run": "raceway.pipeline.run",
     "solve_equilibrium": "raceway.pipeline.equilibrium",

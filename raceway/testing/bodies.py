@@ -17,7 +17,7 @@ import numpy as np
 
 from raceway.answers.quantities import K
 from raceway.bodies.columns import build_columns, column_problem, why_not
-from raceway.bodies.model import Bearing, Equilibrium, Model
+from raceway.bodies.model import BuiltBearing, Equilibrium, Model
 from raceway.core.record import Schedule
 from raceway.core.time.schemes import integrate
 from raceway.errors import Mistake, RacewayError, SceneError
@@ -183,11 +183,11 @@ def _nothing_built() -> Iterator[None]:
     def refuse(cls: type, *_args: object, **_keys: object) -> None:
         require(False, f"builds a {cls.__name__}: that is for build() alone")
 
-    Bearing.__new__ = refuse  # type: ignore[assignment, method-assign]
+    BuiltBearing.__new__ = refuse  # type: ignore[assignment, method-assign]
     try:
         yield
     finally:
-        del Bearing.__new__
+        del BuiltBearing.__new__
 
 
 def _is_refused(scene: Scene) -> bool:
@@ -249,12 +249,12 @@ class BodiesSuite(Suite):
         require(0.0 <= cost.once <= cost.seconds, f"cost().once = {cost.once} s is no part of {cost.seconds} s")
         require(cost.unknowns is None or cost.unknowns > 0, f"cost().unknowns = {cost.unknowns}")
 
-    @duty("build(problem, plan): a Bearing with a system and a first guess (5,)")
+    @duty("build(problem, plan): a BuiltBearing with a system and a first guess (5,)")
     def test_build(self, bodies: BodiesKind) -> None:
         scene = _scene_of(bodies)
         bearing = bodies.build(resolve(scene), make_plan(scene))
         kind = type(bearing).__name__
-        require(isinstance(bearing, Bearing), f"build() returns {kind}, not a raceway.bodies.model.Bearing")
+        require(isinstance(bearing, BuiltBearing), f"build() returns {kind}, not a raceway.extend.BuiltBearing")
         check_shape("`guess`", bearing.guess, (5,))
         z = scene.bearing.balls_in_all
         require(bearing.system.ball_count == z, f"the system has {bearing.system.ball_count} balls, the scene {z}")

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _SAMPLES, _SAMPLED = 4096, 1e-4
 
 
-def _samples(excitation: Excitation, times: np.ndarray, repeats: int = 1) -> np.ndarray:
+def samples(excitation: Excitation, times: np.ndarray, repeats: int = 1) -> np.ndarray:
     """(n, 5) the force at times (n,), into an array that is full of NaN before."""
     from raceway.testing.systems import sample_force
 
@@ -44,7 +44,7 @@ def _fundamental(excitation: Excitation) -> np.ndarray:
     """(5,) complex line at ``frequency_hz`` over one period: the force is Re(line e^{jwt}) and other lines."""
     times = (excitation.period_s or 0.0) * np.arange(_SAMPLES) / _SAMPLES
     kernel = np.exp(-2j * np.pi * excitation.frequency_hz * times)
-    return 2.0 * (kernel[:, None] * _samples(excitation, times)).mean(axis=0)
+    return 2.0 * (kernel[:, None] * samples(excitation, times)).mean(axis=0)
 
 
 def _not_periodic(excitation: Excitation) -> str:
@@ -85,7 +85,7 @@ class ExcitationSuite(Suite):
     @duty("all five components are overwritten, in any order of times, the parameters untouched")
     def test_overwrites(self, excitation: Excitation) -> None:
         times = np.random.default_rng(1).uniform(0.0, 3.0 / excitation.frequency_hz, 200)
-        forward, backward = _samples(excitation, times), _samples(excitation, times[::-1])
+        forward, backward = samples(excitation, times), samples(excitation, times[::-1])
         missing = np.flatnonzero(np.isnan(forward).any(axis=0))
         require(not len(missing), f"components {missing.tolist()} are not overwritten")
         require(np.array_equal(forward, backward[::-1]), "the force depends on what was asked before")
@@ -97,7 +97,7 @@ class ExcitationSuite(Suite):
     @duty("finite at any time")
     def test_extreme_times(self, excitation: Excitation) -> None:
         times = np.array([0.0, -0.0, 5e-324, 1e-12, 1.0, 1e3, 1e6, -1e-3])
-        force = _samples(excitation, times)
+        force = samples(excitation, times)
         require(np.isfinite(force).all(), f"not finite at t = {times[~np.isfinite(force).all(axis=1)]} s")
 
     @duty("the kernel allocates no memory")
@@ -112,7 +112,7 @@ class ExcitationSuite(Suite):
     def test_period(self, excitation: Excitation) -> None:
         period = excitation.period_s or 0.0
         times = np.random.default_rng(2).uniform(0.0, 1.0, 300) * period
-        first, later = _samples(excitation, times), _samples(excitation, times + 7.0 * period)
+        first, later = samples(excitation, times), samples(excitation, times + 7.0 * period)
         # Rounding of the phase after seven periods, with a hundred for fast harmonics.
         wrong = np.abs(later - first).max() / max(np.abs(first).max(), 1e-300)
         require(wrong < 1e-10, f"after seven periods it differs by {wrong:.2g} of its largest value")

@@ -3,8 +3,7 @@
 import pytest
 from raceway_two_frequency import TwoFrequency
 
-from raceway.testing import ExcitationSuite
-from raceway.testing.signals import _sampled
+from raceway.testing import ExcitationSuite, samples
 
 
 class TestMisalignment(ExcitationSuite):
@@ -16,7 +15,7 @@ class TestEveryExample(ExcitationSuite):
 
 
 def test_the_forces_add_up():
-    force = _sampled(TwoFrequency(speed_rpm=6000.0, force=2.0, second_force=1.0, second_whirl="backward"), [0.0, 0.0025])
+    force = samples(TwoFrequency(speed_rpm=6000.0, force=2.0, second_force=1.0, second_whirl="backward"), [0.0, 0.0025])
     # A quarter turn later the first force points to +z, the second, twice as fast, to -y.
     assert force[0] == pytest.approx([0.0, 3.0, 0.0, 0.0, 0.0])
     assert force[1] == pytest.approx([0.0, -1.0, 2.0, 0.0, 0.0])

@@ -11,7 +11,7 @@ from raceway import at_least, inside, option, optional, positive
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.framework.contracts import ContactPairs
+    from raceway.extend import ContactPairs
 
 
 @attrs.frozen

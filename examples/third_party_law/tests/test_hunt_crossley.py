@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from raceway_hunt_crossley import HuntCrossley
 
-from raceway.testing import ContactLawSuite
-from raceway.testing.contact_law import drive
+from raceway.testing import ContactLawSuite, drive
 
 
 class TestConstantDissipation(ContactLawSuite):

@@ -12,7 +12,7 @@ from raceway.framework.contracts import Cost, Traits
 from raceway.framework.duties import is_hertzian, is_swept
 from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S, Times, compiled_motion, runs
-from raceway.planning.parts import Balls, Decisions, Motion
+from raceway.planning.parts import Balls, Decisions, PlannedMotion
 from raceway.planning.resolve import Problem
 from raceway.plugins.bodies.mesh import unrefined
 from raceway.scene.scene import SceneTables
@@ -20,7 +20,7 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.columns import ColumnBearing
-    from raceway.bodies.model import Bearing
+    from raceway.bodies.model import BuiltBearing
     from raceway.planning.plan import ScenePlan
 
 
@@ -257,7 +257,7 @@ class Condensed:
         why = "points stick by the compliance of rings and balls themselves"
         return [("contact.stick_stiffness", why)] if tables.contact.discretisation == "nodal" else []
 
-    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+    def cost(self, problem: Problem, balls: Balls, motion: PlannedMotion, parts: Decisions) -> Cost:
         """Sections or patches first, then the motion."""
         if not _nodal(problem):
             more = _BETWEEN_S * (problem.bearing.ball_count / 12.0) ** 2 if parts.keeps(BETWEEN_BALLS) else 0.0
@@ -294,7 +294,7 @@ class Condensed:
         walls.append(0.5 * ((b.outer_diameter or 0.0) - b.pitch_diameter - b.ball_diameter))
         return bool(pi * (b.pitch_diameter - b.ball_diameter) / b.ball_count < 2.5 * max(walls))
 
-    def build(self, problem: Problem, plan: ScenePlan) -> Bearing:
+    def build(self, problem: Problem, plan: ScenePlan) -> BuiltBearing:
         """See ``raceway.plugins.bodies.condensed_bearing`` and ``raceway.plugins.bodies.patch_bearing``."""
         if _nodal(problem):
             from raceway.plugins.bodies.patch_bearing import build as nodal

@@ -12,7 +12,7 @@ import numpy as np
 from raceway.bodies import rigid_bearing as rigid
 from raceway.bodies.basis import Basis, seat_of
 from raceway.bodies.contacts import calibration_error, elasticity, rigid_rings, untold
-from raceway.bodies.model import Bearing, Told
+from raceway.bodies.model import BuiltBearing, Told
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.core.contact.hertz import ball_compliance
@@ -205,7 +205,7 @@ def build(problem: Problem, plan: ScenePlan) -> _CondensedBearing:
 
 
 @attrs.frozen(eq=False)
-class _CondensedBearing(Bearing):
+class _CondensedBearing(BuiltBearing):
     """Condensed rings and balls with contact resultants.
 
     Attributes

@@ -13,7 +13,7 @@ from raceway.framework.duties import is_constraint, is_hertzian, is_swept
 from raceway.framework.options import one_of, option, positive
 from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S
-from raceway.planning.parts import Balls, Decisions, Motion
+from raceway.planning.parts import Balls, Decisions, PlannedMotion
 from raceway.planning.resolve import Problem
 from raceway.plugins.bodies.condensed import section_cost
 from raceway.plugins.bodies.mesh import mesh_faults, predicted_mesh, refined, unrefined
@@ -21,7 +21,7 @@ from raceway.storage.memory import allowed_bytes
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from raceway.bodies.model import Bearing
+    from raceway.bodies.model import BuiltBearing
     from raceway.planning.plan import ScenePlan
 
 
@@ -311,7 +311,7 @@ class Elastic:
         why_not = "contact resultants on coarse meshes have no stresses of contacts below them"
         parts.decide(nodal, "stress recovery", why, why_not)
 
-    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+    def cost(self, problem: Problem, balls: Balls, motion: PlannedMotion, parts: Decisions) -> Cost:
         """Meshing, factors and solves; contact resultants are calibrated as the bearing's own condensed rings."""
         cost = elastic_cost(problem)
         if cost is None:
@@ -323,7 +323,7 @@ class Elastic:
             seconds += cost.start_s + motion.turns * motion.steps_per_turn * cost.step_s
         return Cost(seconds, unknowns=cost.unknowns, mesh=predicted_mesh(problem), scales=False, bytes=cost.bytes)
 
-    def build(self, problem: Problem, plan: ScenePlan) -> Bearing:
+    def build(self, problem: Problem, plan: ScenePlan) -> BuiltBearing:
         """See ``raceway.plugins.bodies.elastic_bearing``."""
         from raceway.plugins.bodies.elastic_bearing import build
 

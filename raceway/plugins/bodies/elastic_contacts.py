@@ -11,7 +11,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.contacts import calibration_error, overlap, rigid_rings, untold
-from raceway.bodies.model import Bearing, Told
+from raceway.bodies.model import BuiltBearing, Told
 from raceway.core.fem.elastic import ring as start
 from raceway.core.fem.elastic.bearing import ElasticBearing
 from raceway.core.fem.elastic.contact import NodalContact, peak_at_nodes, peak_at_points
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 @attrs.frozen(eq=False)
-class ElasticBodies(Bearing):
+class ElasticBodies(BuiltBearing):
     """Rings and balls of which every node moves.
 
     Attributes

@@ -14,7 +14,7 @@ import numpy as np
 
 from raceway.bodies.basis import Basis, at_points, contact_pairs, make_basis
 from raceway.bodies.contacts import elasticity, overlap, rigid_rings
-from raceway.bodies.model import Bearing, Told
+from raceway.bodies.model import BuiltBearing, Told
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import probe, rigid_system, with_hertz
 from raceway.core.fem.mesh.ring_mesh import ring_shape
@@ -58,7 +58,7 @@ _ENOUGH = 3.0
 
 
 @attrs.frozen(eq=False)
-class _NodalBearing(Bearing):
+class _NodalBearing(BuiltBearing):
     """Condensed rings and balls with pressures at surface points.
 
     Attributes

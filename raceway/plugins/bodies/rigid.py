@@ -9,12 +9,12 @@ import attrs
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.planning.cost import START_S, Times, compiled_motion
-from raceway.planning.parts import Balls, Decisions, Motion
+from raceway.planning.parts import Balls, Decisions, PlannedMotion
 from raceway.planning.resolve import Problem
 
 if TYPE_CHECKING:
     from raceway.bodies.columns import ColumnBearing
-    from raceway.bodies.model import Bearing
+    from raceway.bodies.model import BuiltBearing
     from raceway.planning.plan import ScenePlan
 
 _TIMES = Times({"weightless": 2.3e-6, "inertial": 3.3e-6, "tangential": 16.0e-6}, sample=8.0e-6, search=1.0)
@@ -56,11 +56,11 @@ class Rigid:
         for part in ("a compliance per ball and contact", "other mirror half", "stress recovery"):
             parts.leave_out(part, _NO_MESH)
 
-    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+    def cost(self, problem: Problem, balls: Balls, motion: PlannedMotion, parts: Decisions) -> Cost:
         """The motion's: an equilibrium takes microseconds."""
         return Cost(START_S + compiled_motion(problem, balls, motion, _TIMES))
 
-    def build(self, problem: Problem, plan: ScenePlan) -> Bearing:
+    def build(self, problem: Problem, plan: ScenePlan) -> BuiltBearing:
         """See ``raceway.bodies.rigid_bearing``."""
         from raceway.bodies.rigid_bearing import build
 

@@ -9,7 +9,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, changing_speed, excitation, linear_parts, make_basis
-from raceway.bodies.model import Bearing, Told
+from raceway.bodies.model import BuiltBearing, Told
 from raceway.core.columns import Number, per_ball
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels import rollers as lines
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 @attrs.frozen(eq=False)
-class RollerBearing(Bearing):
+class RollerBearing(BuiltBearing):
     """Rigid rings on cylindrical rollers.
 
     Attributes

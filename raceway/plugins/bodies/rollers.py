@@ -16,8 +16,8 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.columns import ColumnBearing
-    from raceway.bodies.model import Bearing as BuiltBearing
-    from raceway.planning.parts import Balls, Decisions, Motion
+    from raceway.bodies.model import BuiltBearing
+    from raceway.planning.parts import Balls, Decisions, PlannedMotion
     from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
     from raceway.scene.bearing import Bearing
@@ -136,7 +136,7 @@ class CylindricalRollers:
         """Keys of grooves."""
         return [(key, "cylindrical rollers have no grooves") for key in ("bearing.shoulder_height", "bearing.tilt_arm")]
 
-    def cost(self, problem: Problem, balls: Balls, motion: Motion, parts: Decisions) -> Cost:
+    def cost(self, problem: Problem, balls: Balls, motion: PlannedMotion, parts: Decisions) -> Cost:
         """The motion's."""
         return Cost(START_S + compiled_motion(problem, balls, motion, _TIMES))
 
