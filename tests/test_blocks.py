@@ -178,6 +178,7 @@ def test_a_block_whose_worker_dies_is_run_point_by_point(tmp_path: Path, small: 
     assert filled(tmp_path / "s", design, resume=True).equals(swept)  # runs beside blocks stay
 
 
+@pytest.mark.slow
 def test_a_sweep_that_is_killed_goes_on_with_its_blocks(tmp_path: Path) -> None:
     tables = tmp_path / "scene.toml"
     tables.write_text(

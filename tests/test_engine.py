@@ -29,7 +29,7 @@ def deadly(number, registry):
     return squared(number, registry)
 
 
-@pytest.mark.parametrize("executor", [Serial(), Processes(workers=2)])
+@pytest.mark.parametrize("executor", [Serial(), pytest.param(Processes(workers=2), marks=pytest.mark.slow)])
 def test_rows_are_in_order_and_kept_ones_are_not_computed_again(executor, tmp_path):
     told = []
     with written(tmp_path) as store:

@@ -183,6 +183,7 @@ def stored(folder):
         return store.counts()["done"]
 
 
+@pytest.mark.slow
 def test_a_study_in_processes_that_is_stopped_by_ctrl_c_tells_where_it_goes_on_and_leaves_none(tmp_path):
     options = "--bodies rigid --friction 0 --processes 2 --no-pictures --json --out"
     words = ["study", "article", *options.split(), tmp_path]

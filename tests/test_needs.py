@@ -41,7 +41,7 @@ def test_on_a_bare_machine_they_are_skipped_with_one_closing_line(tmp_path):
     assert all(f"{called} (1)" in line for called, _ in NEEDS.values())
 
 
-@pytest.mark.parametrize("variable", [{"CI": "true"}, {"RACEWAY_TEST_ALL": "1"}])
+@pytest.mark.parametrize("variable", [{"CI": "true"}, pytest.param({"RACEWAY_TEST_ALL": "1"}, marks=pytest.mark.slow)])
 def test_where_everything_is_tested_a_missing_library_is_a_failure(tmp_path, variable):
     done = collected(tmp_path, **hide(tmp_path), **variable)
     assert done.returncode == 1
@@ -59,6 +59,7 @@ def test_programs_that_are_there_are_used(tmp_path):
 
 
 @pytest.mark.needs("gmsh", "pyvista", "browser", "ccx")
+@pytest.mark.slow
 def test_with_all_libraries_nothing_is_skipped(tmp_path):
     done = collected(tmp_path)
     assert done.returncode == 0 and f"{len(NEEDS)} passed" in done.stdout and "NOT TESTED" not in done.stdout
@@ -78,7 +79,10 @@ def told(done, package):
     assert "pip install" not in done.stderr and "Traceback" not in done.stderr
 
 
-@pytest.mark.parametrize("words", [("view",), ("view", "--mesh", "--picture", "--set", "mesh.element_size=3e-3")])
+@pytest.mark.parametrize(
+    "words",
+    [("view",), pytest.param(("view", "--mesh", "--picture", "--set", "mesh.element_size=3e-3"), marks=pytest.mark.slow)],
+)
 def test_pictures_without_libraries_are_refused_before_anything_is_computed(words, bare, tmp_path):
     command, *rest = words
     done = raceway(command, str(EXAMPLES / "b7206_elastic_coarse.toml"), *rest, "--out", str(tmp_path / "out"), **bare)

@@ -193,6 +193,7 @@ def test_what_is_finished_survives_a_stop_and_is_not_computed_again(tmp_path):
     assert swept(tmp_path / "s", design, Stopping(after=0), resume=True) == whole
 
 
+@pytest.mark.slow
 def test_killed_while_it_computes(tmp_path):
     """The store of a process that was killed is whole, and goes on to the same values."""
     grids = "--grid excitation.speed_rpm=10980:15000:16 --grid load.axial=400,900,2000"
@@ -443,6 +444,7 @@ def grown(_points):
     return os.getpid()
 
 
+@pytest.mark.slow
 def test_a_process_that_grows_is_not_replaced():
     answers = dict(Processes(workers=1).compute(grown, [(0, []), (1, [])]))
     assert answers[0] == answers[1] != os.getpid()

@@ -166,6 +166,7 @@ def test_runaway_advises_by_the_preload():
         assert ("use a spring" in str(failure.value)) == (kind == "rigid")
 
 
+@pytest.mark.slow
 def test_a_fold_and_the_hottest_temperature_are_told_apart():
     """Hardly cooled rings on a spring reach 400 °C by and by; a rigid pair loses its steady state long before."""
     poor = dict.fromkeys(("housing_ambient", "shaft_ambient"), 0.2) | {"oil_flow": "0.1 cm3/min"}
@@ -272,7 +273,7 @@ def test_temperatures_are_no_inputs_and_models_want_them():
         rw.build_model(rw.Scene.from_dict(published.warm_pair()))
 
 
-@pytest.mark.parametrize("preload", [100.0, 500.0])
+@pytest.mark.parametrize("preload", [100.0, pytest.param(500.0, marks=pytest.mark.slow)])
 def test_a_rigid_pair_runs_away_where_a_hand_calculation_says(preload):
     """Within 2 %: the hand takes the contact angle, and the part of the heat at either race, as constants."""
     rpm = published.runaway_speed(preload)
