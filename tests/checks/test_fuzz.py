@@ -40,6 +40,7 @@ def test_checked_scenes_end_in_a_plan_or_a_message(tmp_path):
     assert not (tmp_path / "PWNED").exists()
 
 
+@pytest.mark.slow
 def test_runs_end_in_numbers_or_a_message(tmp_path):
     """Rigid bodies only; ``python -m checks fuzz`` runs 1500 scenes of all bodies."""
     fill(tmp_path)
@@ -53,6 +54,7 @@ def test_runs_end_in_numbers_or_a_message(tmp_path):
     assert ends["finished"] >= 15, ends
 
 
+@pytest.mark.slow
 def test_fronts_end_in_an_answer_or_a_message(tmp_path):
     assert set(fronts()) == set(GOOD), "give it arguments in checks/robustness/_doors.py"
     fill(tmp_path)
