@@ -2,7 +2,7 @@
 
 from .bodies.basis import make_basis as make_basis
 from .plugins.bodies.elastic_contacts import ElasticBodies as ElasticBodies
-from .plugins.bodies.elastic_contacts import ElasticPoints as ElasticPoints
+from .plugins.bodies.elastic_stress import ElasticPoints as ElasticPoints
 from .plugins.bodies.elastic_stress import BelowContact as BelowContact
 from .plugins.bodies.elastic_stress import below_contacts as below_contacts
 from .plugins.bodies.mesh import mesh_bodies as mesh_bodies
@@ -217,13 +217,13 @@ from .scene.changes import with_numbers as with_numbers
 from .scene.changes import with_value as with_value
 from .scene.changes import without as without
 from .scene.clearance import clearance_range as clearance_range
-from .scene.inputs import Change as Change
-from .scene.inputs import Given as Given
-from .scene.inputs import SceneSource as SceneSource
-from .scene.inputs import as_given as as_given
-from .scene.inputs import as_scene as as_scene
-from .scene.inputs import leaves as leaves
-from .scene.inputs import plain_tables as plain_tables
+from .scene.scene import Change as Change
+from .scene.scene import Given as Given
+from .scene.scene import SceneSource as SceneSource
+from .scene.scene import as_given as as_given
+from .scene.scene import as_scene as as_scene
+from .scene.changes import leaves as leaves
+from .scene.scene import plain_tables as plain_tables
 from .scene.inputs import read_toml as read_toml
 from .scene.inputs import tidy as tidy
 from .scene.schema import scene_schema as scene_schema

@@ -54,7 +54,7 @@ from .points.sensitivities import Sensitivities as Sensitivities
 from .points.sensitivities import sensitivities as sensitivities
 from .points.sweep import sweep as sweep
 from .scene.catalogue import Preset as Preset
-from .scene.inputs import evolve as evolve
-from .scene.inputs import load_scene as load_scene
-from .scene.reading import scene_from_dict as scene_from_dict
+from .scene.scene import evolve as evolve
+from .scene.scene import load_scene as load_scene
+from .scene.scene import scene_from_dict as scene_from_dict
 from .scene.scene import Scene as Scene

@@ -20,7 +20,7 @@ Examples
 
 from __future__ import annotations
 
-from raceway.framework.packages import further_name
+from raceway.framework.installed import further_name
 
 __all__ = ["RollingBearing", "UnbalanceResponse", "run_time_response", "run_unbalance_response"]  # noqa: F822
 

@@ -23,7 +23,7 @@ from raceway_measure.fit.synchronous import synchronous
 from raceway_measure.rig import study as rig
 from raceway_view import pictures as view_pictures
 from raceway_view import stress
-from raceway_view.bodies import Bearing
+from raceway_view.bodies import BearingSolids
 from raceway_view.view import at_rest
 
 import raceway
@@ -82,7 +82,7 @@ def of_a_sweep() -> list[Figure]:
     found += [layout(select(as_list(data).isel(point=slice(0, 30)), {}), kind=kind) for kind in ("curves", "map")]
     three = {"load.axial": LOADS[:3], "supports.tilt": ["free", "locked"], "excitation.speed_rpm": SPEEDS}
     found.append(layout(select(made(three), {})))
-    return [store_picture.draw(p) for p in found]
+    return [store_picture.draw_layout(p) for p in found]
 
 
 def of_a_comparison() -> list[Figure]:
@@ -163,13 +163,12 @@ def of_a_record() -> list[Figure]:
     rotation = rotation_of(a_record(noise=1e-6))
     component = synchronous(rotation)
     state = SimpleNamespace(sensor=3.0 * component.forward, deflection=9.0 * component.forward)
-    whole = SimpleNamespace(rotation=rotation, component=component, state=state)
-    return [*fits.figures(whole).values()]
+    return [*fits.figures(rotation, component, state).values()]
 
 
 def of_contacts() -> list[Figure]:
     found = run(scene_from_dict(b7206c(load={"axial": 300.0, "radial": [900.0, 0.0]})))
-    return [view_pictures.contacts(Bearing.of(found), at_rest(found), "made up")]
+    return [view_pictures.contacts(BearingSolids.of(found), at_rest(found), "made up")]
 
 
 #: Module that makes figures -> how they come about here.
@@ -203,7 +202,7 @@ def of_a_branch() -> list[Figure]:
     section = {"parameter": 3.8, "kind": "quasi-periodic", "section": [[np.cos(k), np.sin(k)] for k in range(50)]}
     twice = {"rows": [{**row, "swing": row["swing"] + 1e-6} for row in rows], "labels": labels[:2], "instead": []}
     title = {"title": "made up", "key": "excitation.speed_rpm"}
-    return [followed.draw({**title, "rows": rows, "labels": labels, "instead": [section] * 2, "doubled": [twice]})]
+    return [followed.draw_branch({**title, "rows": rows, "labels": labels, "instead": [section] * 2, "doubled": [twice]})]
 
 
 def of_fits() -> list[Figure]:
@@ -213,7 +212,11 @@ def of_fits() -> list[Figure]:
     one, two = (raceway.fit(data, b7206c(), free).to_dict() for free in (names.split(",")[0], names))
     lost = {**one["free"][0], "error": None, "determined": False, "low": None, "high": None}
     wild = {**one["series"][0], "measured": [1.0, 1e3, 1e6, 1e9]}
-    return [fits.draw(one), fits.draw({**two, "series": [*two["series"], wild]}), fits.draw({**one, "free": [lost]})]
+    return [
+        fits.draw_fit(one),
+        fits.draw_fit({**two, "series": [*two["series"], wild]}),
+        fits.draw_fit({**one, "free": [lost]}),
+    ]
 
 
 DRAWN: dict[object, Callable[[], list[Figure]]] = {

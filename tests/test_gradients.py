@@ -7,10 +7,10 @@ import pytest
 import raceway as rw
 from checks.validation.command_line import invoke
 from raceway import SceneError, build_model, scene_from_dict
-from raceway.bodies.columns import why_no_column
 from raceway.extend import continuous_keys, key_of, resolve, with_number
 from raceway.pipeline.first_order import derivatives, values
 from raceway.pipeline.gradient import FOURTH_ORDER, SECOND_ORDER, Gradients, NoDerivative, SteadyOrbit, unevenness
+from raceway.planning.columns import why_no_column
 from raceway.testing import b7206c, settled, solve_equilibrium
 
 LOADED = b7206c(load={"axial": 400.0, "radial": [120.0, 30.0]}, supports={"tilt": "free"})

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.bodies.columns import column_problem
 from raceway.extend import resolve
+from raceway.planning.columns import column_problem
 from raceway.scene.lubricant import Oil
 
 TABLES = {"bearing": {"preset": "B7206C"}, "load": {"axial": 400.0}, "kinematics": {"spin_speed_rpm": 9000.0}}

@@ -19,8 +19,8 @@ from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.branches import force_continuation
 from raceway.core.periodic.collocation import Problem, newton_iteration, one_turn, solve, stiff
 from raceway.core.periodic.refinement import motion_at, record
-from raceway.core.periodic.search import Recorded, find, guess, highest_order, mesh_of, neighbour_of, problem_of, response
-from raceway.core.periodic.steady import static_equilibrium
+from raceway.core.periodic.search import Recorded, guess, highest_order, mesh_of, neighbour_of, problem_of, response
+from raceway.core.periodic.steady import find, static_equilibrium
 from raceway.extend import Motion, Schedule, integrate, steady_orbit
 from raceway.pipeline.simulate import steady_record
 from raceway.testing import model_of, solve_equilibrium

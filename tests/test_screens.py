@@ -14,7 +14,7 @@ import raceway as rw
 from checks.validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 from raceway.bodies.model import tilts_follow
 from raceway.extend import Words, duration, rows_table
-from raceway.framework.estimate import Estimate, short
+from raceway.framework.estimate import Estimate, few_words
 from raceway.pipeline.run_parts import cost_row, equilibrium_rows
 
 PACKAGE = Path(__file__).parents[1] / "raceway"
@@ -128,7 +128,7 @@ def test_numbers_of_a_note_stay_and_clauses_go(estimate):
     note = estimate(**values)
     assert len(note.short) <= 95 and len(note.short) <= len(note) and note.estimate is estimate
     assert pickle.loads(pickle.dumps(note)).short == note.short
-    assert short("a plain sentence: with a clause") == "a plain sentence: with a clause"
+    assert few_words("a plain sentence: with a clause") == "a plain sentence: with a clause"
 
 
 def test_a_static_scene_has_one_line_for_what_it_cannot_tell(tmp_path):

@@ -14,8 +14,8 @@ import numpy as np
 
 import raceway as rw
 from raceway import ConvergenceError, scene_from_dict
-from raceway.bodies.columns import why_no_column
 from raceway.extend import continuous_keys, registry_with
+from raceway.planning.columns import why_no_column
 from raceway.points.column_quantities import of_result
 
 _BEARINGS: list[dict[str, Any]] = [

@@ -5,150 +5,43 @@ The builders are those of one point (``raceway.bodies.basis``, ``raceway.bodies.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from typing import Any, TypeVar
 
 import attrs
 import numpy as np
 
-from raceway.bodies.basis import Basis, first_guess, gyroscopic, make_basis
+from raceway.bodies.basis import Basis, contact_pairs, first_guess, gyroscopic, make_basis
 from raceway.bodies.contacts import contact_angles
 from raceway.bodies.rigid_bearing import contact_parts
-from raceway.bodies.running import renewed, running_pairs
-from raceway.core.columns import distinct, has_columns, per_ball, some
+from raceway.bodies.running import ITERATIONS, LOAD_TOLERANCE, running_pairs
+from raceway.core.columns import at_rows, distinct, has_columns, per_ball, some
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.excitations import no_force
 from raceway.core.periodic.collocation import one_pitch
 from raceway.core.periodic.orbits import Orbits, Turning, neighbours, orbits
 from raceway.core.ring.equilibria import LOOSE, Kernels, Points, States, equilibria, groove_centres
+from raceway.core.ring.equilibrium import NOT_CONVERGED
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.kernels.layout import elastic_columns
+from raceway.core.ring.kernels.layout import OWN_OFFSET_INNER, OWN_OFFSET_OUTER, elastic_columns
 from raceway.core.ring.system import System
 from raceway.core.signatures import FORCE, Linear
-from raceway.framework.contracts import ContactLaw, Excitation, SolvedPoints
-from raceway.framework.duties import finds_orbit, force_params, is_synchronous, renews
+from raceway.framework.contracts import Excitation, SolvedPoints
+from raceway.framework.duties import force_params, law_params, reach_of, renews
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
-from raceway.planning.resolve import Problem, resolve
+from raceway.planning.resolve import Problem
 from raceway.scene.bearing import DIMENSIONS
 from raceway.scene.changes import with_columns
 from raceway.scene.growth import groove_edge
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
-#: Continuous keys whose numbers may be columns; beside them those of the excitation.
-_KEYS = frozenset(
-    [
-        "load.axial",
-        "load.radial[0]",
-        "load.radial[1]",
-        "load.moment[0]",
-        "load.moment[1]",
-        "kinematics.spin_speed_rpm",
-        "kinematics.radial_expansion",
-        "supports.tilt",
-        "rotor.mass",
-        "rotor.damping",
-        "rotor.transverse_inertia",
-        "rotor.polar_inertia",
-        "contact.damping",
-        "contact.time_constant",
-        "contact.loss_factor",
-        "bearing.bore",
-        "bearing.outer_diameter",
-        "bearing.width",
-        "bearing.dynamic_rating",
-        "bearing.static_rating",
-        "bearing.first_ball_azimuth_deg",
-        "bearing.rings.thermal_expansion",
-        "bearing.balls.thermal_expansion",
-        "bearing.ball_diameter",
-        "bearing.pitch_diameter",
-        "bearing.conformity_inner",
-        "bearing.conformity_outer",
-        "bearing.contact_angle_deg",
-        "bearing.radial_clearance",
-        "bearing.preload",
-        "bearing.second_preload",
-        "bearing.rings.young",
-        "bearing.rings.poisson",
-        "bearing.rings.density",
-        "bearing.balls.young",
-        "bearing.balls.poisson",
-        "bearing.balls.density",
-        "mounting.inner_temperature",
-        "mounting.outer_temperature",
-        "mounting.ball_temperature",
-        "mounting.shaft_bore",
-        "mounting.shaft_interference",
-        "mounting.housing_interference",
-    ]
-)
 C = TypeVar("C", bound="ColumnBearing")
 R = TypeVar("R", Points, States, Turning, Orbits)
 #: Samples of a span at most.
 _MOST_SAMPLES = 128
 _AXIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
-
-
-def why_not(scene: Scene, moving: bool) -> str:
-    """Why the points of a scene are computed one by one; empty where the compiled loops do.
-
-    Parameters
-    ----------
-    moving : whether their motions are asked for
-    """
-    bearing, law, problem = scene.bearing, scene.contact.law, resolve(scene)
-    if why := problem.body_kind.why_no_columns():
-        return why
-    reasons = {
-        "rollers move": moving and problem.traits.line_contacts,
-        "the contact law has a memory": law.state_size > 0,
-        "contacts rub": scene.contact.friction > 0.0,
-        "dashpots are given as a band": scene.contact.in_a_band,
-        "an axial displacement is held": scene.supports.axial == "displacement" and not problem.traits.line_contacts,
-        "rows are on a spring, or ground individually": bearing.preloaded
-        and (bearing.preload_kind == "spring" or bearing.preload_of == "row" or bool(bearing.row)),
-        "balls orbit": moving and scene.kinematics.orbiting,
-        "the speed changes": problem.spin_changes,
-        "the motion is integrated over time": moving and not finds_orbit(problem.integrator.method),
-        "the identifier is not of synchronous (1x) components": moving and not is_synchronous(scene.identifier.method),
-    }
-    return next((reason for reason, holds in reasons.items() if holds), "")
-
-
-def why_no_column(scene: Scene, key: str) -> str:
-    """Why the numbers at a continuous key can not be a column; empty where they can."""
-    if why := resolve(scene).body_kind.why_no_columns(key):
-        return why
-    apart = key == "bearing.width" and scene.bearing.arrangement != "single"  # places of rows differ
-    of_law = key in law_keys(scene)
-    if of_law and not _same_kernel(scene.contact.law, key.partition(".")[2]):
-        return f"the contact law's kernel is made from {key}"
-    known = of_law or key.startswith(("excitation.", "quantities.", "lubricant.", "heat.")) or key in _KEYS and not apart
-    return "" if known else f"{key} changes more than numbers"
-
-
-def law_keys(scene: Scene) -> list[str]:
-    """Keys of the contact law's own options."""
-    return [f"contact.{field.name}" for field in attrs.fields(type(scene.contact.law))]
-
-
-def _same_kernel(law: ContactLaw, option: str) -> bool:
-    """Whether a number of a law's options reaches its kernel as a parameter."""
-    for end in (-math.inf, math.inf):
-        with suppress(ValueError):  # a rule of the option
-            return attrs.evolve(law, **{option: math.nextafter(getattr(law, option), end)}).kernel() is law.kernel()  # type: ignore[misc]
-    return False
-
-
-@np.errstate(all="ignore")
-def column_problem(scene: Scene, columns: Mapping[str, np.ndarray]) -> Problem:
-    """What a scene asks for at n points, from the columns (n,) of its keys."""
-    scene = with_columns(scene, columns)
-    return attrs.evolve(resolve(scene), points=(len(next(iter(columns.values()))),))
 
 
 @attrs.frozen(eq=False)
@@ -373,7 +266,36 @@ def build_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
 
 
 def _running(bearing: ColumnBearing) -> ColumnBearing:
-    return renewed(bearing) if renews(bearing.problem.contact.law) else bearing
+    """A bearing at n points with its law's parameters at their running speeds: ``renew`` of columns, of which those that fit rest."""
+    if not renews(bearing.problem.contact.law):
+        return bearing
+    problem, basis, points, faults = bearing.problem, bearing.basis, bearing.points, bearing.faults.copy()
+    n, z = points.table.shape[:2]
+    fields = (points.table, points.params, points.guess)
+    table, params, guess = (np.array(field) for field in fields)
+    bearing = attrs.evolve(bearing, points=points._replace(table=table, params=params, guess=guess), faults=faults)
+    mounted, law = contact_pairs(problem, basis), problem.contact.law
+    force, reach, angle = np.zeros((n, 2 * z)), np.zeros((n, 2 * z)), np.full((2, n, z), np.nan)
+    rows = np.flatnonzero((faults == 0) & ~bearing.conspicuous)
+    for _ in range(ITERATIONS):
+        part = bearing.at(rows)
+        states = part.equilibria()
+        faults[rows], guess[rows] = states.status, states.q
+        largest = np.maximum(states.force.max(axis=1, initial=0.0), 1e-300)
+        fit = np.abs(states.force - force[rows]).max(axis=1, initial=0.0) <= LOAD_TOLERANCE * largest
+        force[rows], angle[:, rows] = states.force, part.contact_angles(states)
+        rows = rows[~fit & (states.status == 0)]
+        if not len(rows):
+            return bearing
+        contacts = (2 * z * rows[:, None] + np.arange(2 * z)).ravel()
+        pairs = running_pairs(problem, basis, force, (angle[0], angle[1]), mounted=mounted).at(contacts)
+        law_there, before = at_rows(law, rows), reach[rows]
+        params[rows] = law_params(law_there, pairs).reshape(len(rows), 2 * z, -1)
+        reach[rows] = reach_of(law_there, pairs).reshape(len(rows), 2 * z)
+        ahead = (reach[rows] - before).reshape(-1, 2, z).swapaxes(1, 2)
+        table[rows, :, OWN_OFFSET_INNER : OWN_OFFSET_OUTER + 1] -= ahead
+    faults[rows] = NOT_CONVERGED
+    return bearing
 
 
 @np.errstate(all="ignore")

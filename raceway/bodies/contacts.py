@@ -11,17 +11,13 @@ from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.ring import COORDINATES, Ring
 from raceway.core.ring.system import System, surrogate
 from raceway.errors import ConvergenceError
-from raceway.framework.duties import is_foundation, renews
-from raceway.framework.estimate import Estimate
+from raceway.framework.duties import is_foundation
 from raceway.planning.resolve import Problem
 from raceway.scene.growth import groove_depth, groove_edge, load_at_edge
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from raceway.bodies.model import Equilibrium, Model, Told
-    from raceway.core.fem.structural import ElasticBodies
+    pass
 
 
 def contact_angles(centre: np.ndarray, placed: bool, ball: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -98,7 +94,7 @@ def refuse_impossible_ellipses(basis: Basis, force: np.ndarray, state: dict[str,
 _HALVINGS = 80
 
 
-def _law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Force (n,) [N] and stiffness (n,) [N/m] of the law at rest, for contacts of one race (0 inner, 1 outer).
 
     Parameters
@@ -119,11 +115,11 @@ def approach_at_load(ring: Ring, diameter: float, race: int, load: np.ndarray) -
     """(n,) approach [m] at which the law gives a load (n,) [N], by bisection; 0 where there is none."""
     load = np.asarray(load, dtype=float)
     low, high = np.zeros_like(load), np.full_like(load, 1e-3 * diameter)
-    while (short := _law_of_pair(ring, race, high)[0] < load).any():
+    while (short := law_of_pair(ring, race, high)[0] < load).any():
         high = np.where(short, 2.0 * high, high)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        below = _law_of_pair(ring, race, middle)[0] < load
+        below = law_of_pair(ring, race, middle)[0] < load
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     return np.where(load > 0.0, high, 0.0)
 
@@ -149,7 +145,7 @@ def contact_ellipse(
         return ellipse.peak_pressure(load), *ellipse.semi_axes(load)
     a, b = ellipse.curvatures
     approach = approach_at_load(ring, basis.geometry.ball_diameter, race, load)
-    slope = _law_of_pair(ring, race, approach)[1]
+    slope = law_of_pair(ring, race, approach)[1]
     return np.sqrt(a * b) / np.pi * slope, np.sqrt(approach / a), np.sqrt(approach / b)
 
 
@@ -168,66 +164,3 @@ def elasticity(elastic: np.ndarray, rigid: np.ndarray, least: float) -> list[lis
         [float(elastic[i, j] / rigid[i, j] - 1.0) if abs(rigid[i, j]) > least * scale[i, j] else None for j in range(5)]
         for i in range(5)
     ]
-
-
-def calibration_error(
-    compliances: ElasticBodies, model: Model, equilibrium: Equilibrium, more: float = 0.0
-) -> tuple[float | None, str]:
-    """Relative error of a ball's stiffness by what its contacts' calibration leaves, the largest of all loaded balls; and how.
-
-    Parameters
-    ----------
-    more : error of the compliance of each contact besides [m/N]
-    """
-    at_inner, at_outer = compliances.calibrations
-    if at_inner is None or at_outer is None:
-        return None, Estimate.NOT_CALIBRATED()
-    z = model.system.ball_count
-    force = equilibrium.contact_force
-    loaded = (force[:z] > 0.0) & (force[z:] > 0.0)
-    if not loaded.any():
-        return None, Estimate.NO_BALL_LOADED()
-    inner, outer = force[:z][loaded], force[z:][loaded]
-    give = model.inner.approach(inner) / (1.5 * inner) + model.outer.approach(outer) / (1.5 * outer)
-    give += sum(compliances.at(float(np.nanmean(equilibrium.angle_inner)))) + 2.0 * compliances.ball_opposite
-    error = at_inner.error(inner) + at_outer.error(outer) + 2.0 * more
-    return float((error / give).max()), Estimate.CALIBRATED()
-
-
-#: Differences from Hertz's approach below this are rounding, of an equilibrium solved to 1e-11.
-_ROUNDING = 1e-8
-
-
-def against_hertz(model: Model, equilibrium: Equilibrium) -> Told:
-    """Largest relative difference of a loaded contact's approach or stiffness from Hertz's at the same load."""
-    if renews(model.problem.contact.law):
-        return None, Estimate.BEYOND_HERTZ(kind=model.problem.contact.kind)
-    loaded = equilibrium.contact_force > 0.0
-    split = model.system.ball_count
-    force = equilibrium.contact_force
-    hertz = np.concatenate([model.inner.approach(force[:split]), model.outer.approach(force[split:])])
-    approach = -equilibrium.gap
-    off = float(np.abs(approach[loaded] / hertz[loaded] - 1.0).max())
-    slope = np.concatenate([
-        _law_of_pair(model.system, race, part)[1] for race, part in enumerate((approach[:split], approach[split:]))
-    ])  # fmt: skip
-    stiffness = float(np.abs(slope[loaded] * hertz[loaded] / (1.5 * force[loaded]) - 1.0).max())
-    if max(off, stiffness) < _ROUNDING:
-        return None, Estimate.HERTZ_ITSELF()
-    return max(off, stiffness), Estimate.AGAINST_HERTZ(stiffness=stiffness, approach=off)
-
-
-def overlap(columns: Mapping[str, np.ndarray], equilibrium: Equilibrium) -> Told:
-    """Largest share of a loaded contact's approach that the surfaces overlap; ``columns`` : those of the balls."""
-    loaded = equilibrium.contact_force > 0.0
-    penetration, approach = (
-        np.concatenate([columns[f"{name}_{race}_m"] for race in ("inner", "outer")])[loaded]
-        for name in ("approach_penetration", "approach")
-    )
-    share = float((penetration / np.maximum(approach, 1e-300)).max())
-    return share, Estimate.OVERLAP()
-
-
-def untold(model: Model) -> Told:
-    """Of laws that are calibrated to Hertz and nothing more is known of."""
-    return None, Estimate.LAW_UNKNOWN(kind=model.problem.contact.kind)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import attrs
 import numpy as np
@@ -16,6 +16,7 @@ from raceway.bodies.contacts import (
     contact_ellipse,
     ellipse_ends,
     groove_edges,
+    law_of_pair,
     refuse_impossible_ellipses,
 )
 from raceway.core.contact.geometry import BallBearing
@@ -27,10 +28,17 @@ from raceway.core.ring.system import compiled
 from raceway.errors import PluginError, SceneError
 from raceway.framework.contracts import Traits
 from raceway.framework.doors import door, reader
+from raceway.framework.duties import renews
+from raceway.framework.estimate import Estimate
 from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import Problem, resolve
 from raceway.scene.scene import SCENE, Scene
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from raceway.core.fem.structural import ElasticBodies
 
 #: A number and how it was found, or None and why there is none.
 Told = tuple[float | None, str]
@@ -312,3 +320,66 @@ def tilts_follow(stiffness: np.ndarray, tilt: float | str) -> float | None:
     if not np.linalg.det(tilts):
         return float(stiffness[1, 1])
     return float(stiffness[1, 1] - stiffness[1, 3:] @ np.linalg.solve(tilts, stiffness[3:, 1]))
+
+
+def calibration_error(
+    compliances: ElasticBodies, model: Model, equilibrium: Equilibrium, more: float = 0.0
+) -> tuple[float | None, str]:
+    """Relative error of a ball's stiffness by what its contacts' calibration leaves, the largest of all loaded balls; and how.
+
+    Parameters
+    ----------
+    more : error of the compliance of each contact besides [m/N]
+    """
+    at_inner, at_outer = compliances.calibrations
+    if at_inner is None or at_outer is None:
+        return None, Estimate.NOT_CALIBRATED()
+    z = model.system.ball_count
+    force = equilibrium.contact_force
+    loaded = (force[:z] > 0.0) & (force[z:] > 0.0)
+    if not loaded.any():
+        return None, Estimate.NO_BALL_LOADED()
+    inner, outer = force[:z][loaded], force[z:][loaded]
+    give = model.inner.approach(inner) / (1.5 * inner) + model.outer.approach(outer) / (1.5 * outer)
+    give += sum(compliances.at(float(np.nanmean(equilibrium.angle_inner)))) + 2.0 * compliances.ball_opposite
+    error = at_inner.error(inner) + at_outer.error(outer) + 2.0 * more
+    return float((error / give).max()), Estimate.CALIBRATED()
+
+
+#: Differences from Hertz's approach below this are rounding, of an equilibrium solved to 1e-11.
+_ROUNDING = 1e-8
+
+
+def against_hertz(model: Model, equilibrium: Equilibrium) -> Told:
+    """Largest relative difference of a loaded contact's approach or stiffness from Hertz's at the same load."""
+    if renews(model.problem.contact.law):
+        return None, Estimate.BEYOND_HERTZ(kind=model.problem.contact.kind)
+    loaded = equilibrium.contact_force > 0.0
+    split = model.system.ball_count
+    force = equilibrium.contact_force
+    hertz = np.concatenate([model.inner.approach(force[:split]), model.outer.approach(force[split:])])
+    approach = -equilibrium.gap
+    off = float(np.abs(approach[loaded] / hertz[loaded] - 1.0).max())
+    slope = np.concatenate([
+        law_of_pair(model.system, race, part)[1] for race, part in enumerate((approach[:split], approach[split:]))
+    ])  # fmt: skip
+    stiffness = float(np.abs(slope[loaded] * hertz[loaded] / (1.5 * force[loaded]) - 1.0).max())
+    if max(off, stiffness) < _ROUNDING:
+        return None, Estimate.HERTZ_ITSELF()
+    return max(off, stiffness), Estimate.AGAINST_HERTZ(stiffness=stiffness, approach=off)
+
+
+def overlap(columns: Mapping[str, np.ndarray], equilibrium: Equilibrium) -> Told:
+    """Largest share of a loaded contact's approach that the surfaces overlap; ``columns`` : those of the balls."""
+    loaded = equilibrium.contact_force > 0.0
+    penetration, approach = (
+        np.concatenate([columns[f"{name}_{race}_m"] for race in ("inner", "outer")])[loaded]
+        for name in ("approach_penetration", "approach")
+    )
+    share = float((penetration / np.maximum(approach, 1e-300)).max())
+    return share, Estimate.OVERLAP()
+
+
+def untold(model: Model) -> Told:
+    """Of laws that are calibrated to Hertz and nothing more is known of."""
+    return None, Estimate.LAW_UNKNOWN(kind=model.problem.contact.kind)

@@ -8,8 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, changing_speed, contact_pairs, excitation, linear_parts, make_basis
-from raceway.bodies.contacts import against_hertz
-from raceway.bodies.model import BuiltBearing, Told
+from raceway.bodies.model import BuiltBearing, Told, against_hertz
 from raceway.bodies.mounting import place_ring
 from raceway.core.columns import Number, per_ball
 from raceway.core.contact.geometry import BallBearing

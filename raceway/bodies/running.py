@@ -3,30 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, contact_pairs
 from raceway.bodies.contacts import contact_angles
-from raceway.core.columns import at_rows, per_ball
+from raceway.core.columns import per_ball
 from raceway.core.contact.film import entraining_speed
-from raceway.core.ring.equilibrium import NOT_CONVERGED
-from raceway.core.ring.kernels.layout import CAGE, OWN_OFFSET_INNER, OWN_OFFSET_OUTER
+from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.duties import law_params, reach_of
 from raceway.planning.resolve import Problem
 
-if TYPE_CHECKING:
-    from raceway.bodies.columns import ColumnBearing
-
 #: Part of the most loaded contact's load of a race and row that a contact without it is taken to be about to carry.
 _LEAST = 0.1
 #: Loads are met to this part of the largest one; iterations.  They converge fast: a film thins with the load to the power 0.067.
-_TOLERANCE, _LIMIT = 1e-11, 40
+LOAD_TOLERANCE, ITERATIONS = 1e-11, 40
 
 
 def running_pairs(
@@ -87,7 +82,7 @@ def renew(
         No equilibrium, or loads and parameters that do not meet.
     """
     law, q, before = problem.contact.law, guess, np.zeros(2 * system.ball_count)
-    for trial in range(_LIMIT):
+    for trial in range(ITERATIONS):
         try:
             q = q if seek is None else seek(system, q)
             q, ball, _ = system.solve_equilibrium(q)
@@ -101,7 +96,7 @@ def renew(
             ) from why
         now = system.without(CAGE).evaluate(q, ball=ball)
         force = now.contact_force
-        if np.abs(force - before).max() <= _TOLERANCE * max(force.max(), 1e-300):
+        if np.abs(force - before).max() <= LOAD_TOLERANCE * max(force.max(), 1e-300):
             return q
         # The kernel of balls without mass leaves the second column alone: they lie between the groove centres.
         angles = contact_angles(system.centre_vectors(q, ball=now.ball)[0], bool(now.ball[:, 1].any()), now.ball, force)
@@ -113,40 +108,9 @@ def renew(
             system.spin = attrs.evolve(system.spin, law=_following(problem, basis, force, angles))
         before = force
     raise ConvergenceError(
-        f"contact law '{problem.contact.kind}': loads and parameters do not converge in {_LIMIT} equilibria",
+        f"contact law '{problem.contact.kind}': loads and parameters do not converge in {ITERATIONS} equilibria",
         {"q": q, "ball": ball},
     )
-
-
-def renewed(bearing: ColumnBearing) -> ColumnBearing:
-    """A bearing at n points with its law's parameters at their running speeds: ``renew`` of columns, of which those that fit rest."""
-    problem, basis, points, faults = bearing.problem, bearing.basis, bearing.points, bearing.faults.copy()
-    n, z = points.table.shape[:2]
-    fields = (points.table, points.params, points.guess)
-    table, params, guess = (np.array(field) for field in fields)
-    bearing = attrs.evolve(bearing, points=points._replace(table=table, params=params, guess=guess), faults=faults)
-    mounted, law = contact_pairs(problem, basis), problem.contact.law
-    force, reach, angle = np.zeros((n, 2 * z)), np.zeros((n, 2 * z)), np.full((2, n, z), np.nan)
-    rows = np.flatnonzero((faults == 0) & ~bearing.conspicuous)
-    for _ in range(_LIMIT):
-        part = bearing.at(rows)
-        states = part.equilibria()
-        faults[rows], guess[rows] = states.status, states.q
-        largest = np.maximum(states.force.max(axis=1, initial=0.0), 1e-300)
-        fit = np.abs(states.force - force[rows]).max(axis=1, initial=0.0) <= _TOLERANCE * largest
-        force[rows], angle[:, rows] = states.force, part.contact_angles(states)
-        rows = rows[~fit & (states.status == 0)]
-        if not len(rows):
-            return bearing
-        contacts = (2 * z * rows[:, None] + np.arange(2 * z)).ravel()
-        pairs = running_pairs(problem, basis, force, (angle[0], angle[1]), mounted=mounted).at(contacts)
-        law_there, before = at_rows(law, rows), reach[rows]
-        params[rows] = law_params(law_there, pairs).reshape(len(rows), 2 * z, -1)
-        reach[rows] = reach_of(law_there, pairs).reshape(len(rows), 2 * z)
-        ahead = (reach[rows] - before).reshape(-1, 2, z).swapaxes(1, 2)
-        table[rows, :, OWN_OFFSET_INNER : OWN_OFFSET_OUTER + 1] -= ahead
-    faults[rows] = NOT_CONVERGED
-    return bearing
 
 
 def _following(

@@ -19,8 +19,7 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     from raceway.answers.progress import ProgressBar
     from raceway.framework.registry import Registry
-    from raceway.scene.inputs import Given
-    from raceway.scene.scene import Scene
+    from raceway.scene.scene import Given, Scene
 
 
 F = TypeVar("F", bound=Callable[..., object])
@@ -146,7 +145,7 @@ def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
 
 
 def _with_changes(scene: Path, changes: tuple[str, ...]) -> tuple[Given, list[Mistake]]:
-    from raceway.scene.inputs import as_given
+    from raceway.scene.scene import as_given
 
     scene_input = as_given(scene)
     mistakes: list[Mistake] = []

@@ -15,7 +15,8 @@ from raceway import __version__
 from raceway.cli.command import Command
 from raceway.cli.commands import DEVELOPERS, SECTIONS, Later
 from raceway.cli.console import Commands
-from raceway.framework.packages import listed_commands, missing_package
+from raceway.framework.installed import listed_commands
+from raceway.framework.packages import missing_package
 
 
 class _CommandsByName(Commands):

@@ -24,7 +24,7 @@ from raceway.framework.shown import Fact
 from raceway.points.axes import Design, design_file, grid, point_words, sampled, shown
 from raceway.points.dataset import NOT_CHECKED, TABLE, all_failed, blank, open_store, points_of, write_csv, write_netcdf
 from raceway.points.store import POINTS, exists
-from raceway.scene.inputs import plain_tables
+from raceway.scene.scene import plain_tables
 from raceway.storage.files import slug, writable
 from raceway.storage.tables import ReadTables, Tables
 

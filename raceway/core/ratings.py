@@ -33,7 +33,7 @@ _LARGE, _PERMITTED, _FATIGUE = 25.4e-3, 4200e6, 1500e6
 #: Conformity of the standards' tables, and contact modulus of steel on steel [Pa] in ISO/TR 10657.
 _STANDARD, STEEL = 0.52, 0.5 * 207e9 / (1.0 - 0.3**2)
 #: Mean load of the balls over that of the most loaded one, radial load and usual clearance (Stribeck).
-_STRIBECK = 5.0
+STRIBECK = 5.0
 #: Contact angle [rad] up to which a bearing is rated by its radial load.
 STEEPEST = np.pi / 4.0
 #: Pitch diameter [m] above which large bearings lose some of their fatigue limit.
@@ -102,7 +102,7 @@ class BallRow:
 
         modulus : contact modulus E* [Pa], by default that of steel on steel in ISO/TR 10657
         """
-        return np.asarray(self.count * self._loads_at(_PERMITTED, modulus).min(axis=0) * self._share(1.0 / _STRIBECK))
+        return np.asarray(self.count * self._loads_at(_PERMITTED, modulus).min(axis=0) * self._share(1.0 / STRIBECK))
 
     def _loads_at(self, pressure: float, modulus: float) -> np.ndarray:
         """Loads (2, ...) of a contact at the inner and at the outer race at a peak pressure [N]."""
@@ -151,7 +151,7 @@ class BallRow:
         (ISO/TR 10657); the other one may have the same pressure.
         """
         loads = self._loads_at(_PERMITTED, STEEL)
-        return np.asarray(loads / loads.min(axis=0) * rating / (self.count * self._share(1.0 / _STRIBECK)))
+        return np.asarray(loads / loads.min(axis=0) * rating / (self.count * self._share(1.0 / STRIBECK)))
 
     def fatigue_load_limit(self, modulus: float = STEEL) -> np.ndarray:
         """C_u [N]: equivalent load under which no contact passes 1500 MPa, up to which clean, well lubricated steel does not tire.

@@ -109,7 +109,7 @@ def reader(words: str, test: type | Callable[[Any], object], convert: Callable[[
     return Reader(words, read)
 
 
-def _number(words: str, test: Callable[[float], bool]) -> Reader:
+def _checked_number(words: str, test: Callable[[float], bool]) -> Reader:
     return reader(words, lambda v: not isinstance(v, bool | str | bytes) and not math.isnan(v) and test(v), float)
 
 
@@ -130,8 +130,8 @@ def _table(value: object) -> object:
 
 TEXT = reader("text", str)
 TEXTS = _several(TEXT)
-FINITE = _number("a finite number", math.isfinite)
-DURATION = _number("a number from 0, or inf", lambda v: v >= 0.0)
+FINITE = _checked_number("a finite number", math.isfinite)
+DURATION = _checked_number("a number from 0, or inf", lambda v: v >= 0.0)
 PATH = reader("the path of a file or folder, text or pathlib.Path", lambda v: "\0" not in os.fspath(v), Path)
 PATHS = _several(PATH)
 KEY_VALUES = Reader("a mapping of keys to values, or texts KEY=VALUE", _table)

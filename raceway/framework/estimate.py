@@ -26,7 +26,7 @@ class Note(str):
         return note
 
 
-def short(note: str) -> str:
+def few_words(note: str) -> str:
     """The few words of a note; a plain sentence as it stands."""
     return note.short if isinstance(note, Note) else note
 

@@ -10,17 +10,15 @@ import attrs
 
 from raceway.answers.progress import ShowProgress, telling
 from raceway.answers.quantities import KYY, KYY_TILTS_FOLLOW
-from raceway.errors import RacewayError
+from raceway.errors import PATIENCE, RacewayError
 from raceway.framework.doors import DURATION, PATH, PATHS, TEXTS, door
 from raceway.framework.registry import default_registry, registry_with
-from raceway.scene.inputs import SceneSource, as_scene, plain_tables
 from raceway.storage.files import writable
 
 if TYPE_CHECKING:
     from raceway.pipeline.result import Result
+    from raceway.scene.scene import SceneSource
 
-#: A run is stopped beyond so many times its predicted time; predictions are within a factor of three of measured ones.
-PATIENCE = 20.0
 #: Time that a note is worth [s].
 _NOTE_S = 2.0
 
@@ -72,6 +70,7 @@ def run(
     """
     from raceway.pipeline.result import chosen_reports
     from raceway.pipeline.run import run as compute
+    from raceway.scene.scene import as_scene
 
     read, writers = as_scene(scene, plugins=plugins), chosen_reports(reports, registry_with(plugins))
     folder = None if out is None else writable(Path(out))
@@ -86,6 +85,7 @@ def radial_note(scene: SceneSource) -> list[str]:
     """For who reads coefficients of a scene: the interval of its radial stiffness at rest; empty where an equilibrium takes long."""
     from raceway.pipeline.uncertainty import stated
     from raceway.planning.plan import make_plan
+    from raceway.scene.scene import as_scene, plain_tables
 
     try:
         still = as_scene({**plain_tables(scene, registry=default_registry()), "identifier": {"kind": "tangent"}})

@@ -21,20 +21,12 @@ from typing import TypeAlias
 import attrs
 import numpy as np
 
-from raceway.bodies.columns import (
-    Excitations,
-    build_columns,
-    column_problem,
-    impedance,
-    solved_columns,
-    why_no_column,
-    why_not,
-)
+from raceway.bodies.columns import Excitations, build_columns, impedance, solved_columns
 from raceway.bodies.model import Equilibrium, Model, model_of
 from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.orbits import neighbours
-from raceway.core.periodic.search import PeriodicMotion, find, problem_of
-from raceway.core.periodic.steady import growth_of_disturbances, orbit_tables, refuse, synchronous_response
+from raceway.core.periodic.search import PeriodicMotion, problem_of
+from raceway.core.periodic.steady import find, growth_of_disturbances, orbit_tables, refuse, synchronous_response
 from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import surrogate
@@ -43,6 +35,7 @@ from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, renews
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.quantities import solved_point, stated_numbers
+from raceway.planning.columns import column_problem, why_no_column, why_not
 from raceway.planning.resolve import Problem, resolve
 from raceway.scene.changes import Key, key_of, with_number, with_numbers
 

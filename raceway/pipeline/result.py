@@ -21,7 +21,7 @@ from raceway.core.signals import Identification, Line
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.doors import PATH, door
 from raceway.framework.duties import of_results
-from raceway.framework.estimate import Note, short
+from raceway.framework.estimate import Note, few_words
 from raceway.framework.options import nearest
 from raceway.framework.shown import Fact, in_micro, largest_facts, number, tilt_words
 from raceway.framework.sources import blamed
@@ -348,7 +348,7 @@ class Result(Answer):
         """The content of result.json: plain numbers, lists and tables, None where a number does not exist."""
         (model, note), error = self.model_spread, self.error
         notes = {**error["how"], "model": note}
-        how, few = ({name: words(note) for name, note in notes.items()} for words in (str, short))
+        how, few = ({name: words(note) for name, note in notes.items()} for words in (str, few_words))
         motion = self.simulation
         return without_nan(
             {

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import hypot, isfinite
-from typing import TYPE_CHECKING, Any, NotRequired, TypedDict
+from typing import TYPE_CHECKING, Any, NotRequired, Protocol, TypedDict
 
 import attrs
 
@@ -36,7 +36,11 @@ from raceway.planning.resolve import Problem
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
-    from raceway.pipeline.result import Result
+    from raceway.framework.estimate import Note
+    from raceway.pipeline.error import Errors
+    from raceway.pipeline.plausible import Spread
+    from raceway.pipeline.quantities import StatedQuantities
+    from raceway.pipeline.simulate import Simulation
 
 #: How parts combine.
 RULE = (
@@ -51,6 +55,33 @@ _NOTHING = (Estimate.HERTZ_ITSELF, Estimate.BEYOND_HERTZ, Estimate.NOTHING_TURNS
 _TOLD, _SHOWN, _SIDE = 0.1, 0.1, 0.02
 
 Range = tuple[float, float]
+
+
+class Computed(Protocol):
+    """What the intervals of a ``Result`` rest on."""
+
+    @property
+    def model(self) -> Model: ...
+    @property
+    def equilibrium(self) -> Equilibrium: ...
+    @property
+    def simulation(self) -> Simulation | None: ...
+    @property
+    def errors(self) -> Errors: ...
+    @property
+    def stated(self) -> StatedQuantities: ...
+    @property
+    def bodies(self) -> Tables | None: ...
+    @property
+    def spread(self) -> tuple[Spread | None, Note]: ...
+    @property
+    def tolerances(self) -> Tables | None: ...
+    @property
+    def geometry(self) -> Tables | None: ...
+    @property
+    def kyy_tilts_follow(self) -> float | None: ...
+    @property
+    def equivalent_stiffness_error(self) -> float | None: ...
 
 
 class Part(TypedDict):
@@ -103,7 +134,7 @@ def _part(change: Sequence[float] | None, how: str) -> Part:
     return {"low": low, "high": high, "how": str(how)}
 
 
-def uncertainty_table(result: Result) -> Tables:
+def uncertainty_table(result: Computed) -> Tables:
     """The table: quantity -> value, unit, low, high, relative, parts, rule; None with its reason in ``why``."""
     table, why, unclear = dict[str, Interval | None](), dict[str, str](), ", ".join(result.errors.unresolved)
     lives = result.stated.missing.get(L10R.path.partition(".")[0], "no life is computed")
@@ -181,7 +212,7 @@ def _percents(change: Range, even: str) -> str:
     return percents(*(end for end in (low, high) if abs(end) > _SIDE * (high - low)))[:-2]
 
 
-def _numerical(result: Result, quantity: Quantity) -> Part:
+def _numerical(result: Computed, quantity: Quantity) -> Part:
     errors = result.errors
     if quantity is K or (quantity in (PEAK_BALL_LOAD, P0) and result.simulation is not None):
         if errors.total.size is None:
@@ -195,7 +226,7 @@ def _numerical(result: Result, quantity: Quantity) -> Part:
     return _part((-size, size), "residual of the equilibrium, error.mesh")
 
 
-def _hypotheses(result: Result, *names: str) -> Part:
+def _hypotheses(result: Computed, *names: str) -> Part:
     """Of the first name that ``error.model`` has."""
     spread, note = result.spread
     if spread is None:
@@ -206,7 +237,7 @@ def _hypotheses(result: Result, *names: str) -> Part:
     return _part(None, "not in error.model") if name is None else _part(spread.ranges[name], f"error.model.{name}")
 
 
-def _contact(result: Result, quantity: Quantity, hertz: float | None) -> Part:
+def _contact(result: Computed, quantity: Quantity, hertz: float | None) -> Part:
     contact = result.errors.contact
     size, note, estimate = contact.size, contact.how, contact.estimate
     if estimate in _NOTHING or size is None:
@@ -227,7 +258,7 @@ def _bodies(elastic: Mapping[str, float] | str, name: str) -> Part:
     return _part(_with_zero([elastic[name]]), "walls below the grooves, and balls")
 
 
-def _geometry(result: Result, quantity: Quantity, scatters: Mapping[str, Range]) -> Iterator[tuple[str, Part]]:
+def _geometry(result: Computed, quantity: Quantity, scatters: Mapping[str, Range]) -> Iterator[tuple[str, Part]]:
     geometry = result.geometry
     if geometry is not None and quantity not in STIFFNESSES:
         yield "inferred geometry", _part(scatters.get(quantity.name), "inferred numbers at the ends of their uncertainties")
@@ -240,7 +271,7 @@ def _geometry(result: Result, quantity: Quantity, scatters: Mapping[str, Range])
             yield part["part"], {**_part(change, part["why"]), "remedy": part["remedy"]}
 
 
-def _tolerances(result: Result, quantity: Quantity) -> Iterator[tuple[str, Part]]:
+def _tolerances(result: Computed, quantity: Quantity) -> Iterator[tuple[str, Part]]:
     if (band := result.tolerances) is not None:
         names = {PEAK_BALL_LOAD: "largest_ball_load", L10R: L10R.name}
         ends_of = band["quantities"].get(names.get(quantity, quantity.symbol)) or {"value": 0.0}
@@ -248,7 +279,7 @@ def _tolerances(result: Result, quantity: Quantity) -> Iterator[tuple[str, Part]
         yield "tolerances", _part(ends or None, "95 % to first order" if ends else band["why"] or "no derivative")
 
 
-def _at_scatters(result: Result) -> dict[str, Range]:
+def _at_scatters(result: Computed) -> dict[str, Range]:
     """Changes of numbers at rest by inferred numbers at the ends of their scatter."""
     inferences, problem = (result.geometry or {}).get("inferred", {}), result.model.problem
     scatters = {key: fact["scatter"] for key, fact in inferences.items() if fact["scatter"] and "." not in key}

@@ -20,7 +20,7 @@ from itertools import product
 import attrs
 import numpy as np
 
-from raceway.bodies.columns import ColumnBearing, column_problem, mounted_columns, solved_columns, why_not
+from raceway.bodies.columns import ColumnBearing, mounted_columns, solved_columns
 from raceway.bodies.model import model_of
 from raceway.bodies.mounting import preload_table
 from raceway.core.thermal import NODES
@@ -28,6 +28,7 @@ from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.registry import default_registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.quantities import plugins_stating, solved_point, stated_numbers
+from raceway.planning.columns import column_problem, why_not
 from raceway.planning.plan import ScenePlan, make_plan, plan_of
 from raceway.planning.resolve import Problem, resolve
 from raceway.plugins.quantities.heat import NO_THINNING, ZERO_C

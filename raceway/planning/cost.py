@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING
 
 import attrs
 
-from raceway.framework.contracts import said
 from raceway.planning.parts import Balls, PlannedMotion
 from raceway.planning.resolve import Problem, recorded_per_turn
 
 if TYPE_CHECKING:
-    from raceway.planning.plan import ScenePlan
+    pass
 
 #: How much less a step of an explicit method takes, whose steps iterate less.
 _EXPLICIT = 0.5
@@ -73,23 +72,6 @@ def compiled_motion(problem: Problem, balls: Balls, motion: PlannedMotion, times
         with_search = with_search and problem.excitation.amplitude_n > _SEARCH_FROM * abs(problem.load.axial)
         orbit = _SEARCH_S if with_search else _ORBIT_S
     return times.search * orbit + samples * share * times.sample + steps * each
-
-
-#: A point of columns with 12 balls and all quantities of a sweep: its equilibrium, also with an oil film, what heat adds; its orbit under
-#: a rotating force, and factors on that of damped contacts and of a force along a fixed direction.
-_STATIC_S, _FILM_S, _HEAT_S, _TURNING_S, _DAMPED, _FIXED = 17.0e-6, 0.11e-3, 0.2e-3, 0.13e-3, 2.9, 4.5
-
-
-def column_time(plan: ScenePlan, moving: bool) -> float:
-    """Processor time of a point in compiled columns on this machine [s]; ``moving``: with its steady orbit."""
-    problem = plan.problem
-    seconds = _FILM_S if said(problem.contact.law, "elementwise") else _STATIC_S
-    seconds += 0.0 if problem.scene.heat is None else _HEAT_S
-    if moving:
-        damping_factor = _DAMPED if plan.keeps("contact damping") else 1.0
-        in_one_direction = problem.excitation is not None and problem.excitation.sense == 0
-        seconds += _TURNING_S * damping_factor * (_FIXED if in_one_direction else 1.0)
-    return seconds * problem.bearing.balls_in_all / 12.0 * slowness()
 
 
 #: Iterations of the piece of work, and its processor time on the machine that ``wall_time``'s constants belong to [s].

@@ -8,6 +8,9 @@ import attrs
 
 from raceway.planning.resolve import Problem, recorded_per_turn
 
+#: The part by which balls feel each other through elastic rings.
+BETWEEN_BALLS = "interaction of balls through the rings"
+
 
 @attrs.frozen
 class Part:

@@ -19,8 +19,8 @@ from raceway.scene.bearing import Bearing
 from raceway.scene.growth import RunningBearing, ring_inertia
 from raceway.scene.lubricant import lubricated
 from raceway.scene.ratings import LoadRatings, load_ratings
-from raceway.scene.scene import Scene, SceneTables
-from raceway.scene.tables import TIME_CONSTANTS, AutoIntegrator
+from raceway.scene.scene import Scene
+from raceway.scene.tables import TIME_CONSTANTS, AutoIntegrator, SceneTables
 from raceway.storage.tables import Tables
 
 #: Steps a turn where the scene says "auto", and samples per turn that are kept of short runs.

@@ -18,7 +18,8 @@ from raceway.errors import Mistake, PluginError, SceneError
 from raceway.framework.registry import Registry
 from raceway.scene.changes import parse_value, value_at, with_value
 from raceway.scene.inputs import read_toml, text_of, tidy
-from raceway.scene.reading import numbers_only, options_class, scene_from_dict
+from raceway.scene.reading import numbers_only, options_class
+from raceway.scene.scene import scene_from_dict
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.scene.units import is_quantity
 from raceway.scene.unused import without_inherited

@@ -33,9 +33,7 @@ from raceway.points.sensitivities import Sensitivities, sensitivities
 from raceway.points.store import row_key, written
 from raceway.points.workload import Workload, of_columns, run_times
 from raceway.scene.changes import continuous_keys, with_number, without
-from raceway.scene.inputs import SceneSource, as_scene
-from raceway.scene.reading import scene_from_dict
-from raceway.scene.scene import Scene
+from raceway.scene.scene import Scene, SceneSource, as_scene, scene_from_dict
 from raceway.scene.tolerance import Tolerance, stated_tolerances, tolerances_of
 from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables

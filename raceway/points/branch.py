@@ -199,9 +199,9 @@ class Followed(Answer):
 
     def draw(self) -> Figure:
         """Amplitude and K over the key."""
-        from raceway.points.follow_picture import draw
+        from raceway.points.follow_picture import draw_branch
 
-        return draw(self.to_dict())
+        return draw_branch(self.to_dict())
 
     def _facts(self) -> tuple[str, list[Fact]]:
         ends = (

@@ -10,15 +10,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import AMPLITUDE, KNOWN, OF_ORBITS, Z_IMAG, Z_REAL, C, K, Quantity, plugin_quantities
-from raceway.bodies.columns import (
-    ColumnBearing,
-    Excitations,
-    build_columns,
-    column_problem,
-    impedance,
-    solved_columns,
-    why_not,
-)
+from raceway.bodies.columns import ColumnBearing, Excitations, build_columns, impedance, solved_columns
 from raceway.core.periodic.floquet import NEUTRAL
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.equilibria import States
@@ -28,6 +20,7 @@ from raceway.framework.duties import fitting_quantities, quantities_at, turn_sam
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
+from raceway.planning.columns import column_problem, why_not
 from raceway.planning.plan import make_plan
 from raceway.planning.resolve import Problem, resolve
 from raceway.scene.scene import Scene

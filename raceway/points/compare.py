@@ -27,8 +27,7 @@ from raceway.points.dataset import axis_labels
 from raceway.points.effects import MOVING, Findings, Row, explain, in_few_words
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import row_key, tables_key, written
-from raceway.scene.inputs import SceneSource, plain_tables
-from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import SceneSource, plain_tables, scene_from_dict
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
 

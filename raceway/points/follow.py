@@ -17,7 +17,8 @@ from raceway.core.periodic.branch import doubled as doubled_branch
 from raceway.core.periodic.collocation import Path as OrbitPath
 from raceway.core.periodic.collocation import solve
 from raceway.core.periodic.refinement import motion_at
-from raceway.core.periodic.search import MOST, directly, find, highest_order, mesh_of
+from raceway.core.periodic.search import MOST, directly, highest_order, mesh_of
+from raceway.core.periodic.steady import find
 from raceway.errors import ConvergenceError
 from raceway.framework.doors import PATH, PATHS, door
 from raceway.framework.options import at_least, positive
@@ -26,7 +27,7 @@ from raceway.points.attractor import attractor_beside
 from raceway.points.branch import OPENS, PEAK, Followed, Label, Orbit, growth_of_swing, open_contacts, orbit_of, resonance
 from raceway.points.parameter import Parameter, parameter_of
 from raceway.points.workload import Workload, run_times
-from raceway.scene.inputs import Change, SceneSource, plain_tables
+from raceway.scene.scene import Change, SceneSource, plain_tables
 
 #: Error of orbits over their size that meshes are kept fit for, and that at which a branch is left.
 ERROR, _LOST = 1e-6, 1e-3

@@ -24,7 +24,7 @@ _SECTIONS = 4
 _PEAKS = 6
 
 
-def draw(content: ReadTables) -> Figure:
+def draw_branch(content: ReadTables) -> Figure:
     """Two panels over the key, of the tables of ``raceway follow --json``."""
     sections = [x for attractor in (content, *content["doubled"]) for x in attractor["instead"] if x["section"]][:_SECTIONS]
     figure = new_figure(9.6, 8.0 if not sections else 10.6)

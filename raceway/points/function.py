@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from raceway.answers.quantities import KNOWN, Quantity, plugin_quantities
-from raceway.bodies.columns import Excitations, build_columns, column_problem, law_keys, why_no_column, why_not
+from raceway.bodies.columns import Excitations, build_columns
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import PATHS, TEXT, TEXTS, Reader, door
@@ -27,15 +27,14 @@ from raceway.framework.registry import default_registry
 from raceway.framework.shown import duration
 from raceway.pipeline.gradient import other_meshes, refuse_points
 from raceway.pipeline.run import run
+from raceway.planning.columns import column_problem, law_keys, why_no_column, why_not
 from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import resolve
 from raceway.plugins.formats.labelled import labelled_dataset
 from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Computed, of_result
 from raceway.points.derivatives import Columns, jacobian
 from raceway.scene.changes import key_of, with_columns, with_numbers
-from raceway.scene.inputs import SceneSource, as_scene
-from raceway.scene.reading import scene_from_dict
-from raceway.scene.scene import Scene
+from raceway.scene.scene import Scene, SceneSource, as_scene, scene_from_dict
 from raceway.storage.memory import available_bytes
 from raceway.storage.tables import Tables
 

@@ -32,7 +32,7 @@ from raceway.framework.shown import Fact
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import damping_origin
 from raceway.planning.resolve import resolve
-from raceway.scene.inputs import Change, SceneSource, as_given
+from raceway.scene.scene import Change, SceneSource, as_given
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
 
@@ -59,7 +59,7 @@ _LAW, _HERTZ, _MOVING = "#0b5fa5", "#555f6b", "#c8501e"
 
 
 @attrs.frozen(eq=False)
-class Contact:
+class LawContact:
     """One ball-race contact in its equilibrium, alone.
 
     Attributes
@@ -170,7 +170,7 @@ class LawCurves(Answer):
     law: str
     title: str
     damping_origin: str
-    contact: Contact
+    contact: LawContact
     approach: np.ndarray
     rate: np.ndarray
     force: np.ndarray
@@ -340,7 +340,7 @@ def law(
     )  # fmt: skip
 
 
-def _contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> Contact:
+def _contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> LawContact:
     """A contact of a scene with rigid bodies, in its equilibrium; arguments and errors as of ``law``."""
     if race not in RACES:
         raise SceneError.at("race", race, f"must be one of {', '.join(RACES)}")
@@ -365,10 +365,10 @@ def _contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> C
     factors = np.broadcast_to(np.asarray(ellipse.factor, dtype=float), count)
     reach = 0.0 if ring.reach is None else float(ring.reach[index])
     approach = -float(still.gap[index]) - reach
-    return Contact(race, number, load, approach, reach, float(factors[number]), single_contact(ring, index))
+    return LawContact(race, number, load, approach, reach, float(factors[number]), single_contact(ring, index))
 
 
-def cycle(contact: Contact, amplitude: float, frequency: float) -> _Cycle:
+def cycle(contact: LawContact, amplitude: float, frequency: float) -> _Cycle:
     """A contact moved about its equilibrium with an amplitude [m] and a frequency [Hz]."""
     w = 2.0 * np.pi * frequency
     phase = 2.0 * np.pi * np.arange(SAMPLES) / SAMPLES

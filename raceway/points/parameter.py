@@ -26,8 +26,7 @@ from raceway.framework.registry import Registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.points.axes import numbers_at
 from raceway.scene.changes import key_of, parse_value, with_number, with_value
-from raceway.scene.reading import scene_from_dict
-from raceway.scene.scene import Scene
+from raceway.scene.scene import Scene, scene_from_dict
 from raceway.scene.units import number_in
 from raceway.storage.tables import Tables
 

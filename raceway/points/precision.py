@@ -40,7 +40,8 @@ from raceway.points.settings import (
 from raceway.points.store import Store, written
 from raceway.points.timing import measured_once
 from raceway.scene.changes import parse_change
-from raceway.scene.inputs import SceneSource, plain_tables, tidy
+from raceway.scene.inputs import tidy
+from raceway.scene.scene import SceneSource, plain_tables
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables
 

@@ -26,7 +26,7 @@ from raceway.pipeline.first_order import definitions, derivatives, described, fi
 from raceway.pipeline.gradient import Gradient, Gradients, NoDerivative
 from raceway.pipeline.run import steady_plan
 from raceway.scene.changes import Key, continuous_keys, key_of
-from raceway.scene.inputs import SceneSource, as_scene
+from raceway.scene.scene import SceneSource, as_scene
 from raceway.storage.files import without_nan
 from raceway.storage.tables import ReadTables, Tables
 

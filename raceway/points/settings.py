@@ -27,8 +27,7 @@ from raceway.planning.plan import make_plan
 from raceway.points.axes import Vary, axes_of, points, refuse_mistakes, tables_at
 from raceway.points.store import Store
 from raceway.points.timing import measured_once
-from raceway.scene.reading import scene_from_dict
-from raceway.scene.scene import Scene
+from raceway.scene.scene import Scene, scene_from_dict
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:

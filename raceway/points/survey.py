@@ -15,8 +15,7 @@ from raceway.points.axes import Design, tables_at
 from raceway.points.engine import plugins_of
 from raceway.points.store import files_of
 from raceway.scene.changes import continuous_keys
-from raceway.scene.reading import scene_from_dict
-from raceway.scene.scene import Scene
+from raceway.scene.scene import Scene, scene_from_dict
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.storage.tables import ReadTables, Tables
 

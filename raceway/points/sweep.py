@@ -35,9 +35,7 @@ from raceway.points.store import Row, Store, exists, written
 from raceway.points.survey import survey
 from raceway.points.workload import Workload, of_columns, run_times
 from raceway.scene.changes import continuous_keys
-from raceway.scene.inputs import SceneSource, plain_tables
-from raceway.scene.reading import scene_from_dict
-from raceway.scene.scene import Scene
+from raceway.scene.scene import Scene, SceneSource, plain_tables, scene_from_dict
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
 

@@ -16,11 +16,11 @@ from raceway.answers.wrapping import Words
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.framework.shown import duration
-from raceway.planning.cost import START_S, column_time, slowness
-from raceway.planning.plan import make_plan
+from raceway.planning.cost import START_S, slowness
+from raceway.planning.plan import column_time, make_plan
 from raceway.points.function import BLOCK, Function
 from raceway.points.store import Store, connected, exists
-from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import scene_from_dict
 from raceway.storage.files import size_words
 from raceway.storage.tables import ReadTables, Tables
 

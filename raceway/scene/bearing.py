@@ -11,7 +11,7 @@ from raceway.core.columns import acos, cos, has_columns, radians, sin, some, wit
 from raceway.errors import MeshError, SceneError
 from raceway.framework.options import at_least, between, finite, inside, length, one_of, option, optional, positive
 from raceway.framework.rules import Rule, speaking
-from raceway.scene.sets import GEOMETRY, RATINGS, Row, arrangement, check_set, places_of, signs_of, travel
+from raceway.scene.sets import GEOMETRY, RATINGS, SetRow, arrangement, places_of, signs_of, travel
 
 #: Young's moduli of bearing steels [Pa], 206 to 212 GPa in catalogues with 1 % on either side, and their thermal expansion [1/K].
 STEEL, STEEL_EXPANSION = (2.04e11, 2.14e11), 12.5e-6
@@ -88,7 +88,7 @@ class Bearing:
         help="pairs back to back 'DB', face to face 'DF', in tandem 'DT'; more rows by makers' names",
         rule=arrangement(),
     )
-    row: tuple[Row, ...] = option((), help="one row: position, direction, preload and keys that differ from [bearing]")
+    row: tuple[SetRow, ...] = option((), help="one row: position, direction, preload and keys that differ from [bearing]")
     preload: float = option(
         0.0,
         unit="N",
@@ -135,7 +135,7 @@ class Bearing:
         for _, words in speaking(DIMENSIONS, self):
             raise ValueError(words)
         self._check_angle()
-        check_set(self)
+        self._check_set()
         for profile, inner in ((self.inner_profile, True), (self.outer_profile, False)):
             if profile is not None:
                 from raceway.core.fem.mesh.ring_mesh import ring_shape
@@ -203,7 +203,7 @@ class Bearing:
         """Balls of all rows."""
         return sum(bearing.ball_count for bearing in self.of_rows)
 
-    def of_row(self, row: Row | None) -> Bearing:
+    def of_row(self, row: SetRow | None) -> Bearing:
         """The bearing of one row of a set."""
         geometry = {key: getattr(row, key) for key in GEOMETRY} if row is not None else {}
         geometry = {key: value for key, value in geometry.items() if value is not None}
@@ -221,6 +221,54 @@ class Bearing:
     @property
     def _centre_distance(self) -> float:
         return (self.conformity_inner + self.conformity_outer - 1.0) * self.ball_diameter
+
+    def _check_set(self) -> None:
+        """Refuse rows, arrangement and preload that contradict each other."""
+        signs = signs_of(self.arrangement)
+        if self.row and self.arrangement != "single" and len(self.row) != len(signs):
+            raise ValueError(
+                f"`row` has {len(self.row)} tables, but arrangement = '{self.arrangement}' is {len(signs)} rows"
+            )
+        without = [k for k, row in enumerate(self.row) if self.arrangement == "single" and row.direction is None]
+        if without:
+            raise ValueError(
+                f"`row[{without[0]}]` has no `direction`: give each row '+' or '-', or the set an `arrangement`"
+            )
+        with_positions = bool(self.row) and all(row.position is not None for row in self.row)
+        if len(self.signs) > 1 and not with_positions and self.row_distance is None and self.width is None:
+            raise ValueError(
+                f"`arrangement` = '{self.arrangement}' needs `row_distance`, or the bearing's `width`, or a `position` in each row"
+            )
+        places = [position for _, position in self.rows]
+        if len(set(places)) < len(places):
+            raise ValueError(f"`row` puts two rows at the same place: {', '.join(f'{position:g}' for position in places)} m")
+        for k, row in enumerate(self.row):
+            try:
+                self.of_row(row)
+            except ValueError as why:
+                raise ValueError(f"`row[{k}]`: {why}") from None
+        ground = next((k for k, row in enumerate(self.row) if row.preload is not None), None)
+        if ground is not None and self.preload_of != "row":
+            raise ValueError(f"`row[{ground}].preload` says what that row was ground for: set preload_of = 'row'")
+        if self.second_preload is not None and self.preload_of == "row":
+            raise ValueError(
+                "`second_preload` is a force between rows: set preload_of = 'set', or give each row its `preload`"
+            )
+        if not self.preloaded:
+            if self.second_preload is not None:
+                raise ValueError(
+                    f"`second_preload` = {self.second_preload:g} N needs a `preload`, that of the first row's direction"
+                )
+            return
+        if len(set(self.signs)) < 2:
+            word = self.signs if self.row else self.arrangement
+            rows = f"the {len(self.signs)} rows of '{word}' face" if len(self.signs) > 1 else "a single row faces"
+            raise ValueError(
+                f"`preload` = {self.preload:g} N needs rows that brace each other, such as arrangement = 'DB', 'DF' or 'TBT': "
+                f"{rows} one way only. Give the force of a spring on such a bearing as load.axial"
+            )
+        if self.preload_of == "row" and self.preload_kind == "spring":
+            raise ValueError("`preload_of` = 'row' is an offset that was ground: with preload_kind = 'spring' use 'set'")
 
     def _check_angle(self) -> None:
         clearance, angle, distance = self.radial_clearance, self.contact_angle_deg, self._centre_distance

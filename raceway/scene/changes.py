@@ -5,18 +5,18 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import attrs
 
 from raceway.core.columns import Number, with_values
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
-from raceway.scene.tables import TABLES, told
+from raceway.scene.tables import TABLES, SceneTables, told
 from raceway.storage.tables import ReadTables, Tables
 
-if TYPE_CHECKING:
-    from raceway.scene.scene import Scene
+#: A scene, or what has its tables.
+S = TypeVar("S", bound=SceneTables)
 
 
 def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]]) -> Tables:
@@ -95,6 +95,15 @@ def without(tables: ReadTables, key: str) -> Tables:
     return {**tables, name: without(inner, path)} if isinstance(inner, dict) else dict(tables)
 
 
+def leaves(table: ReadTables, before: str = "") -> Iterator[tuple[str, Any]]:
+    """Dotted keys and values of a tree; an empty table is a value."""
+    for name, value in table.items():
+        if isinstance(value, dict) and value:
+            yield from leaves(value, f"{before}{name}.")
+        else:
+            yield before + name, value
+
+
 #: Tables of plug-ins that are attributes of the scene themselves.
 _PLUGINS = ("excitation", "bodies", "quantities")
 #: Tables of numerical settings: the answer must not depend on them.
@@ -120,7 +129,7 @@ class Key:
     help: str
 
 
-def continuous_keys(scene: Scene) -> list[Key]:
+def continuous_keys(scene: SceneTables) -> list[Key]:
     """Every number that the scene has along its keys: no counts, words, switches, settings of methods or points of sections.
 
     Keys that are left out and have no default number are not there.
@@ -129,7 +138,7 @@ def continuous_keys(scene: Scene) -> list[Key]:
     return [key for name in tables for key in _keys_with_numbers(getattr(scene, name), name)]
 
 
-def key_of(scene: Scene, path: str) -> Key:
+def key_of(scene: SceneTables, path: str) -> Key:
     """One of them.
 
     Raises
@@ -151,7 +160,7 @@ def key_of(scene: Scene, path: str) -> Key:
     raise SceneError.at(path, None, f"is no continuous key of this scene, which has no number there{nearest(path, keys)}")
 
 
-def with_number(scene: Scene, path: str, value: float) -> Scene:
+def with_number(scene: S, path: str, value: float) -> S:
     """The scene with another number at a continuous key, checked by the rules of its tables.
 
     Raises
@@ -162,15 +171,15 @@ def with_number(scene: Scene, path: str, value: float) -> Scene:
     return with_numbers(scene, {path: value})
 
 
-def with_numbers(scene: Scene, numbers: Mapping[str, float]) -> Scene:
+def with_numbers(scene: S, numbers: Mapping[str, float]) -> S:
     """The same with numbers at several keys."""
-    answer: Scene = _with_parts(scene, [(_steps(path), value) for path, value in numbers.items()])
+    answer: S = _with_parts(scene, [(_steps(path), value) for path, value in numbers.items()])
     return answer
 
 
-def with_columns(scene: Scene, columns: Mapping[str, Number]) -> Scene:
+def with_columns(scene: S, columns: Mapping[str, Number]) -> S:
     """The scene with columns (n,) at continuous keys, which no rule looks at: one scene of n operating points."""
-    answer: Scene = _with_parts(scene, [(_steps(path), column) for path, column in columns.items()], with_values)
+    answer: S = _with_parts(scene, [(_steps(path), column) for path, column in columns.items()], with_values)
     return answer
 
 
@@ -178,7 +187,7 @@ def _steps(path: str) -> list[str | int]:
     return [name or int(index) for name, index in _STEP.findall(path)]
 
 
-def _value(scene: Scene, path: str) -> Any:
+def _value(scene: SceneTables, path: str) -> Any:
     """What stands at a path; None where there is nothing."""
     node: Any = scene
     for step in _steps(path):

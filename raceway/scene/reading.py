@@ -7,22 +7,27 @@ import difflib
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
 from raceway.errors import Mistake, PluginError, SceneError
-from raceway.framework.doors import door, reader
 from raceway.framework.options import nearest
 from raceway.framework.packages import named
-from raceway.framework.registry import REGISTRY, Registry, default_registry
+from raceway.framework.registry import Registry
 from raceway.scene.catalogue import preset, preset_of, with_material
-from raceway.scene.inputs import Given
 from raceway.scene.lubricant import lubricant_mistakes
-from raceway.scene.scene import Scene
 from raceway.scene.sets import GEOMETRY
 from raceway.scene.structure import structure, table_without_units
-from raceway.scene.tables import OPTIONAL_TABLES, PLUGIN_TABLES, SWAPPED_TABLES, TABLES, AutoIntegrator, quantities_table
+from raceway.scene.tables import (
+    OPTIONAL_TABLES,
+    PLUGIN_TABLES,
+    SWAPPED_TABLES,
+    TABLES,
+    AutoIntegrator,
+    SceneTables,
+    quantities_table,
+)
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
@@ -187,30 +192,14 @@ _PLACEHOLDER = {
 }
 
 
-@door
-def scene_from_dict(
-    tables: Annotated[ReadTables, reader("a mapping, such as a dict", Mapping)],
-    registry: Annotated[Registry | None, REGISTRY] = None,
-) -> Scene:
-    """A scene from plain tables, as a TOML file would give them.
-
-    Parameters
-    ----------
-    tables : by name, values in the keys' units or as text with one
-    registry : plug-ins that the scene may use; None: those of this process
+def read_tables(tables: ReadTables, registry: Registry) -> tuple[str, Tables, SceneTables]:
+    """Title, the known tables as they were said, and every key of them checked; parameters of ``scene_from_dict``.
 
     Raises
     ------
     SceneError
         With every mistake that was found.
-
-    Examples
-    --------
-    >>> import raceway as rw
-    >>> rw.scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 400.0}}).load.axial  # [N]
-    400.0
     """
-    registry = registry or default_registry()
     mistakes: list[Mistake] = []
     title, content = _known_tables(tables, registry, mistakes)
     plain = numbers_only(content, registry)
@@ -252,12 +241,12 @@ def scene_from_dict(
         mistakes += lubricant_mistakes(parts["contact"].law, parts["lubricant"])
     if mistakes:
         raise SceneError(mistakes)
-    scene = Scene(title=title, source=plain, given=Given(content), **parts)
+    checked = SceneTables(source=plain, **parts)
     if "tolerances" in plain:
-        from raceway.scene.tolerance import check_tolerances
+        from raceway.scene.tolerance import check_tolerances  # few scenes have any
 
-        check_tolerances(scene)
-    return scene
+        check_tolerances(checked)
+    return title, content, checked
 
 
 def _of_inlet(mistake: Mistake) -> Mistake:

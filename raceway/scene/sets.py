@@ -6,8 +6,6 @@ alike are in tandem and share a load; rows that face each other's way brace each
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import attrs
 
 from raceway.framework.options import (
@@ -24,9 +22,6 @@ from raceway.framework.options import (
     positive,
     worded,
 )
-
-if TYPE_CHECKING:
-    from raceway.scene.bearing import Bearing
 
 #: Rows that face "+" and "-", and how they stand: with the "+" rows on the side of -x the pressure lines diverge towards the
 #: axis, back to back; the other way round they stand face to face.
@@ -99,7 +94,7 @@ def places_of(word: str, distance: float) -> tuple[tuple[float, float], ...]:
 
 
 @attrs.frozen
-class Row:
+class SetRow:
     """One row of a set: where it stands, which way it faces, and what of its bearing differs from the set's."""
 
     direction: str | None = option(
@@ -152,54 +147,9 @@ class Row:
 
 #: Keys of a row that describe its bearing.
 GEOMETRY = tuple(
-    field.name for field in attrs.fields(Row) if field.name not in ("direction", "position", "preload", "preset")
+    field.name for field in attrs.fields(SetRow) if field.name not in ("direction", "position", "preload", "preset")
 )
 
 
 #: Keys of printed load ratings.
 RATINGS = "dynamic_rating", "static_rating"
-
-
-def check_set(bearing: Bearing) -> None:
-    """Raise ``ValueError`` where rows, arrangement and preload of a bearing contradict each other."""
-    signs = signs_of(bearing.arrangement)
-    if bearing.row and bearing.arrangement != "single" and len(bearing.row) != len(signs):
-        raise ValueError(
-            f"`row` has {len(bearing.row)} tables, but arrangement = '{bearing.arrangement}' is {len(signs)} rows"
-        )
-    without = [k for k, row in enumerate(bearing.row) if bearing.arrangement == "single" and row.direction is None]
-    if without:
-        raise ValueError(f"`row[{without[0]}]` has no `direction`: give each row '+' or '-', or the set an `arrangement`")
-    with_positions = bool(bearing.row) and all(row.position is not None for row in bearing.row)
-    if len(bearing.signs) > 1 and not with_positions and bearing.row_distance is None and bearing.width is None:
-        raise ValueError(
-            f"`arrangement` = '{bearing.arrangement}' needs `row_distance`, or the bearing's `width`, or a `position` in each row"
-        )
-    places = [position for _, position in bearing.rows]
-    if len(set(places)) < len(places):
-        raise ValueError(f"`row` puts two rows at the same place: {', '.join(f'{position:g}' for position in places)} m")
-    for k, row in enumerate(bearing.row):
-        try:
-            bearing.of_row(row)
-        except ValueError as why:
-            raise ValueError(f"`row[{k}]`: {why}") from None
-    ground = next((k for k, row in enumerate(bearing.row) if row.preload is not None), None)
-    if ground is not None and bearing.preload_of != "row":
-        raise ValueError(f"`row[{ground}].preload` says what that row was ground for: set preload_of = 'row'")
-    if bearing.second_preload is not None and bearing.preload_of == "row":
-        raise ValueError("`second_preload` is a force between rows: set preload_of = 'set', or give each row its `preload`")
-    if not bearing.preloaded:
-        if bearing.second_preload is not None:
-            raise ValueError(
-                f"`second_preload` = {bearing.second_preload:g} N needs a `preload`, that of the first row's direction"
-            )
-        return
-    if len(set(bearing.signs)) < 2:
-        word = bearing.signs if bearing.row else bearing.arrangement
-        rows = f"the {len(bearing.signs)} rows of '{word}' face" if len(bearing.signs) > 1 else "a single row faces"
-        raise ValueError(
-            f"`preload` = {bearing.preload:g} N needs rows that brace each other, such as arrangement = 'DB', 'DF' or 'TBT': "
-            f"{rows} one way only. Give the force of a spring on such a bearing as load.axial"
-        )
-    if bearing.preload_of == "row" and bearing.preload_kind == "spring":
-        raise ValueError("`preload_of` = 'row' is an offset that was ground: with preload_kind = 'spring' use 'set'")

@@ -14,6 +14,7 @@ from raceway.framework.registry import Registry
 from raceway.scene.bearing import Bearing, Material
 from raceway.scene.heat import Heat
 from raceway.scene.lubricant import Lubricant
+from raceway.storage.tables import Tables
 
 _AROUND = (
     "must be one number: a seat that differs around the ring is not axisymmetric. Mesh what it sits in, with "
@@ -271,3 +272,59 @@ def told(value: object) -> str:
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
         value = int(value)
     return json.dumps(value, default=str)
+
+
+@attrs.frozen(repr=False)
+class SceneTables:
+    """Tables of a scene file, and plug-ins with their options; excitation, mesh, lubricant and heat may be None.
+
+    Attributes
+    ----------
+    source : the tree of plain tables they were made from, presets resolved
+    """
+
+    bearing: Bearing
+    supports: Supports
+    rotor: Rotor
+    load: Load
+    excitation: Any
+    bodies: Any
+    mesh: Any
+    contact: Contact
+    lubricant: Lubricant | None
+    heat: Heat | None
+    kinematics: Kinematics
+    mounting: Mounting
+    integrator: Integration
+    identifier: Identifying
+    quantities: Any
+    source: Tables = attrs.field(repr=False, eq=False)
+
+
+def plain_table(part: attrs.AttrsInstance) -> Tables:
+    """Keys and values of a table of a scene, those of its plug-in among them."""
+    out: Tables = {}
+    cls: type = type(part)
+    for name, plugin in _keys(cls):
+        value = getattr(part, name)
+        if plugin:
+            out.update(plain_table(value))
+        elif isinstance(value, float | str):
+            out[name] = value
+        elif attrs.has(type(value)):
+            out[name] = plain_table(value)
+        elif value is not None and value != ():
+            out[name] = _lists(value)
+    return out
+
+
+@cache
+def _keys(cls: type) -> tuple[tuple[str, bool], ...]:
+    """Names of a table's keys, and whether it is the slot of a plug-in."""
+    return tuple((field.name, "plugin" in field.metadata) for field in attrs.fields(cls))
+
+
+def _lists(value: Any) -> object:
+    if isinstance(value, tuple):
+        return [_lists(part) for part in value]
+    return plain_table(value) if attrs.has(type(value)) else value

@@ -13,9 +13,8 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
-from raceway.scene.changes import Key, key_of, with_number
-from raceway.scene.inputs import leaves
-from raceway.scene.scene import Scene
+from raceway.scene.changes import Key, key_of, leaves, with_number
+from raceway.scene.tables import SceneTables
 from raceway.scene.units import number_in
 
 #: Keys of the table [tolerances] that are names, no paths.
@@ -45,7 +44,7 @@ _BALLS = {
 }  # fmt: skip
 
 
-def _ranges_of(scene: Scene, key: str, name: str) -> dict[str, tuple[float, float]]:
+def _ranges_of(scene: SceneTables, key: str, name: str) -> dict[str, tuple[float, float]]:
     """Path -> how far the number at it may lie below and above the scene's [m].
 
     Parameters
@@ -115,7 +114,7 @@ class Tolerance:
     high: float
 
 
-def tolerances_of(scene: Scene, texts: Iterable[str] | Mapping[str, str]) -> tuple[Tolerance, ...]:
+def tolerances_of(scene: SceneTables, texts: Iterable[str] | Mapping[str, str]) -> tuple[Tolerance, ...]:
     """Tolerances from texts ``KEY=TEXT`` or a mapping.
 
     Raises
@@ -148,12 +147,12 @@ def tolerances_of(scene: Scene, texts: Iterable[str] | Mapping[str, str]) -> tup
     return tuple(tolerances.values())
 
 
-def stated_tolerances(scene: Scene) -> dict[str, str]:
+def stated_tolerances(scene: SceneTables) -> dict[str, str]:
     """The scene's own table: key -> text; empty without one."""
     return dict(leaves(scene.source.get("tolerances", {})))
 
 
-def check_tolerances(scene: Scene) -> None:
+def check_tolerances(scene: SceneTables) -> None:
     """Refuse mistakes of the scene's own table by ``SceneError``."""
     try:
         tolerances_of(scene, stated_tolerances(scene))
@@ -169,7 +168,7 @@ def _split(text: str) -> tuple[str, str]:
     return path.strip(), width
 
 
-def _within_rule(scene: Scene, key: Key, text: str, below: float, above: float) -> Tolerance:
+def _within_rule(scene: SceneTables, key: Key, text: str, below: float, above: float) -> Tolerance:
     """From ``below`` to ``above`` the number at a key."""
     low, high = key.value - below, key.value + above
     if not low < high:

@@ -12,12 +12,12 @@ from raceway.framework.duties import speed_rpm, unused_with_bodies
 from raceway.framework.options import unused_options
 from raceway.framework.registry import Registry
 from raceway.framework.rules import Rule, speaking
-from raceway.scene.reading import scene_from_dict
-from raceway.scene.scene import Scene
+from raceway.scene.reading import read_tables
+from raceway.scene.tables import SceneTables
 from raceway.storage.tables import ReadTables, Tables
 
 
-def unused(scene: Scene) -> tuple[str, ...]:
+def unused(scene: SceneTables) -> tuple[str, ...]:
     """A sentence for each key that is given and has no effect."""
     return tuple(f"`{path}` has no effect: {why}" for path, why in _idle(scene))
 
@@ -36,13 +36,13 @@ def without_inherited(base: ReadTables, tables: ReadTables, changed_keys: Collec
     """
     result = dict(tables)
     try:
-        idle = {path for path, _ in _idle(scene_from_dict(tables, registry))} - set(changed_keys)
+        idle = {path for path, _ in _idle(read_tables(tables, registry)[2])} - set(changed_keys)
     except RacewayError:
         return result
     idle = {path for path in idle if not any(path.startswith(f"{key}.") for key in changed_keys)}
     if idle:
         with suppress(RacewayError):  # a base that is complete with the changes only has no mistakes of its own to tell of
-            idle -= {path for path, _ in _idle(scene_from_dict(base, registry))}
+            idle -= {path for path, _ in _idle(read_tables(base, registry)[2])}
     for path in idle:
         name, _, key = path.partition(".")
         if isinstance(result.get(name), dict):
@@ -50,7 +50,7 @@ def without_inherited(base: ReadTables, tables: ReadTables, changed_keys: Collec
     return result
 
 
-def _idle(scene: Scene) -> list[tuple[str, str]]:
+def _idle(scene: SceneTables) -> list[tuple[str, str]]:
     """Path and reason: of the plug-ins by their own word, of the core by ``_RULES``."""
     plugins = {
         "bodies": scene.bodies,
@@ -73,20 +73,20 @@ def _idle(scene: Scene) -> list[tuple[str, str]]:
     return [*by_plugins, *((key, why) for key, why in core if key in given_keys), *foreign]
 
 
-def _has_record(s: Scene) -> bool:
+def _has_record(s: SceneTables) -> bool:
     return s.excitation is not None and "record" in s.identifier.method.needs
 
 
-def _steady(s: Scene) -> bool:
+def _solves_steady(s: SceneTables) -> bool:
     return _has_record(s) and s.integrator.method.steady
 
 
-def _slow(s: Scene) -> bool:
+def _slow(s: SceneTables) -> bool:
     """Whether the motion is a series of equilibria."""
     return _has_record(s) and not s.integrator.method.inertial
 
 
-def _turns(s: Scene) -> bool:
+def _turns(s: SceneTables) -> bool:
     """Whether the inner ring has a speed."""
     rpm = s.kinematics.spin_speed_rpm
     return bool(speed_rpm(s.excitation) if rpm is None else rpm)
@@ -97,19 +97,19 @@ _DASHPOTS = ("contact.damping", "contact.time_constant", "contact.loss_factor")
 _ROTOR = ("rotor.mass", "rotor.transverse_inertia", "rotor.polar_inertia", "rotor.damping")
 
 #: Keys of the core, when they change nothing, and why.
-_RULES: tuple[Rule[Scene], ...] = (
+_RULES: tuple[Rule[SceneTables], ...] = (
     Rule(_INTEGRATION, lambda s: s.excitation is None, "the scene has no [excitation]"),
     Rule(
         _INTEGRATION, lambda s: s.excitation is not None and not _has_record(s),
         lambda s: f"identifier '{s.identifier.kind}' needs no recorded motion",
     ),
     Rule(
-        ("integrator.start", "excitation.ramp_turns"), _steady,
+        ("integrator.start", "excitation.ramp_turns"), _solves_steady,
         lambda s: f"integrator '{s.integrator.kind}' solves for the steady motion",
     ),
     Rule(
         "integrator.turns",
-        lambda s: _steady(s) and "phase" not in s.identifier.method.needs and not s.kinematics.orbiting,
+        lambda s: _solves_steady(s) and "phase" not in s.identifier.method.needs and not s.kinematics.orbiting,
         lambda s: f"integrator '{s.integrator.kind}' needs one turn",
     ),
     Rule((*_ROTOR, *_DASHPOTS), _slow, lambda s: f"integrator '{s.integrator.kind}' knows neither inertia nor rates"),

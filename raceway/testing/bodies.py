@@ -16,7 +16,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import K
-from raceway.bodies.columns import build_columns, column_problem, why_not
+from raceway.bodies.columns import build_columns
 from raceway.bodies.model import BuiltBearing, Equilibrium, Model
 from raceway.core.record import Schedule
 from raceway.core.time.schemes import integrate
@@ -27,12 +27,12 @@ from raceway.framework.hookspecs import hookimpl
 from raceway.framework.registry import Registry
 from raceway.integrators.methods import CentralDifference, Newmark, QuasiStatic
 from raceway.pipeline.run import run
+from raceway.planning.columns import column_problem, why_not
 from raceway.planning.parts import Decisions, decide_balls, decide_motion, decide_tilts
 from raceway.planning.plan import make_plan
 from raceway.planning.resolve import resolve
 from raceway.scene.changes import with_number
-from raceway.scene.reading import scene_from_dict
-from raceway.scene.scene import Scene
+from raceway.scene.scene import Scene, scene_from_dict
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables

@@ -15,17 +15,18 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import plugin_quantities
-from raceway.bodies.columns import build_columns, column_problem
+from raceway.bodies.columns import build_columns
 from raceway.errors import RacewayError
 from raceway.framework.contracts import Batch, Refused, SolvedPoints
 from raceway.framework.duties import of_results, quantities_at, quantity_report, why_no_quantities
 from raceway.framework.registry import default_registry
 from raceway.pipeline.quantities import solved_point
 from raceway.pipeline.run import run
+from raceway.planning.columns import column_problem
 from raceway.planning.plan import make_plan
 from raceway.planning.resolve import resolve
 from raceway.points.column_quantities import Computed
-from raceway.scene.reading import scene_from_dict
+from raceway.scene.scene import scene_from_dict
 from raceway.storage.tables import Tables
 from raceway.testing.scenes import b7206c
 from raceway.testing.suite import Suite, check_class, duty, require

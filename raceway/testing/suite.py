@@ -68,7 +68,7 @@ def require(condition: object, message: str) -> None:
 
 
 @attrs.frozen
-class Row:
+class DutyResult:
     """The outcome of one check; ``status`` is passed, failed, expected failure or unexpectedly passed."""
 
     name: str
@@ -87,7 +87,7 @@ class Conformity:
 
     kind: str
     name: str
-    rows: tuple[Row, ...]
+    rows: tuple[DutyResult, ...]
 
     @property
     def conforms(self) -> bool:
@@ -165,9 +165,11 @@ class Suite:
         text = "listed expected failures exist and have reasons"
         try:
             unknown = sorted(set(suite.expected()) - set(cls.checks()))
-            rows += [Row(u, text, FAILED, f"no check has that name; take it out of {EXPECTED_FAILURES}") for u in unknown]
+            rows += [
+                DutyResult(u, text, FAILED, f"no check has that name; take it out of {EXPECTED_FAILURES}") for u in unknown
+            ]
         except ConformityError as why:
-            rows.append(Row("expected_failures", text, FAILED, str(why)))
+            rows.append(DutyResult("expected_failures", text, FAILED, str(why)))
         return Conformity(kind or cls.kind, name or suite.class_of_plugin.name, tuple(rows))
 
     @property
@@ -207,7 +209,7 @@ class Suite:
         require(not bad, f"{EXPECTED_FAILURES}: {', '.join(bad)} need a reason in words")
         return dict(entries)
 
-    def row(self, name: str) -> Row:
+    def row(self, name: str) -> DutyResult:
         """Run one check on every example."""
         method = self.checks()[name]
         status, message = PASSED, ""
@@ -218,12 +220,12 @@ class Suite:
         try:
             reason = self.expected().get(name)
         except ConformityError as why:
-            return Row(name, method.duty, FAILED, str(why))
+            return DutyResult(name, method.duty, FAILED, str(why))
         if reason is not None and status == FAILED:
             status, message = EXPECTED, f"{reason} ({message})"
         elif reason is not None:
             status, message = UNEXPECTED, f"it passes: remove it from {EXPECTED_FAILURES}"
-        return Row(name, method.duty, status, message)
+        return DutyResult(name, method.duty, status, message)
 
     def _notes(self, check: Check) -> str:
         """Notes of a check on all examples."""

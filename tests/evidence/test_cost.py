@@ -21,7 +21,7 @@ from checks.validation import fused_loop, plan_time
 from checks.validation.command_line import ARTICLE, MINIMAL, python, raceway
 from raceway import build_model, load_scene, precision
 from raceway.extend import Schedule, from_orbit, integrate, read_toml, solve_equilibrium, steady_orbit
-from raceway.planning.cost import column_time
+from raceway.planning.plan import column_time
 from raceway.points.precision import EXACT
 from tests.checks.test_leave_out import ELASTIC
 

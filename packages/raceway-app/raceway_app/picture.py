@@ -8,7 +8,7 @@ from pathlib import Path
 import attrs
 import numpy as np
 from raceway_rotor.export import export_ross
-from raceway_view.bodies import Bearing, Snapshot
+from raceway_view.bodies import BearingSolids, Snapshot
 from raceway_view.page import BALL_COLUMNS, ball_cells, rings_data, state_data
 from raceway_view.view import at_rest as at_rest
 
@@ -114,7 +114,7 @@ def bodies_picture(result: Result, state: Snapshot, rings: bool) -> Tables:
     SceneError
         Rows of different bearings.
     """
-    bearing = Bearing.of(result)
+    bearing = BearingSolids.of(result)
     return {**(rings_data(bearing, _FACETS) if rings else {}), **state_data(bearing, state)}
 
 

@@ -185,7 +185,7 @@ class Solid:
 
 
 @attrs.frozen(eq=False)
-class Bearing:
+class BearingSolids:
     """The bodies of a result.
 
     Attributes
@@ -199,7 +199,7 @@ class Bearing:
     assumed: tuple[str, ...]
 
     @classmethod
-    def of(cls, result: Result) -> Bearing:
+    def of(cls, result: Result) -> BearingSolids:
         """From a result; rings without dimensions get usual ones, which are named.
 
         Raises

@@ -17,7 +17,7 @@ from string import Template
 import numpy as np
 
 from raceway.extend import Page, Tables, data_uri
-from raceway_view.bodies import Bearing, Solid, Snapshot, Surface, ball, joined
+from raceway_view.bodies import BearingSolids, Solid, Snapshot, Surface, ball, joined
 from raceway_view.pictures import LOADS, PRESSURES
 
 #: Points of a shape: WebGL 1 counts them in 16 bits.  Contact ellipses that go into one.
@@ -32,7 +32,7 @@ BALL_COLUMNS = [
 ]  # fmt: skip
 
 
-def view_page(bearing: Bearing, state: Snapshot, words: Tables, pictures: Sequence[tuple[bytes, str, str]]) -> Page:
+def view_page(bearing: BearingSolids, state: Snapshot, words: Tables, pictures: Sequence[tuple[bytes, str, str]]) -> Page:
     """The page.
 
     Parameters
@@ -83,7 +83,7 @@ def _picture(content: bytes, alternative: str, caption: str) -> str:
     )
 
 
-def rings_data(bearing: Bearing, facets: int = 120) -> Tables:
+def rings_data(bearing: BearingSolids, facets: int = 120) -> Tables:
     """Shapes that loads do not change, and the parts that they draw, for ``view.js``; ``facets`` round a ring, a quarter round a ball."""
     from matplotlib.colors import to_rgb
 
@@ -96,7 +96,7 @@ def rings_data(bearing: Bearing, facets: int = 120) -> Tables:
     }
 
 
-def state_data(bearing: Bearing, state: Snapshot) -> Tables:
+def state_data(bearing: BearingSolids, state: Snapshot) -> Tables:
     """Balls by their loads, forces, contact ellipses by their pressures and labels, for ``view.js``."""
     # Largest load on an inner race [N], and largest pressure [MPa].
     top, peak = max(float(state.load[: len(state.azimuth)].max()), 1e-12), max(1e-6 * float(state.peak.max()), 1e-12)

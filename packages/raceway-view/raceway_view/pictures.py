@@ -10,7 +10,7 @@ import numpy as np
 
 from raceway import RacewayError
 from raceway.extend import Tables, new_figure, refuse_pictures
-from raceway_view.bodies import INNER, OUTER, Bearing, Snapshot
+from raceway_view.bodies import INNER, OUTER, BearingSolids, Snapshot
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -32,7 +32,7 @@ _GAP = 9.0
 
 
 def ball_labels(
-    bearing: Bearing, state: Snapshot, top: float, project: Callable[[np.ndarray], np.ndarray]
+    bearing: BearingSolids, state: Snapshot, top: float, project: Callable[[np.ndarray], np.ndarray]
 ) -> list[tuple[str, tuple[float, float]]]:
     """Texts and their lower left corners [pixels].
 
@@ -158,7 +158,7 @@ def _colour_bar(
     plotter.add_scalar_bar(title=title, mapper=actor.mapper, **bar)
 
 
-def overview(bearing: Bearing, state: Snapshot, heading: str, size: tuple[int, int] = (1600, 1200)) -> bytes:
+def overview(bearing: BearingSolids, state: Snapshot, heading: str, size: tuple[int, int] = (1600, 1200)) -> bytes:
     """The bearing cut open, seen from the gap, as PNG."""
     top = max(float(state.load[: len(state.azimuth)].max()), 1e-12)
 
@@ -213,7 +213,7 @@ _MM = 1e3
 _RACES = ("inner", "outer")
 
 
-def contacts(bearing: Bearing, state: Snapshot, heading: str) -> Figure:
+def contacts(bearing: BearingSolids, state: Snapshot, heading: str) -> Figure:
     """Section and ellipses of the ball with the largest load of both races."""
     z = len(state.azimuth)
     ball = int(np.argmax(state.load)) % z
@@ -229,7 +229,7 @@ def contacts(bearing: Bearing, state: Snapshot, heading: str) -> Figure:
     return figure
 
 
-def _groove_section(axes: Axes, bearing: Bearing, state: Snapshot, ball: int) -> None:
+def _groove_section(axes: Axes, bearing: BearingSolids, state: Snapshot, ball: int) -> None:
     z = len(state.azimuth)
     side, axial = bearing.shape.rows[ball // bearing.shape.ball_count]
     for inner, colour in ((True, INNER), (False, OUTER)):
@@ -261,7 +261,7 @@ def _groove_section(axes: Axes, bearing: Bearing, state: Snapshot, ball: int) ->
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def _mesh(axes: Axes, bearing: Bearing, inner: bool, side: float, axial: float) -> None:
+def _mesh(axes: Axes, bearing: BearingSolids, inner: bool, side: float, axial: float) -> None:
     """The mesh that a condensed ring was computed on."""
     compute = getattr(bearing.result.model.bearing, "ring_section", None)
     if compute is None:

@@ -17,7 +17,7 @@ from raceway.extend import (
     given_axes, largest_contacts, largest_facts, mesh_bodies, picture, quantity_rows, race_words, refuse_pictures,
     registry_with, run, sections, stated, telling, wrapped, writable, write_whole,
 )  # fmt: skip
-from raceway_view.bodies import Bearing, Snapshot
+from raceway_view.bodies import BearingSolids, Snapshot
 from raceway_view.mesh import mesh_picture
 from raceway_view.page import view_page
 from raceway_view.pictures import contacts, overview
@@ -180,7 +180,7 @@ def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, 
 
     RacewayError: a package that is missing.
     """
-    bearing = Bearing.of(result)
+    bearing = BearingSolids.of(result)
     moments = {"bearing.png": (at_rest(result), "at rest")}
     if result.simulation is not None:
         state, angle = at_peak(result)
@@ -229,7 +229,7 @@ def _draw(result: Result, page: bool, on_progress: OnProgress) -> tuple[Tables, 
 
 
 def _images(
-    result: Result, bearing: Bearing, moments: dict[str, tuple[Snapshot, str]], on_progress: OnProgress
+    result: Result, bearing: BearingSolids, moments: dict[str, tuple[Snapshot, str]], on_progress: OnProgress
 ) -> Iterator[tuple[str, _Image]]:
     """The bearing at rest and when a ball carries most, the contacts then, and what the whole record draws."""
     title = wrapped(result.title, 70)
@@ -278,12 +278,12 @@ def _loads(state: Snapshot) -> str:
     return f"inner race {loads[0]}, outer race {loads[1]}, pressure up to {1e-6 * most['largest_pressure_pa']:.4g} MPa ({where})"
 
 
-def _scale_words(bearing: Bearing, state: Snapshot) -> str:
+def _scale_words(bearing: BearingSolids, state: Snapshot) -> str:
     factor = bearing.widening(state)
     return "contact ellipses are to scale" if factor == 1 else f"contact ellipses are enlarged {factor} times"
 
 
-def _notes(bearing: Bearing) -> list[str]:
+def _notes(bearing: BearingSolids) -> list[str]:
     notes = [f"{text[0].upper()}{text[1:]}." for text in bearing.result.warnings]
     if bearing.assumed:
         notes.append(f"The scene does not give {', '.join(bearing.assumed)} of the rings: usual proportions are drawn.")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from raceway_view.bodies import Bearing, contact_patch
+from raceway_view.bodies import BearingSolids, contact_patch
 from raceway_view.bodies import ball as solid_ball
 from raceway_view.pictures import LETTERS, ball_labels, contacts
 from raceway_view.view import at_peak, at_rest
@@ -42,7 +42,7 @@ def moving():
 
 
 def test_rings_and_balls_have_their_volume(result):
-    bearing = Bearing.of(result)
+    bearing = BearingSolids.of(result)
     for part in bearing.rings(cut=None):
         exact = 1e9 * ring_shape(bearing.shape, part.name.startswith("inner")).volume
         # 120 chords a turn: (2 pi / 120)^2 / 6 = 0.05 % of an area; normals of chords add as much.
@@ -60,7 +60,7 @@ def test_a_contact_ellipse_has_its_axes_and_peak():
 
 
 def test_loads_decide_colours_and_arrows_and_open_contacts_have_neither(result):
-    bearing, state = Bearing.of(result), at_rest(result)
+    bearing, state = BearingSolids.of(result), at_rest(result)
     z = 12
     loads = [part.load for part in bearing.balls(state)]
     assert loads == pytest.approx(list(result.equilibrium.contact_force[:z]))
@@ -76,7 +76,7 @@ def test_loads_decide_colours_and_arrows_and_open_contacts_have_neither(result):
 
 
 def test_contacts_lie_where_ring_and_ball_meet(result):
-    bearing, state = Bearing.of(result), at_rest(result)
+    bearing, state = BearingSolids.of(result), at_rest(result)
     towards, centres = bearing.towards(state), bearing.centres(state)
     for inner, ball in ((True, 0), (False, 12)):
         shape = ring_shape(bearing.shape, inner)
@@ -102,7 +102,7 @@ def test_labels_lie_on_no_arrow_and_on_no_other_label(ball_count, every):
     """On 12 balls all; on 25 small ones every second."""
     tables = b7206c(load={"axial": 300.0, "radial": [100.0, 0.0]})
     tables["bearing"] |= {"ball_count": ball_count, "ball_diameter": 9.525e-3 if ball_count == 12 else 4.5e-3}
-    bearing = Bearing.of(found := run(scene_from_dict(tables)))
+    bearing = BearingSolids.of(found := run(scene_from_dict(tables)))
     state = at_rest(found)
     top = float(state.load.max())
     labels = ball_labels(bearing, state, top, flat)
@@ -117,7 +117,7 @@ def test_labels_lie_on_no_arrow_and_on_no_other_label(ball_count, every):
 
 
 def test_contact_ellipses_are_drawn_as_many_times_as_large_as_is_said(result):
-    bearing, state = Bearing.of(result), at_rest(result)
+    bearing, state = BearingSolids.of(result), at_rest(result)
     factor = bearing.widening(state)
     assert factor > 2, "specks in truth"
     ball = int(np.argmax(state.load[:12]))
@@ -130,7 +130,7 @@ def test_contact_ellipses_are_drawn_as_many_times_as_large_as_is_said(result):
 def test_the_edge_of_a_drawn_contact_is_its_ellipse(result):
     state = at_rest(result)
     ball = int(np.argmax(state.load[:12]))
-    panel = contacts(Bearing.of(result), state, "made up").axes[1]
+    panel = contacts(BearingSolids.of(result), state, "made up").axes[1]
     at = np.asarray(panel.collections[0].get_coordinates()) / (1e3 * state.half[ball])
     assert np.hypot(*at[:, -1].T) == pytest.approx(np.ones(at.shape[0]), rel=1e-12)
 
@@ -138,7 +138,7 @@ def test_the_edge_of_a_drawn_contact_is_its_ellipse(result):
 def test_a_pair_has_four_rings_and_loads_that_point_apart():
     bearing = {"arrangement": "DB", "preload": 300.0}
     found = run(scene_from_dict(b7206c(bearing=bearing, load={"axial": 0.0, "radial": [100.0, 0.0]})))
-    drawn = Bearing.of(found)
+    drawn = BearingSolids.of(found)
     assert len(drawn.rings(cut=None)) == 4
     towards = drawn.towards(at_rest(found))[24:]
     assert (towards[:12, 0] > 0.2).all() and (towards[12:, 0] < -0.2).all()
@@ -151,7 +151,7 @@ def test_rings_without_dimensions_are_drawn_and_told(result):
     b = result.model.scene.bearing
     names = ("ball_diameter", "pitch_diameter", "ball_count", "conformity_inner", "conformity_outer", "contact_angle_deg")
     tables["bearing"] = {name: getattr(b, name) for name in names}
-    drawn = Bearing.of(run(scene_from_dict(tables)))
+    drawn = BearingSolids.of(run(scene_from_dict(tables)))
     assert drawn.assumed == ("bore", "outer_diameter", "width")
     assert len(drawn.rings()) == 4
 

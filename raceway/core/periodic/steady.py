@@ -7,15 +7,17 @@ from collections.abc import Callable, Sequence
 import attrs
 import numpy as np
 
-from raceway.core.periodic.collocation import Solved, solve
+from raceway.core.periodic.collocation import Problem, Solved, solve
 from raceway.core.periodic.intervals import forces
 from raceway.core.periodic.refinement import displacements, record, refine, states
 from raceway.core.periodic.search import (
     HIGHEST,
     PeriodicMotion,
     Recorded,
+    _Neighbour,
     can_continue,
-    find,
+    directly,
+    full_steps,
     highest_order,
     mesh_of,
     problem_of,
@@ -276,3 +278,83 @@ def _sampled(motion: PeriodicMotion, period: float) -> Orbit:
     force = np.array([system.outer_force(t) for t in times])
     iterations = motion.refined.sweeps
     return Orbit(period, q, v, a * problem.speed**2, force, ball, now.K, now.C, motion.refined.error, iterations)
+
+
+#: Distance of a motion from its neighbour, over its size, up to which it is that one's continuation.
+_STAYS = 0.2
+
+
+def find(
+    problem: Problem,
+    q: np.ndarray,
+    tangent: np.ndarray,
+    tolerance: float,
+    near: _Neighbour | Recorded | None = None,
+    stay: bool = False,
+) -> PeriodicMotion:
+    """The periodic motion of a ring about the equilibrium q (5,), to a relative tolerance, and others beside it.
+
+    Parameters
+    ----------
+    near : a motion to start from
+    stay : on that one where several may exist, instead of searching for all; and where branches are not followed and nothing
+        is found directly, give up instead of letting the force grow on a mesh of thousands of intervals
+
+    Notes
+    -----
+    Newton's iteration from the linear response, with full steps only: one that has to be shortened may end on a resonant
+    branch far away.  Where it fails, is unstable, or ends far from the linear response, there may be several motions: the
+    branch that leads from the resting ring is followed round its folds, and every place where it meets the full force is a
+    motion.  The first one along the branch that is not unstable is taken; where all are, motions that the undamped ring's branch
+    leads to are tried, and else the one is taken that is left slowest.  Where the branch never reaches the full force and all
+    found so far are unstable, motions at other speeds and loads are followed to this one.
+
+    Raises
+    ------
+    ConvergenceError
+        No periodic motion found, with what was tried.
+    """
+    highest = highest_order(problem, tangent)
+    if near is not None and (stay or near.near_linear):
+        followed = _continued(problem, q, tangent, tolerance, highest, near)
+        # Far from the linear response there may be other motions: then the search without a neighbour decides.
+        if followed is not None and (stay or not _may_coexist(followed, q, tangent)):
+            return followed
+    direct = None
+    try:
+        direct = with_multipliers(directly(problem, q, tangent, tolerance), highest, "directly")
+    except ConvergenceError:
+        pass
+    else:
+        if not _may_coexist(direct, q, tangent):
+            return direct
+    from raceway.core.periodic.branches import chosen, grown_from_rest  # few motions need them
+
+    if not can_continue(problem, q, tangent):
+        # Each point would take seconds.
+        if direct is None and stay:
+            raise ConvergenceError("no motion with the period of the force was found directly", {"q": q.copy()})
+        return direct or with_multipliers(grown_from_rest(problem, q, tangent, tolerance, highest), highest, "from rest")
+    return chosen(problem, q, tangent, tolerance, direct)
+
+
+def _continued(
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, near: _Neighbour | Recorded
+) -> PeriodicMotion | None:
+    """The motion that continues a neighbour, if it is close to it and not unstable."""
+    first = near.first_guess(problem, q, tangent, mesh_of(problem, highest))
+    if first is None:
+        return None
+    try:
+        solved = full_steps(problem, first, 1e-2 * tolerance)
+        if np.abs((solved.path.q - first.q) / problem.weight).max() > _STAYS * solved.size:
+            return None
+        motion = with_multipliers(refine(solved, tolerance), highest, "directly")
+    except ConvergenceError:
+        return None
+    return None if motion.floquet.verdict == "unstable" else motion
+
+
+def _may_coexist(motion: PeriodicMotion, q: np.ndarray, tangent: np.ndarray) -> bool:
+    """Whether a motion is unstable or so far from its linear response about q (5,) that other ones may exist beside it."""
+    return motion.floquet.verdict == "unstable" or not motion.neighbour(q, tangent).near_linear

@@ -5,6 +5,6 @@ rollers      rigid rings on cylindrical rollers: kind and cost;  roller_bearing:
 condensed    finite elements reduced to contact compliances: kind and cost;  condensed_bearing: the ring
 patch_bearing   condensed bodies with pressures at surface points
 elastic      finite elements in full: kind and cost;  elastic_bearing: the ring
-elastic_contacts   its contacts in a result;  elastic_stress: shear below them
+elastic_contacts   its contacts in a result;  elastic_stress: those at surface points, shear below them
 mesh         meshes of a scene, their size before they are made, whether they fit the bearing
 """

@@ -12,10 +12,10 @@ from raceway.framework.contracts import Cost, Traits
 from raceway.framework.duties import is_hertzian, is_swept
 from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S, Times, compiled_motion, runs
-from raceway.planning.parts import Balls, Decisions, PlannedMotion
+from raceway.planning.parts import BETWEEN_BALLS, Balls, Decisions, PlannedMotion
 from raceway.planning.resolve import Problem
 from raceway.plugins.bodies.mesh import unrefined
-from raceway.scene.scene import SceneTables
+from raceway.scene.tables import SceneTables
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from raceway.planning.plan import ScenePlan
 
 
-#: The part by which balls feel each other.
-BETWEEN_BALLS = "interaction of balls through the rings"
 #: Bytes and seconds of processor time for both rings, by nodes of a section, measured on one core of a small server: the
 #: factor of a harmonic, and some seventy of those; balls and a coarser mesh for the error included.
 _BYTES_PER_NODE = 25_000
@@ -299,7 +297,7 @@ class Condensed:
         if _nodal(problem):
             from raceway.plugins.bodies.patch_bearing import build as nodal
 
-            return nodal(problem, plan)
+            return nodal(problem, plan, nodes_of(problem))
         from raceway.plugins.bodies.condensed_bearing import build
 
         return build(problem, plan)

@@ -11,8 +11,8 @@ import numpy as np
 
 from raceway.bodies import rigid_bearing as rigid
 from raceway.bodies.basis import Basis, seat_of
-from raceway.bodies.contacts import calibration_error, elasticity, rigid_rings, untold
-from raceway.bodies.model import BuiltBearing, Told
+from raceway.bodies.contacts import elasticity, rigid_rings
+from raceway.bodies.model import BuiltBearing, Told, calibration_error, untold
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.core.contact.hertz import ball_compliance
@@ -35,9 +35,9 @@ from raceway.core.ring.system import System, surrogate
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.duties import is_hertzian
 from raceway.framework.estimate import Estimate
+from raceway.planning.parts import BETWEEN_BALLS
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
-from raceway.plugins.bodies.condensed import BETWEEN_BALLS
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -198,7 +198,7 @@ def build(problem: Problem, plan: ScenePlan) -> _CondensedBearing:
     bodies = elastic_bodies(problem, stiff.basis)
     _refuse_stiff_law(problem, stiff, bodies)
     _refuse_dashpots(problem, plan, stiff, bodies)
-    angles = _angles(problem, stiff) if plan.keeps(BETWEEN_BALLS) else None
+    angles = _contact_angles(problem, stiff) if plan.keeps(BETWEEN_BALLS) else None
     system = elastic_system(surrogate(stiff.system), bodies, angles)
     guess = place_ring(problem, stiff.basis, system)
     return _CondensedBearing(stiff.basis, system, guess, stiff, bodies, angles)
@@ -278,7 +278,7 @@ class _CondensedBearing(BuiltBearing):
         return ring_section(shape, model.problem.bearing.ball_diameter, bulk, min(fine, bulk))
 
 
-def _angles(problem: Problem, stiff: RigidBearing) -> np.ndarray:
+def _contact_angles(problem: Problem, stiff: RigidBearing) -> np.ndarray:
     """(Z,) contact angles with rigid rings: the free one where a ball carries nothing; their mean for balls that orbit."""
     system: System = surrogate(stiff.system)
     angles = np.full(system.ball_count, problem.bearing.contact_angle)

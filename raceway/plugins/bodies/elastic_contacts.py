@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.bodies.contacts import calibration_error, overlap, rigid_rings, untold
-from raceway.bodies.model import BuiltBearing, Told
+from raceway.bodies.contacts import rigid_rings
+from raceway.bodies.model import BuiltBearing, Told, calibration_error, untold
 from raceway.core.fem.elastic import ring as start
 from raceway.core.fem.elastic.bearing import ElasticBearing
-from raceway.core.fem.elastic.contact import NodalContact, peak_at_nodes, peak_at_points
 from raceway.core.fem.elastic.resultant import ResultantContact
 from raceway.core.fem.elastic.ring import ElasticRing
 from raceway.core.record import Motion
@@ -22,7 +21,6 @@ from raceway.core.ring.orbit import Orbit
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import System, surrogate
 from raceway.framework.estimate import Estimate
-from raceway.plugins.bodies.elastic_stress import below_contacts
 from raceway.plugins.bodies.mesh import locking
 from raceway.storage.tables import Tables
 
@@ -151,7 +149,7 @@ def _elastic(system: Ring) -> ElasticRing:
     return system
 
 
-def _at_equilibrium(system: Ring) -> None:
+def at_equilibrium(system: Ring) -> None:
     """The bodies keep the contacts of the equilibrium."""
     ring = _elastic(system)
     ring.in_place(ring.equilibrium)
@@ -237,7 +235,7 @@ class ElasticResultants(ElasticBodies):
         worst = int(np.argmax(equilibrium.contact_force))
         if equilibrium.contact_force[worst] <= 0.0:
             return 0.0
-        _at_equilibrium(model.system)
+        at_equilibrium(model.system)
         compliance = contact.local[worst] - 1.0 / contact.d_gap[worst]  # the law's own
         return float(0.5 * contact.touches[worst].spread / compliance)
 
@@ -248,78 +246,3 @@ class ElasticResultants(ElasticBodies):
         present = np.concatenate([equilibrium.angle_inner, equilibrium.angle_outer])
         loaded = equilibrium.contact_force > 0.0
         return float(np.abs(present - angles)[loaded].max(initial=0.0))
-
-
-#: Points in a loaded contact below which its pressure is off by tens of percent.
-_FEW_POINTS = 60
-
-
-@attrs.frozen(eq=False)
-class ElasticPoints(ElasticBodies):
-    """Pressures at points."""
-
-    #: By displacement: asked for five times a result, each an evaluation of all bodies.
-    _columns: dict[bytes, dict[str, np.ndarray]] = attrs.field(init=False, factory=dict)
-
-    @property
-    def contact(self) -> NodalContact:
-        contact = self.bearing.system.contact
-        assert isinstance(contact, NodalContact)
-        return contact
-
-    def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
-        key = equilibrium.displacement.tobytes()
-        if key not in self._columns:
-            self._columns[key] = self._told(model, equilibrium)
-        return dict(self._columns[key])
-
-    def _told(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
-        _at_equilibrium(model.system)
-        contact = self.contact
-        out, z = super().ball_columns(model, equilibrium), model.system.ball_count
-        table = {
-            "peak_pressure_points_{}_pa": peak_at_points(contact),
-            "peak_pressure_nodal_{}_pa": peak_at_nodes(contact),
-            "points_{}": np.add.reduceat((contact.pressure > 0.0).astype(float), contact.starts),
-            "approach_penetration_{}_m": np.maximum(-contact.deepest(), 0.0),
-        }
-        for race, word in enumerate(("inner", "outer")):
-            out |= {name.format(word): values[race * z : (race + 1) * z] for name, values in table.items()}
-        return out
-
-    def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
-        """The overlap that a law leaves."""
-        return overlap(self.ball_columns(model, equilibrium), equilibrium)
-
-    def contact_table(self, model: Model, equilibrium: Equilibrium) -> Tables:
-        columns = self.ball_columns(model, equilibrium)
-        loaded = equilibrium.contact_force > 0.0
-        approach, penetration = (
-            np.concatenate([columns[f"{name}_{word}_m"] for word in ("inner", "outer")])[loaded]
-            for name in ("approach", "approach_penetration")
-        )
-        share = penetration / np.maximum(approach, 1e-300) if loaded.any() else np.zeros(1)
-        return {
-            "bodies": "elastic: every node of rings and balls, pressures at surface points",
-            "max_penetration_m": float(penetration.max(initial=0.0)),
-            "penetration_share": float(share.max()),
-            "subsurface": [profile.table() for profile in below_contacts(self, model, equilibrium)],
-        }
-
-    def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
-        """Contacts with too few points for their pressure; elements that lock."""
-        sentences: list[str] = []
-        columns = self.ball_columns(model, equilibrium)
-        z = model.system.ball_count
-        force = equilibrium.contact_force
-        carries = force > 0.05 * force.max(initial=1e-300)
-        least = min(
-            columns[f"points_{word}"][carries[part]].min(initial=np.inf)
-            for word, part in (("inner", slice(0, z)), ("outer", slice(z, 2 * z)))
-        )
-        if least < _FEW_POINTS:
-            sentences.append(
-                f"only {least:.0f} surface points carry a loaded contact: its pressure and the displacement depend on the mesh; "
-                "take more mesh.nodes_per_semi_axis, with azimuth_cells = 'graded', or bodies.kind = 'condensed'"
-            )
-        return sentences + super().warnings(model, equilibrium)

@@ -1,4 +1,4 @@
-"""Stresses below the most loaded contact of each race, in ball and ring, beside Hertz's."""
+"""Elastic bodies with pressures at surface points, and stresses below the most loaded contact of each race, beside Hertz's."""
 
 from __future__ import annotations
 
@@ -7,19 +7,23 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
+from raceway.bodies.model import Told, overlap
 from raceway.core.contact.hertz import largest_shear
+from raceway.core.fem.elastic.contact import NodalContact, peak_at_nodes, peak_at_points
 from raceway.core.fem.elastic.ring import ElasticRing
 from raceway.core.fem.elastic.stress import ContactAxis, StressProfile, contact_axes, stress_profile
+from raceway.plugins.bodies.elastic_contacts import ElasticBodies, at_equilibrium
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
-    from raceway.plugins.bodies.elastic_contacts import ElasticPoints
 
 #: Elements down to Hertz's depth, and along each semi-axis of the ellipse, from which a mesh counts as resolving the stresses.
 _RESOLVED = 4.0
 #: Elements within so many major semi-axes of a contact are looked at; the line ends at so many of Hertz's depths.
 _NEAR, _DEEP = 1.5, 3.0
+#: Points in a loaded contact below which its pressure is off by tens of percent.
+_FEW_POINTS = 60
 
 
 @attrs.frozen(eq=False)
@@ -108,3 +112,74 @@ def below_contacts(bodies: ElasticPoints, model: Model, equilibrium: Equilibrium
             profile = stress_profile(axis, assembly.bodies[index].operator, u, _NEAR * major, deep)
             profiles.append(BelowContact(word, body, ball, index, load, peak, (major, minor), material[1], axis, profile))
     return profiles
+
+
+@attrs.frozen(eq=False)
+class ElasticPoints(ElasticBodies):
+    """Pressures at points."""
+
+    #: By displacement: asked for five times a result, each an evaluation of all bodies.
+    _columns: dict[bytes, dict[str, np.ndarray]] = attrs.field(init=False, factory=dict)
+
+    @property
+    def contact(self) -> NodalContact:
+        contact = self.bearing.system.contact
+        assert isinstance(contact, NodalContact)
+        return contact
+
+    def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
+        key = equilibrium.displacement.tobytes()
+        if key not in self._columns:
+            self._columns[key] = self._told(model, equilibrium)
+        return dict(self._columns[key])
+
+    def _told(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
+        at_equilibrium(model.system)
+        contact = self.contact
+        out, z = super().ball_columns(model, equilibrium), model.system.ball_count
+        table = {
+            "peak_pressure_points_{}_pa": peak_at_points(contact),
+            "peak_pressure_nodal_{}_pa": peak_at_nodes(contact),
+            "points_{}": np.add.reduceat((contact.pressure > 0.0).astype(float), contact.starts),
+            "approach_penetration_{}_m": np.maximum(-contact.deepest(), 0.0),
+        }
+        for race, word in enumerate(("inner", "outer")):
+            out |= {name.format(word): values[race * z : (race + 1) * z] for name, values in table.items()}
+        return out
+
+    def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
+        """The overlap that a law leaves."""
+        return overlap(self.ball_columns(model, equilibrium), equilibrium)
+
+    def contact_table(self, model: Model, equilibrium: Equilibrium) -> Tables:
+        columns = self.ball_columns(model, equilibrium)
+        loaded = equilibrium.contact_force > 0.0
+        approach, penetration = (
+            np.concatenate([columns[f"{name}_{word}_m"] for word in ("inner", "outer")])[loaded]
+            for name in ("approach", "approach_penetration")
+        )
+        share = penetration / np.maximum(approach, 1e-300) if loaded.any() else np.zeros(1)
+        return {
+            "bodies": "elastic: every node of rings and balls, pressures at surface points",
+            "max_penetration_m": float(penetration.max(initial=0.0)),
+            "penetration_share": float(share.max()),
+            "subsurface": [profile.table() for profile in below_contacts(self, model, equilibrium)],
+        }
+
+    def warnings(self, model: Model, equilibrium: Equilibrium) -> list[str]:
+        """Contacts with too few points for their pressure; elements that lock."""
+        sentences: list[str] = []
+        columns = self.ball_columns(model, equilibrium)
+        z = model.system.ball_count
+        force = equilibrium.contact_force
+        carries = force > 0.05 * force.max(initial=1e-300)
+        least = min(
+            columns[f"points_{word}"][carries[part]].min(initial=np.inf)
+            for word, part in (("inner", slice(0, z)), ("outer", slice(z, 2 * z)))
+        )
+        if least < _FEW_POINTS:
+            sentences.append(
+                f"only {least:.0f} surface points carry a loaded contact: its pressure and the displacement depend on the mesh; "
+                "take more mesh.nodes_per_semi_axis, with azimuth_cells = 'graded', or bodies.kind = 'condensed'"
+            )
+        return sentences + super().warnings(model, equilibrium)

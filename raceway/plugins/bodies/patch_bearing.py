@@ -13,8 +13,8 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, at_points, contact_pairs, make_basis
-from raceway.bodies.contacts import elasticity, overlap, rigid_rings
-from raceway.bodies.model import BuiltBearing, Told
+from raceway.bodies.contacts import elasticity, rigid_rings
+from raceway.bodies.model import BuiltBearing, Told, overlap
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import probe, rigid_system, with_hertz
 from raceway.core.fem.mesh.ring_mesh import ring_shape
@@ -41,7 +41,6 @@ from raceway.framework.estimate import Estimate
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
-from raceway.plugins.bodies.condensed import nodes_of
 from raceway.plugins.bodies.condensed_bearing import inertia_table
 from raceway.plugins.bodies.mesh import locking
 from raceway.scene.growth import load_at_edge
@@ -238,8 +237,8 @@ BULK = 0.8e-3
 _ROOM = 1.2
 
 
-def build(problem: Problem, plan: ScenePlan) -> _NodalBearing:
-    """The bearing of a scene with condensed bodies and pressures at surface points.
+def build(problem: Problem, plan: ScenePlan, per_semi_axis: int) -> _NodalBearing:
+    """The bearing of a scene with condensed bodies and pressures at so many surface points along each semi-axis.
 
     Raises
     ------
@@ -252,7 +251,7 @@ def build(problem: Problem, plan: ScenePlan) -> _NodalBearing:
     probe(as_rigid, basis, rigid)
     guess = place_ring(as_rigid, basis, rigid)
     reach = _first_reach(problem, basis, rigid, guess)
-    nodes, load = float(nodes_of(problem)), getattr(problem.mesh, "ball_load", None)
+    nodes, load = float(per_semi_axis), getattr(problem.mesh, "ball_load", None)
     # Of two digits: states near each other then share their compliances.
     load = float(f"{reach.mean_load:.1e}" if load is None else load)
     system, spacing = _system(problem, basis, rigid, reach, nodes, load)

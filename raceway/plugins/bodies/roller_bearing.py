@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import attrs
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from raceway.bodies.basis import Basis, changing_speed, excitation, linear_parts, make_basis
 from raceway.bodies.model import BuiltBearing, Told
 from raceway.core.columns import Number, per_ball
+from raceway.core.ratings import STRIBECK
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels import rollers as lines
 from raceway.core.ring.system import System
@@ -19,14 +20,26 @@ from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.duties import law_params
 from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
-from raceway.plugins.bodies.rollers import STRIBECK
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
     from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
-    from raceway.plugins.bodies.rollers import CylindricalRollers
+    from raceway.scene.bearing import Bearing as BearingTable
+
+
+class Rollers(Protocol):
+    """Options of rollers: effective length of the line contacts [m], crown A / D, laminae."""
+
+    @property
+    def roller_length(self) -> float: ...
+    @property
+    def crown(self) -> float: ...
+    @property
+    def laminae(self) -> int: ...
+    def ring_mass(self, b: BearingTable) -> float:
+        """Of the inner ring [kg]."""
 
 
 @attrs.frozen(eq=False)
@@ -117,7 +130,7 @@ def first_roller_guess(problem: Problem) -> np.ndarray:
     return guess
 
 
-def build(problem: Problem, plan: ScenePlan, kind: CylindricalRollers) -> RollerBearing:
+def build(problem: Problem, plan: ScenePlan, kind: Rollers) -> RollerBearing:
     """The bearing of a scene."""
     b, (basis, radii) = problem.bearing, roller_basis(problem)
     parts = roller_parts(problem, plan, basis, radii, kind)
@@ -144,9 +157,7 @@ def roller_basis(problem: Problem) -> tuple[Basis, tuple[Number, Number]]:
     return basis, (1.0 / (2.0 / b.ball_diameter + 1.0 / inner), 1.0 / (2.0 / b.ball_diameter - 1.0 / outer))
 
 
-def roller_parts(
-    problem: Problem, plan: ScenePlan, basis: Basis, radii: tuple[Number, Number], kind: CylindricalRollers
-) -> Tables:
+def roller_parts(problem: Problem, plan: ScenePlan, basis: Basis, radii: tuple[Number, Number], kind: Rollers) -> Tables:
     """Kernels of rollers and law, and their numbers, with a first axis of n operating points where these have columns."""
     length = kind.roller_length
     out = np.zeros((*problem.points, ring.SCALARS))
@@ -161,7 +172,7 @@ def roller_parts(
         "law": plugin_kernel(problem.contact.law, "contact law", LAW, "LAW"),
         "law_params": _law_params(problem, basis, length, radii),
         "scalars": out,
-        "table": _table(problem, plan, basis, kind),
+        "table": _roller_table(problem, plan, basis, kind),
     }
 
 
@@ -186,7 +197,7 @@ def _law_params(problem: Problem, basis: Basis, length: float, radii: tuple[Numb
     return params.reshape(*shape, params.shape[1])
 
 
-def _table(problem: Problem, plan: ScenePlan, basis: Basis, kind: CylindricalRollers) -> np.ndarray:
+def _roller_table(problem: Problem, plan: ScenePlan, basis: Basis, kind: Rollers) -> np.ndarray:
     geometry, azimuth = basis.geometry, basis.azimuth
     table = np.zeros((*problem.points, problem.bearing.ball_count, lines.ROLLER_COLUMNS))
     table[..., ring.COSINE], table[..., ring.SINE], table[..., ring.SIDE] = np.cos(azimuth), np.sin(azimuth), 1.0

@@ -8,8 +8,7 @@ from raceway.bodies.columns import ColumnBearing, assembled_columns
 from raceway.core.ring.equilibria import States
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
-from raceway.plugins.bodies.roller_bearing import first_roller_guess, line_contact, roller_basis, roller_parts
-from raceway.plugins.bodies.rollers import CylindricalRollers
+from raceway.plugins.bodies.roller_bearing import Rollers, first_roller_guess, line_contact, roller_basis, roller_parts
 from raceway.scene.bearing import DIMENSIONS
 
 
@@ -31,8 +30,7 @@ class RollerColumns(ColumnBearing):
 
     def contact_ellipse(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Of line contacts, under loads (n, 2, Z) [N]."""
-        kind = self.problem.bodies
-        assert isinstance(kind, CylindricalRollers)
+        kind: Rollers = self.problem.bodies
         basis, radii = roller_basis(self.problem)
         radius = np.stack([np.reshape(r, (-1, 1)) for r in radii], axis=1)
         return line_contact(load, radius, kind.roller_length, np.reshape(basis.modulus, (-1, 1, 1)))
@@ -50,8 +48,7 @@ class RollerColumns(ColumnBearing):
 def roller_columns(problem: Problem, plan: ScenePlan) -> RollerColumns:
     """See ``raceway.bodies.columns.mounted_columns``."""
     basis, radii = roller_basis(problem)
-    kind = problem.bodies
-    assert isinstance(kind, CylindricalRollers)
+    kind: Rollers = problem.bodies
     bearing = assembled_columns(RollerColumns, problem, plan, basis, roller_parts(problem, plan, basis, radii, kind))
     bearing.points.guess[:] = first_roller_guess(problem)
     return bearing

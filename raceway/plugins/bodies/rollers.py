@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
+from raceway.core.ratings import STRIBECK
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.duties import line_contact
@@ -21,14 +22,12 @@ if TYPE_CHECKING:
     from raceway.planning.plan import ScenePlan
     from raceway.planning.resolve import Problem
     from raceway.scene.bearing import Bearing
-    from raceway.scene.scene import SceneTables
+    from raceway.scene.tables import SceneTables
 
 #: Seconds of a step with 12 rollers, of a sample, and of a search over that of rigid balls.
 _TIMES = Times({"weightless": 1.0e-4, "inertial": 1.2e-4}, sample=1.2e-4, search=1.0)
 #: c of line contacts of steel [m^1.8 / N^0.9] for estimates, that of ``raceway.contact_laws.line``.
 _COEFFICIENT = 1.6e-10
-#: Load of the most loaded roller over F / Z with a usual clearance.
-STRIBECK = 5.0
 
 
 @attrs.frozen

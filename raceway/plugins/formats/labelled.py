@@ -28,7 +28,7 @@ from raceway.errors import RacewayError, extra
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from raceway.pipeline.result import Result
+    from raceway.plugins.formats import RunResult
 
 
 def labelled_dataset(variables: Tables, coordinates: Any, attributes: Tables) -> Any:
@@ -40,7 +40,7 @@ def labelled_dataset(variables: Tables, coordinates: Any, attributes: Tables) ->
     return xarray.Dataset(variables, coordinates, attributes)
 
 
-def labelled(result: Result) -> Any:
+def labelled(result: RunResult) -> Any:
     """All arrays of a run as an xarray.Dataset.
 
     Returns

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from raceway.pipeline.result import Result
-    from raceway.pipeline.simulate import Simulation
+    from raceway.plugins.formats import RecordedMotion, RunResult
 
 
 _USED, _OTHER, _STATIC, _GRID = "#0b5fa5", "#b9c4cf", "#c8501e", "#d8dee4"
@@ -39,7 +38,7 @@ class Pictures:
 
     dots_per_inch: int = option(150, help="resolution of the PNG files", rule=between(30, 1200))
 
-    def write(self, folder: Path, result: Result) -> list[Path]:
+    def write(self, folder: Path, result: RunResult) -> list[Path]:
         """Write the pictures that the result has data for.
 
         Parameters
@@ -60,7 +59,7 @@ class Pictures:
         return [save_figure(figure, Path(folder) / f"{name}.png", self.dots_per_inch) for name, figure in figures.items()]
 
 
-def picture(result: Result, name: str) -> Figure:
+def picture(result: RunResult, name: str) -> Figure:
     """A figure of one drawing, "orbit", "spectrum" or "ball_loads", with its legend below."""
     drawing = _DRAWINGS[name]
     figure = new_figure(*drawing.size)
@@ -69,7 +68,7 @@ def picture(result: Result, name: str) -> Figure:
     return figure
 
 
-def plot(result: Result, what: str | None, ax: Axes | None) -> Axes | tuple[Axes, ...]:
+def plot(result: RunResult, what: str | None, ax: Axes | None) -> Axes | tuple[Axes, ...]:
     """Draw one picture, or all that the result has data for.
 
     Parameters
@@ -105,7 +104,7 @@ def plot(result: Result, what: str | None, ax: Axes | None) -> Axes | tuple[Axes
     return axes[0] if what is not None else axes
 
 
-def _available(result: Result) -> tuple[str, ...]:
+def _available(result: RunResult) -> tuple[str, ...]:
     return tuple(_DRAWINGS) if result.simulation is not None else ("ball_loads",)
 
 
@@ -119,7 +118,7 @@ def _new_axes(names: tuple[str, ...]) -> tuple[Axes, ...]:
     return tuple(figure.add_subplot(1, len(names), k, **frame) for k, frame in enumerate(frames, 1))
 
 
-def _draw_orbit(axes: Axes, result: Result) -> None:
+def _draw_orbit(axes: Axes, result: RunResult) -> None:
     """Path of the inner ring's reference point in the radial plane."""
     motion = _motion(result)
     record, used = motion.whole, motion.record
@@ -140,7 +139,7 @@ def _draw_orbit(axes: Axes, result: Result) -> None:
     label_axes(axes, f"Orbit of the inner ring\n{_subtitle(result)}", "displacement y [µm]", "displacement z [µm]")
 
 
-def _draw_spectrum(axes: Axes, result: Result) -> None:
+def _draw_spectrum(axes: Axes, result: RunResult) -> None:
     """Amplitude of the displacement against multiples of the excitation's frequency."""
     import numpy as np
 
@@ -171,7 +170,7 @@ def _draw_spectrum(axes: Axes, result: Result) -> None:
     label_axes(axes, title, "frequency / excitation frequency [-]", "amplitude [µm]")
 
 
-def _draw_ball_loads(axes: Any, result: Result) -> None:
+def _draw_ball_loads(axes: Any, result: RunResult) -> None:
     """Inner contact load of each ball on polar axes: static, and its range over the recorded turns."""
     import numpy as np
 
@@ -201,7 +200,7 @@ def _draw_ball_loads(axes: Any, result: Result) -> None:
     axes.grid(color=_GRID, linewidth=0.7)
 
 
-def _motion(result: Result) -> Simulation:
+def _motion(result: RunResult) -> RecordedMotion:
     if result.simulation is None:
         raise ValueError("the scene is static: no motion was recorded")
     return result.simulation
@@ -211,7 +210,7 @@ def _turns(count: int) -> str:
     return f"{count} turn{'' if count == 1 else 's'}"
 
 
-def _subtitle(result: Result) -> str:
+def _subtitle(result: RunResult) -> str:
     """The title, and what was changed of the scene, in lines that fit."""
     return wrapped(result.title, 64)
 
@@ -219,7 +218,7 @@ def _subtitle(result: Result) -> str:
 class _Drawing(NamedTuple):
     """What draws on axes of a projection, the figure's size [inch], columns and font size of its legend."""
 
-    draw: Callable[[Any, Result], None]
+    draw: Callable[[Any, RunResult], None]
     projection: str | None
     size: tuple[float, float]
     columns: int

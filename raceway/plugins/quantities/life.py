@@ -51,18 +51,18 @@ _MOMENTS = 20
 _LARGEST_LOAD = 0.5
 
 
-def _number(name: str, unit: str, words: str, label: str, symbol: str) -> Quantity:
+def _life_quantity(name: str, unit: str, words: str, label: str, symbol: str) -> Quantity:
     return Quantity(name, unit, words, f"life.{name}", symbol=symbol, label=label)
 
 
 _NUMBERS = (
-    _number("l10r_million_revolutions", "1e6", "reference life, reached by 90 %", "reference life L10r", "L10r"),
-    _number("l10r_hours", "h", "reference life at the shaft's speed", "reference life in hours", "L10rh"),
-    _number("l10mr_million_revolutions", "1e6", "modified life a_1 a_ISO L10r", "modified life Lnmr", "Lnmr"),
-    _number("l10mr_hours", "h", "modified life at the shaft's speed", "modified life in hours", "Lnmrh"),
-    _number("equivalent_load_n", "N", "load of the reference life, C L10r^(-1/3)", "equivalent load P", "P"),
-    _number("static_safety", "1", "permitted over largest contact load", "static safety s0", "s0"),
-    _number("rating_n", "N", "basic dynamic load rating of all rows together", "dynamic rating C", "C_rating"),
+    _life_quantity("l10r_million_revolutions", "1e6", "reference life, reached by 90 %", "reference life L10r", "L10r"),
+    _life_quantity("l10r_hours", "h", "reference life at the shaft's speed", "reference life in hours", "L10rh"),
+    _life_quantity("l10mr_million_revolutions", "1e6", "modified life a_1 a_ISO L10r", "modified life Lnmr", "Lnmr"),
+    _life_quantity("l10mr_hours", "h", "modified life at the shaft's speed", "modified life in hours", "Lnmrh"),
+    _life_quantity("equivalent_load_n", "N", "load of the reference life, C L10r^(-1/3)", "equivalent load P", "P"),
+    _life_quantity("static_safety", "1", "permitted over largest contact load", "static safety s0", "s0"),
+    _life_quantity("rating_n", "N", "basic dynamic load rating of all rows together", "dynamic rating C", "C_rating"),
 )
 
 

@@ -174,9 +174,9 @@ class Fitted(Answer):
 
     def draw(self) -> Figure:
         """Data, fit with its band, residuals, confidence region."""
-        from raceway_measure.fit.picture import draw
+        from raceway_measure.fit.picture import draw_fit
 
-        return draw(self.to_dict())
+        return draw_fit(self.to_dict())
 
     def report(self) -> list[Part]:
         """Numbers with their intervals by cause; below, how well the model meets the data, and warnings."""

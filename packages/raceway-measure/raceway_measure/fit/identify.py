@@ -235,7 +235,8 @@ class Identified(Answer):
         """
         from raceway_measure.fit.picture import figures
 
-        return [save_figure(figure, Path(folder) / f"{name}.png", 110) for name, figure in figures(self).items()]
+        drawings = figures(self.rotation, self.component, self.state)
+        return [save_figure(figure, Path(folder) / f"{name}.png", 110) for name, figure in drawings.items()]
 
     @door
     def plot(self, what: str = "orbits", ax: Axes | None = None) -> Axes:
@@ -259,9 +260,9 @@ class Identified(Answer):
             raise SceneError.at("what", what, "must be one of orbits, spectrum")
         axes = given_axes(ax, 6.0, 6.0 if what == "orbits" else 3.5)
         if what == "spectrum":
-            draw_spectrum(self, axes)
+            draw_spectrum(self.rotation, axes)
         else:
-            draw_orbits(self, axes)
+            draw_orbits(self.rotation, self.component, self.state, axes)
             axes.legend(frameon=False, fontsize=8)
         return axes
 

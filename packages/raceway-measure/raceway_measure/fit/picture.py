@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from raceway.extend import ReadTables, new_figure, read_in, wrapped
-from raceway_measure.fit.identify import Identified
+from raceway_measure.fit.shaft_angle import Rotation
+from raceway_measure.fit.synchronous import Synchronous
+from raceway_rotor.shaft import State
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,7 +21,7 @@ _MOST, _MARKED, _DENSE = 4, 2.0, 200
 _MICRO, _TURNS_SHOWN, _ORDERS_SHOWN = 1e6, 4, 6.0
 
 
-def draw(content: ReadTables) -> Figure:
+def draw_fit(content: ReadTables) -> Figure:
     """Two rows of panels, a column per quantity, and the region of the first two free numbers."""
     series = content["series"][:_MOST]
     columns = len(series) + 1
@@ -84,7 +86,7 @@ def _with_unit(name: str, unit: str) -> str:
     return f"{name} [{unit}]" if unit else name
 
 
-def figures(answer: Identified) -> dict[str, Figure]:
+def figures(rotation: Rotation, component: Synchronous, state: State) -> dict[str, Figure]:
     """Figures "signals", "spectrum" and "orbits" of a record.
 
     Raises
@@ -96,7 +98,7 @@ def figures(answer: Identified) -> dict[str, Figure]:
     first, means = drawings["signals"].subplots(
         2, 1, height_ratios=(3, 2)
     )  # the first turns; the full record as its means over turns
-    rotation, record = answer.rotation, answer.rotation.recording
+    record = rotation.recording
     early = rotation.angle < 2.0 * np.pi * _TURNS_SHOWN
     turns, time = rotation.angle[early] / (2.0 * np.pi), rotation.means(record.time)
     for name, values, colour in (("y", record.y, _BLUE), ("z", record.z, _RED)):
@@ -105,17 +107,17 @@ def figures(answer: Identified) -> dict[str, Figure]:
     _finish(first, "turns", "gap [µm]")
     _finish(means, "time [s]", "mean of a turn [µm]")
     first.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
-    draw_spectrum(answer, drawings["spectrum"].subplots())
-    draw_orbits(answer, drawings["orbits"].subplots())
+    draw_spectrum(rotation, drawings["spectrum"].subplots())
+    draw_orbits(rotation, component, state, drawings["orbits"].subplots())
     drawings["orbits"].legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     return drawings
 
 
-def draw_spectrum(answer: Identified, axes: Axes) -> None:
+def draw_spectrum(rotation: Rotation, axes: Axes) -> None:
     """Amplitude of y + j z over orders, forward to the right and backward to the left."""
-    record, angle = answer.rotation.recording, answer.rotation.angle
+    record, angle = rotation.recording, rotation.angle
     per_turn = 32
-    grid = 2.0 * np.pi / per_turn * np.arange(per_turn * answer.rotation.turns)
+    grid = 2.0 * np.pi / per_turn * np.arange(per_turn * rotation.turns)
     plane = np.interp(grid, angle, record.y) + 1j * np.interp(grid, angle, record.z)
     amplitudes = np.abs(np.fft.fft(plane - plane.mean())) / len(plane)
     order = np.fft.fftfreq(len(plane), 1.0 / per_turn)
@@ -126,14 +128,14 @@ def draw_spectrum(answer: Identified, axes: Axes) -> None:
     _finish(axes, "order, positive: forward", "amplitude [µm]")
 
 
-def draw_orbits(answer: Identified, axes: Axes) -> None:
+def draw_orbits(rotation: Rotation, component: Synchronous, state: State, axes: Axes) -> None:
     """The orbit at the sensor, its 1x component with and without run-out, and the motion of the bearing itself."""
-    record, state = answer.rotation.recording, answer.state
+    record = rotation.recording
     plane = _MICRO * (record.plane - record.plane.mean())[:1500]
     axes.plot(plane.real, plane.imag, color="#d3dae1", linewidth=0.5, label="as measured")
     circle = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
     circles: list[tuple[str, complex, str, str]] = [
-        ("1x", answer.component.forward, _GREY, "--"),
+        ("1x", component.forward, _GREY, "--"),
         ("less the run-out", state.sensor, _BLUE, "-"),
         ("shaft's bow", state.sensor - state.deflection, _RED, ":"),
         ("bearing", state.deflection, _GREEN, "-"),

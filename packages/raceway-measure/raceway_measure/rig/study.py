@@ -373,7 +373,8 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
 
     RacewayError: matplotlib is missing, or a folder that cannot be written.
     """
-    record = figures(study.points[0].identified)
+    first = study.points[0].identified
+    record = figures(first.rotation, first.component, first.state)
     drawings = {"procedures": _procedures(study), **record, "error-split": _causes(study)}
     files = [save_figure(figure, folder / f"{name}.png", 110) for name, figure in drawings.items()]
     # Words, tables and figures.

@@ -97,6 +97,11 @@ class ElasticSystem:
         return self.condensed is not None
 
     @property
+    def linear_iterations(self) -> int:
+        """Of all linear solves so far."""
+        return self.solver.iterations
+
+    @property
     def threads(self) -> ThreadPool:
         return self.assembly.threads
 

@@ -3,17 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeVar
+from typing import Protocol, TypeVar
 
 import attrs
 import numpy as np
 
+from raceway.core.fem.elastic.contact import Contact
 from raceway.errors import ConvergenceError
 
-if TYPE_CHECKING:
-    from raceway.core.fem.elastic.bearing import ElasticSystem
-
 T = TypeVar("T")
+
+
+class StaticSystem(Protocol):
+    """What an equilibrium needs of elastic bodies: ``raceway.core.fem.elastic.bearing.ElasticSystem``."""
+
+    load: np.ndarray
+    on_residual: Callable[[float], None] | None
+
+    @property
+    def contact(self) -> Contact | None: ...
+    @property
+    def smooth(self) -> bool: ...
+    @property
+    def linear_iterations(self) -> int: ...
+    def undeformed(self, y: np.ndarray) -> bool: ...
+    def locate(self, y: np.ndarray) -> bool: ...
+    def static_internal(self, y: np.ndarray, share: float = 0.0) -> np.ndarray: ...
+    def solve(self, c_k: float, c_c: float, c_m: float, right: np.ndarray, tolerance: float = ...) -> np.ndarray: ...
+    def force_scale(self) -> float: ...
+    def measure(self, r: np.ndarray) -> float: ...
+
 
 #: Trials of one search, and the slope of the potential over that at its start at which it ends.
 _TRIALS, _FLAT = 12, 0.9
@@ -70,7 +89,7 @@ class StaticSolution:
     residuals: list[float]
 
 
-def solve_equilibrium(system: ElasticSystem, guess: np.ndarray, tolerance: float = TOLERANCE) -> StaticSolution:
+def solve_equilibrium(system: StaticSystem, guess: np.ndarray, tolerance: float = TOLERANCE) -> StaticSolution:
     """The state at which contact forces and elasticity balance ``system.load``, near a guess (size,).
 
     Raises
@@ -83,7 +102,7 @@ def solve_equilibrium(system: ElasticSystem, guess: np.ndarray, tolerance: float
     # Points of an overlap that nothing has deformed yet: see ``Contact.evaluate``.  From an equilibrium the same choice would leave
     # balls on two points, and no curvature to hold them across the grooves: the tangent is then singular.
     share = 0.5 if system.undeformed(guess) else 0.0
-    good, part, step, count, before = guess.copy(), 0.0, 1.0, 0, system.solver.iterations
+    good, part, step, count, before = guess.copy(), 0.0, 1.0, 0, system.linear_iterations
     try:
         while True:
             goal = min(1.0, part + step)
@@ -102,12 +121,12 @@ def solve_equilibrium(system: ElasticSystem, guess: np.ndarray, tolerance: float
             good, part, count = y, goal, count + used
             if goal >= 1.0:
                 _refuse(system, y, history)
-                return StaticSolution(y, count, system.solver.iterations - before, history)
+                return StaticSolution(y, count, system.linear_iterations - before, history)
     finally:
         system.load = load
 
 
-def _refuse(system: ElasticSystem, y: np.ndarray, history: list[float]) -> None:
+def _refuse(system: StaticSystem, y: np.ndarray, history: list[float]) -> None:
     try:
         if system.contact is not None:
             system.contact.refuse()
@@ -116,7 +135,7 @@ def _refuse(system: ElasticSystem, y: np.ndarray, history: list[float]) -> None:
 
 
 def _newton(
-    system: ElasticSystem, guess: np.ndarray, tolerance: float, history: list[float], share: float
+    system: StaticSystem, guess: np.ndarray, tolerance: float, history: list[float], share: float
 ) -> tuple[np.ndarray, int]:
     y = guess.copy()
     system.locate(y)
@@ -136,7 +155,7 @@ def _newton(
         if iteration > 0:
             forcing = min(LOOSE, max(TIGHT, 0.3 * size / previous, 0.3 * tolerance / relative))
         previous = size
-        if system.condensed is not None:
+        if system.smooth:
             y = y + system.solve(1.0, 0.0, 0.0, residual)
             system.locate(y)
             residual = system.load - system.static_internal(y)
@@ -149,7 +168,7 @@ def _newton(
 
 
 def _along(
-    system: ElasticSystem, y: np.ndarray, step: np.ndarray, residual: np.ndarray, enough: float
+    system: StaticSystem, y: np.ndarray, step: np.ndarray, residual: np.ndarray, enough: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """State along a step (size,), and the residual there."""
 

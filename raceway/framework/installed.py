@@ -1,0 +1,54 @@
+"""What is installed beside ``raceway``: commands and public names of this project's packages and of third parties.
+
+Nothing is imported until a name is used, so that ``import raceway`` and ``dir(raceway)`` stay light.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from importlib.util import find_spec
+from typing import Any
+
+from raceway.framework.packages import missing_package, named, packages
+
+
+def listed_commands() -> Iterator[tuple[str, str, str]]:
+    """Heading, name and summary of each command that is installed beside ``raceway``'s own; those of third parties alone are imported."""
+    for package, has in packages().items():
+        if find_spec(package.replace("-", "_")):
+            parted = ((name, text.partition(": ")) for name, text in has["commands"].items() if text)
+            yield from ((heading, name, summary) for name, (heading, _, summary) in parted)
+    from importlib.metadata import entry_points
+
+    if any(getattr(point.dist, "name", "") not in packages() for point in entry_points(group="raceway")):
+        from raceway.framework.registry import installed
+
+        own = {name for has in packages().values() for name in has["commands"]}
+        for heading, commands in installed().mapping("raceway_commands").items():
+            yield from ((heading, about.name, about.summary) for about in commands if about.name not in own)
+
+
+def public_names() -> list[str]:
+    """Names that installed packages add to ``import raceway``."""
+    there = [has for package, has in packages().items() if find_spec(package.replace("-", "_"))]
+    return [name for has in there for name in has["names"] if "." not in name]
+
+
+def further_name(name: str) -> Any:
+    """What an installed package, of this project or a third party's, offers under a public name.
+
+    Raises
+    ------
+    AttributeError
+        None does; of a name of this project's packages: how to install it.
+    """
+    for package, has in packages().items():
+        if name in has["names"]:
+            if find_spec(package.replace("-", "_")) is None:
+                raise AttributeError(f"raceway.{name} is {missing_package(name, 'names')}")
+            return named(f"{has['names'][name]}:{name.rpartition('.')[2]}")
+    from raceway.framework.registry import installed
+
+    if (module := installed().mapping("raceway_names").get(name)) is None:
+        raise AttributeError(f"module 'raceway' has no attribute '{name}'")
+    return named(f"{module}:{name}")
