@@ -82,7 +82,7 @@ def of_a_sweep() -> list[Figure]:
     found += [layout(select(as_list(data).isel(point=slice(0, 30)), {}), kind=kind) for kind in ("curves", "map")]
     three = {"load.axial": LOADS[:3], "supports.tilt": ["free", "locked"], "excitation.speed_rpm": SPEEDS}
     found.append(layout(select(made(three), {})))
-    return [store_picture.draw_layout(p) for p in found]
+    return [store_picture.draw(p) for p in found]
 
 
 def of_a_comparison() -> list[Figure]:

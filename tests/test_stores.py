@@ -11,7 +11,7 @@ from checks.validation.command_line import invoke
 from checks.validation.stores import SPEEDS, as_list, made, stiffness
 from raceway import RacewayError, SceneError
 from raceway.extend import LIST, parse_at, select
-from raceway.points.plot import draw_layout, layout
+from raceway.points.plot import draw, layout
 from raceway.points.selection import swept_keys
 
 SPEED, LOAD = "excitation.speed_rpm", "load.axial"
@@ -24,7 +24,7 @@ def chosen(axes, at=None, **wanted):
 
 
 def drawn(picture):
-    return draw_layout(picture)
+    return draw(picture)
 
 
 @pytest.mark.parametrize(

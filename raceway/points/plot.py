@@ -30,7 +30,7 @@ _FORMATS = (".png", ".svg")
 _DOTS_PER_INCH = 150
 
 
-def draw_layout(layout: _Layout) -> Figure:
+def draw(layout: _Layout) -> Figure:
     """The picture of a layout.
 
     Raises
@@ -249,7 +249,7 @@ class _Layout:
         RacewayError
             matplotlib is missing, or the file cannot be written.
         """
-        return write(draw_layout(self), path)
+        return write(draw(self), path)
 
 
 def layout(

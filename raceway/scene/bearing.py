@@ -134,7 +134,15 @@ class Bearing:
     def __attrs_post_init__(self) -> None:
         for _, words in speaking(DIMENSIONS, self):
             raise ValueError(words)
-        self._check_angle()
+        clearance, angle, distance = self.radial_clearance, self.contact_angle_deg, self._centre_distance
+        if clearance is not None and angle:
+            fitting = 2.0 * distance * (1.0 - cos(radians(angle)))
+            if abs(fitting - clearance) > 1e-3 * distance:
+                by_clearance = degrees(acos(1.0 - clearance / (2.0 * distance)))
+                raise ValueError(
+                    f"`radial_clearance` = {clearance:g} m and `contact_angle_deg` = {angle:g} contradict each other: that "
+                    f"clearance gives {by_clearance:.3f} deg, that angle {fitting:.4g} m. Give one of them"
+                )
         self._check_set()
         for profile, inner in ((self.inner_profile, True), (self.outer_profile, False)):
             if profile is not None:
@@ -269,18 +277,6 @@ class Bearing:
             )
         if self.preload_of == "row" and self.preload_kind == "spring":
             raise ValueError("`preload_of` = 'row' is an offset that was ground: with preload_kind = 'spring' use 'set'")
-
-    def _check_angle(self) -> None:
-        clearance, angle, distance = self.radial_clearance, self.contact_angle_deg, self._centre_distance
-        if clearance is None or not angle:
-            return
-        fitting = 2.0 * distance * (1.0 - cos(radians(angle)))
-        if abs(fitting - clearance) > 1e-3 * distance:
-            by_clearance = degrees(acos(1.0 - clearance / (2.0 * distance)))
-            raise ValueError(
-                f"`radial_clearance` = {clearance:g} m and `contact_angle_deg` = {angle:g} contradict each other: that "
-                f"clearance gives {by_clearance:.3f} deg, that angle {fitting:.4g} m. Give one of them"
-            )
 
     @property
     def contact_angle(self) -> float:

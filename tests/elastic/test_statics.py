@@ -47,11 +47,11 @@ class Stop:
     contact, on_residual = SimpleNamespace(resultants_only=True, refuse=lambda: None), None
     SOFTER = 0.05
 
-    condensed = None
+    smooth, linear_iterations = False, 0
 
     def __init__(self, stiff: float, way: float):
         self.load, self.stiff, self.way = np.ones(1), stiff, way
-        self.solver, self.tangent, self.evaluations = SimpleNamespace(iterations=0), 1.0, 0
+        self.tangent, self.evaluations = 1.0, 0
 
     def static_internal(self, y: np.ndarray, share: float = 0.0) -> np.ndarray:
         self.evaluations += 1

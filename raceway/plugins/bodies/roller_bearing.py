@@ -159,20 +159,29 @@ def roller_basis(problem: Problem) -> tuple[Basis, tuple[Number, Number]]:
 
 def roller_parts(problem: Problem, plan: ScenePlan, basis: Basis, radii: tuple[Number, Number], kind: Rollers) -> Tables:
     """Kernels of rollers and law, and their numbers, with a first axis of n operating points where these have columns."""
-    length = kind.roller_length
+    length, geometry, azimuth = kind.roller_length, basis.geometry, basis.azimuth
     out = np.zeros((*problem.points, ring.SCALARS))
     out[..., ring.REST_RADIAL] = problem.kinematics.radial_expansion - 0.5 * _clearance(problem)
-    out[..., ring.TILT_ARM] = 0.5 * basis.geometry.pitch_diameter
+    out[..., ring.TILT_ARM] = 0.5 * geometry.pitch_diameter
     out[..., ring.DAMPING] = problem.contact.dashpot
     if problem.kinematics.orbiting:
-        out[..., ring.CAGE] = basis.geometry.cage_speed(problem.spin_speed)
+        out[..., ring.CAGE] = geometry.cage_speed(problem.spin_speed)
+    table = np.zeros((*problem.points, problem.bearing.ball_count, lines.ROLLER_COLUMNS))
+    table[..., ring.COSINE], table[..., ring.SINE], table[..., ring.SIDE] = np.cos(azimuth), np.sin(azimuth), 1.0
+    table[..., lines.LENGTH], table[..., lines.LAMINAE] = length, kind.laminae
+    table[..., lines.PROFILE] = kind.crown * per_ball(geometry.ball_diameter)
+    if plan.centrifugal:
+        mass = problem.bearing.balls.density * 0.25 * pi * geometry.ball_diameter**2 * length
+        table[..., ring.CENTRIFUGAL] = per_ball(
+            mass * 0.5 * geometry.pitch_diameter * geometry.cage_speed(problem.spin_speed) ** 2
+        )
     return {
         "kernel": lines.rollers,
         "base_kernel": lines.rollers,
         "law": plugin_kernel(problem.contact.law, "contact law", LAW, "LAW"),
         "law_params": _law_params(problem, basis, length, radii),
         "scalars": out,
-        "table": _roller_table(problem, plan, basis, kind),
+        "table": table,
     }
 
 
@@ -195,17 +204,3 @@ def _law_params(problem: Problem, basis: Basis, length: float, radii: tuple[Numb
     )
     params = law_params(problem.contact.law, pairs)
     return params.reshape(*shape, params.shape[1])
-
-
-def _roller_table(problem: Problem, plan: ScenePlan, basis: Basis, kind: Rollers) -> np.ndarray:
-    geometry, azimuth = basis.geometry, basis.azimuth
-    table = np.zeros((*problem.points, problem.bearing.ball_count, lines.ROLLER_COLUMNS))
-    table[..., ring.COSINE], table[..., ring.SINE], table[..., ring.SIDE] = np.cos(azimuth), np.sin(azimuth), 1.0
-    table[..., lines.LENGTH], table[..., lines.LAMINAE] = kind.roller_length, kind.laminae
-    table[..., lines.PROFILE] = kind.crown * per_ball(geometry.ball_diameter)
-    if plan.centrifugal:
-        mass = problem.bearing.balls.density * 0.25 * pi * geometry.ball_diameter**2 * kind.roller_length
-        table[..., ring.CENTRIFUGAL] = per_ball(
-            mass * 0.5 * geometry.pitch_diameter * geometry.cage_speed(problem.spin_speed) ** 2
-        )
-    return table

@@ -120,18 +120,14 @@ def solve_equilibrium(system: StaticSystem, guess: np.ndarray, tolerance: float 
                 continue
             good, part, count = y, goal, count + used
             if goal >= 1.0:
-                _refuse(system, y, history)
+                try:
+                    if system.contact is not None:
+                        system.contact.refuse()
+                except ConvergenceError as why:
+                    raise ConvergenceError(str(why), {"y": y, "load_part": 1.0, "residuals": history}) from why
                 return StaticSolution(y, count, system.linear_iterations - before, history)
     finally:
         system.load = load
-
-
-def _refuse(system: StaticSystem, y: np.ndarray, history: list[float]) -> None:
-    try:
-        if system.contact is not None:
-            system.contact.refuse()
-    except ConvergenceError as why:
-        raise ConvergenceError(str(why), {"y": y, "load_part": 1.0, "residuals": history}) from why
 
 
 def _newton(
