@@ -287,4 +287,4 @@ from .planning.parts import PlannedMotion as PlannedMotion
 from .planning.plan import ScenePlan as ScenePlan
 from .planning.resolve import Problem as Problem
 from .plugins.excitations.harmonic import Unidirectional as Unidirectional
-from .scene.scene import SceneTables as SceneTables
+from .scene.tables import SceneTables as SceneTables
