@@ -29,7 +29,7 @@ from raceway.pipeline.gradient import other_meshes, refuse_points
 from raceway.pipeline.run import run
 from raceway.planning.columns import column_problem, law_keys, why_no_column, why_not
 from raceway.planning.plan import ScenePlan, make_plan
-from raceway.planning.resolve import resolve
+from raceway.planning.resolve import Problem, resolve
 from raceway.plugins.formats.labelled import labelled_dataset
 from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Computed, of_result
 from raceway.points.derivatives import Columns, jacobian
@@ -48,8 +48,9 @@ BLOCK = (8192, 2048)
 _LIMIT_S = 120.0
 _ADVICE = "give fewer points, or force = True. `raceway sweep` distributes such points among processes and resumes"
 _POINT = Reader("numbers by their keys", lambda v: {TEXT.read(key): float(number) for key, number in v.items()})
-#: Share of the memory that is left which inputs and outputs may take.
-_MEMORY = 0.8
+#: Share of the memory that is left which inputs and outputs may take, and bytes for which the system is not asked: that takes as long as
+#: a point.
+_MEMORY, _ASKED = 0.8, 2.0**24
 #: Rows without the reason of a run of their own, which is asked for a few only.
 _REASONS, _REFUSED = 200, "a rule of the scene refuses its numbers"
 
@@ -106,6 +107,11 @@ class Function:
         for name, value in {**state, "scene": scene}.items():
             object.__setattr__(self, name, value)
 
+    @cached_property
+    def _problem(self) -> Problem:
+        """Of the scene without its columns."""
+        return resolve(self.scene)
+
     @property
     def moving(self) -> bool:
         """Whether a motion has to be solved for."""
@@ -115,14 +121,14 @@ class Function:
     @property
     def contacts_alone(self) -> bool:
         """Whether runs of these bodies state no error of their own, which the compiled loop does not have: ``Traits``."""
-        return resolve(self.scene).traits.contacts_alone
+        return self._problem.traits.contacts_alone
 
     @cached_property
     def _of_plugins(self) -> dict[str, tuple[str, Quantity]]:
         """Quantities of plug-ins."""
         return plugin_quantities(default_registry())
 
-    @property
+    @cached_property
     def why_slow(self) -> str:
         """Why every point needs a run of its own; empty where a compiled loop computes them."""
         if is_foundation(self.scene.contact.law) and any(n.startswith("p0") or n in self._of_plugins for n in self.outputs):
@@ -181,7 +187,7 @@ class Function:
 
     def slopes(self, flat: Mapping[str, np.ndarray], keys: Iterable[str]) -> dict[str, Columns]:
         """As ``jacobian``, by some of the inputs, from columns (n,) of all."""
-        units, problem = {key: key_of(self.scene, key).unit for key in keys}, resolve(self.scene)
+        units, problem = {key: key_of(self.scene, key).unit for key in keys}, self._problem
         refuse_points(problem)
         for key in units:
             if why := other_meshes(problem, resolve(self._scene_with({key: 1.001 * key_of(self.scene, key).value}))):
@@ -316,7 +322,7 @@ class Function:
         status[refusals], reason = PointStatus.REFUSED, np.full(n, "", dtype=object)
         values: Columns = {}
         # A plan decides alike about rows whose balls turn, and about those whose balls stand.
-        turns = np.full(len(fit), resolve(self.scene).spin_speed > 0.0)
+        turns = np.full(len(fit), self._problem.spin_speed > 0.0)
         for key in ("excitation.speed_rpm", "kinematics.spin_speed_rpm"):
             if key in columns and (key.startswith("kin") or self.scene.kinematics.spin_speed_rpm is None):
                 turns = columns[key][fit] > 0.0
@@ -432,8 +438,8 @@ def refuse_bytes(n: int, entries: int, advice: str) -> None:
     RacewayError
         With both numbers of bytes.
     """
-    need, left = 8.0 * n * entries, available_bytes()
-    if need > _MEMORY * left:
+    need = 8.0 * n * entries
+    if need > _ASKED and need > _MEMORY * (left := available_bytes()):
         raise RacewayError(f"{n} points need {need:.4g} bytes for their numbers, of {left:.4g} available: {advice}")
 
 
