@@ -93,17 +93,6 @@ class System(Ring):
         """(..., Z, 2) motion (axial, radial) of the inner groove centres against the outer ones by elastic rings [m]."""
         return ball[..., -2:] if self.coupled else np.zeros((*ball.shape[:-1], 2))
 
-    def table_places(self, q: np.ndarray, ball: np.ndarray) -> np.ndarray:
-        """(Z,) where contacts lie in the tables of compliances over the angle, a knot apart 1; (0,) without tables.
-
-        At a knot and at the ends third derivatives of the compliance jump, and with them derivatives of the stiffness.
-        """
-        if not self.condensed:
-            return np.zeros(0)
-        centre, _ = self.centre_vectors(q, ball=ball)
-        position = (np.arctan2(centre[:, 0], centre[:, 1]) - self.scalars[layout.FIRST]) / self.scalars[layout.DISTANCE]
-        return np.asarray(np.clip(position, 0.0, self.scalars[layout.KNOTS] - 1.0))
-
     def between_balls(self) -> tuple[np.ndarray, np.ndarray]:
         """M and M_o (2 Z, 2 Z) between groove centres, axial and radial ball by ball [m/N]; see ``raceway.core.ring.kernels.between``.
 
