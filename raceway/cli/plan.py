@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from math import pi
 from pathlib import Path
 from typing import ClassVar
@@ -18,9 +18,10 @@ from raceway.answers.table import Row, grouped, number, sections
 from raceway.answers.wrapping import Words
 from raceway.errors import SceneError
 from raceway.framework.shown import duration
+from raceway.planning import parts
 from raceway.planning.plan import ScenePlan, check, make_plan
 from raceway.scene.scene import Scene
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
 
 
 @attrs.frozen(repr=False, slots=False)
@@ -37,21 +38,22 @@ class _Planned(Answer):
     def report(self) -> Iterator[Part]:
         """Size, memory and time, then the parts included and left out."""
         yield Words(self.title, "bold")
-        plan = self.plan.to_dict()
-        step = number(plan["time_step_s"], "s", 3) if plan["time_step_s"] else "none"
-        memory, wall_time = plan["predicted_bytes"], ("not known", "unknown before the mesh is read")
-        if not plan["predicted_at_least"]:
-            wall_time = duration(plan["predicted_wall_s"]), "with compiled kernels in the cache"
+        plan, problem = self.plan, self.plan.problem
+        step = number(plan.time_step_s, "s", 3) if plan.time_step_s else "none"
+        memory, wall_time = plan.predicted_bytes, ("not known", "unknown before the mesh is read")
+        if not plan.at_least:
+            wall_time = duration(plan.predicted_wall_s), "with compiled kernels in the cache"
+        steps = ("steps per turn", number(problem.steps_per_turn), problem.why("steps_per_turn"))
         size: list[Row] = [
             ("Size and cost, predicted", "", ""),
-            ("degrees of freedom", str(plan["dofs"]), "ring and balls"),
+            ("degrees of freedom", str(plan.dofs), "ring and balls"),
             *([("memory", f"{memory / 2**20:.3g} MiB", "at the peak")] if memory else []),
             ("wall time", *wall_time),
-            ("time step", step, f"{plan['predicted_steps']} steps"),
-            *([_derived_row(plan, "steps_per_turn", "steps per turn")] if plan["time_step_s"] else []),
-            _derived_row(plan, "spin_speed", "spin speed", "r/min", 30.0 / pi),
+            ("time step", step, f"{plan.predicted_steps} steps"),
+            *([steps] if plan.time_step_s else []),
+            ("spin speed", number(30.0 / pi * problem.spin_speed, "r/min"), problem.why("spin_speed")),
         ]
-        if (mesh := plan["mesh"]) is not None:  # all bodies, and each; balls in one line
+        if (mesh := plan.mesh) is not None:  # all bodies, and each; balls in one line
             peak = f"{mesh['bytes'] / 2**20:.4g} MiB peak while meshing"
             size += [("Mesh, predicted", "", ""), ("hexahedra", str(mesh["cells"]), peak)]
             bodies = {body["name"]: (body["cells"], body["bytes"]) for body in mesh["bodies"]}
@@ -59,7 +61,7 @@ class _Planned(Answer):
                 each = " each" if name.startswith("balls (") else ""
                 size.append((name, str(cells), f"{bytes_of_body / 2**20:.3g} MiB{each}"))
         yield sections(size)
-        yield from (_reasons("Included", plan["kept"]), _reasons("Left out", plan["left_out"]))
+        yield from (_reasons("Included", plan.kept), _reasons("Left out", plan.left_out))
 
 
 def plan(scene: Scene, plugins: Iterable[str | Path] = ()) -> _Planned:
@@ -75,15 +77,10 @@ def plan(scene: Scene, plugins: Iterable[str | Path] = ()) -> _Planned:
     return _Planned(scene.title, make_plan(scene))
 
 
-def _derived_row(plan: ReadTables, name: str, words: str, unit: str = "", units: float = 1.0) -> Row:
-    """A derived quantity, in so many ``units`` for one of its own, and what decides it."""
-    return (words, number(units * plan["derived"][name]["value"], unit, 5), plan["derived"][name]["why"])
-
-
-def _reasons(heading: str, items: Sequence[Mapping[str, str]]) -> RenderableType:
+def _reasons(heading: str, items: Sequence[parts.Part]) -> RenderableType:
     table = Table.grid(padding=(0, 2))
     table.add_column(width=32)
     table.add_column()
     for item in items:
-        table.add_row(Words(item["part"]), Words(item["why"], "dim"))
+        table.add_row(Words(item.part), Words(item.why, "dim"))
     return Group(Words(heading, "bold"), Padding(table, (0, 0, 0, 2)))

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar
+from typing import TYPE_CHECKING, Annotated, ClassVar, cast
 
 import attrs
 import numpy as np
@@ -26,9 +26,14 @@ from raceway.plugins.formats.labelled import labelled_dataset
 from raceway.points.axes import Vary, shown
 from raceway.points.settings import (
     Design,
+    Entry,
+    Judged,
+    Model,
+    Placed,
     Reference,
     Runner,
     Setting,
+    Study,
     distance,
     find_reference,
     main_size,
@@ -38,7 +43,7 @@ from raceway.points.settings import (
     setting_at,
 )
 from raceway.points.store import Store, written
-from raceway.points.timing import measured_once
+from raceway.points.timing import Measured, measured_once
 from raceway.scene.changes import parse_change
 from raceway.scene.inputs import tidy
 from raceway.scene.scene import SceneSource, plain_tables
@@ -53,6 +58,11 @@ if TYPE_CHECKING:
     from raceway.pipeline.simulate import OnProgress
 
 
+#: Of a row in precision.json, in its order.
+_COLUMNS = (
+    "family", "setting", "model", "value", "error", "at_bound", "order", "expected_order", "errors", "quantities", "time_s",
+    "wall_s", "cpu_s", "compile_s", "steps", "status", "reason", "own_error", "reused", "base", "cost",
+)  # fmt: skip
 THRESHOLDS = (0.01, 0.001, 0.0001)
 #: A reference counts as exact for rows whose error is this many times its bound.
 EXACT = 10.0
@@ -60,7 +70,6 @@ EXACT = 10.0
 _ORDER_MARGIN = 5.0
 #: Axes along which errors have an order: the exponent of 1 / value (True) or of the value itself.
 _LADDERS = {"integrator.steps_per_turn": True, "mesh.element_size": False}
-Row = Tables
 
 
 @attrs.frozen(eq=False, slots=False, repr=False)
@@ -69,7 +78,7 @@ class Precision(Answer):
 
     Attributes
     ----------
-    rows : setting, family, physics, model, status, reason, quantities, own_error, cost, reused; expected_order
+    rows : a setting each, as it was run;  judged : the same beside their references
     references : by physics; ``base`` is the physics that the front and the other models refer to
     left_out : (family, values, reason) of the default design
     fault : why rows could not be stored on disk;  named_reference : whether the user named the reference
@@ -87,7 +96,7 @@ class Precision(Answer):
     stem: ClassVar[str] = "precision"
 
     title: str
-    rows: tuple[Row, ...]
+    rows: tuple[Placed, ...]
     references: dict[str, Reference]
     base: str
     left_out: tuple[tuple[str, Tables, str], ...]
@@ -96,32 +105,38 @@ class Precision(Answer):
     named_reference: bool = False
 
     @cached_property
-    def judged(self) -> list[Row]:
-        """Rows with value, error, errors of all quantities, whether the reference limits them, and the observed order."""
-        rows = [{**row, "value": None, "error": None, "errors": {}, "at_bound": False, "order": None} for row in self.rows]
+    def judged(self) -> list[Judged]:
+        """The rows beside the references of their physics."""
+        rows: list[Judged] = [
+            {**row, "value": None, "error": None, "errors": {}, "at_bound": False, "order": None} for row in self.rows
+        ]
         for row in (row for row in rows if row["quantities"]):
             values, reference = row["quantities"], self.references[row["physics"]]
             row["value"] = main_size(values)
             if reference.values:
                 apart = minus(values, reference.values)
                 row["errors"] = {name: abs(share) for name, share in reference.relative(apart).items()}
-                row["error"] = distance(apart) / reference.size
-                row["at_bound"] = not row["error"] > EXACT * reference.bound
+                row["error"] = error = distance(apart) / reference.size
+                row["at_bound"] = not error > EXACT * reference.bound
         # The order between each row and the next coarser one of its ladder.
         for key, inverse in _LADDERS.items():
             for places in _ladders(rows, key):
                 places.sort(key=lambda k: rows[k]["setting"][key], reverse=not inverse)
                 for coarse, fine in zip(places, places[1:], strict=False):
                     bound = _ORDER_MARGIN * self.references[rows[fine]["physics"]].bound
-                    errors = [rows[k]["error"] for k in (coarse, fine)]
+                    errors = [rows[k]["error"] or 0.0 for k in (coarse, fine)]
                     if min(errors) > bound:
                         ratio = rows[fine]["setting"][key] / rows[coarse]["setting"][key]
                         rows[fine]["order"] = math.log(errors[0] / errors[1]) / math.log(ratio if inverse else 1.0 / ratio)
         return rows
 
-    def _largest_error(self, row: Row) -> float:
-        """The largest error that the row can have."""
-        return float(row["error"]) + self.references[row["physics"]].bound
+    def _timed(self, physics: str) -> list[tuple[float, float, int]]:
+        """Time [s], error and place of the rows of a model that were judged."""
+        return [
+            (cost["time_s"], error, k)
+            for k, row in enumerate(self.judged)
+            if row["physics"] == physics and (error := row["error"]) is not None and (cost := row["cost"]) is not None
+        ]
 
     def front(self, physics: str) -> list[int]:
         """Places of the rows that no other row of the same model beats in both error and run time, the fastest first.
@@ -129,9 +144,8 @@ class Precision(Answer):
         Errors below the reference's bound count as the bound: nobody knows which of them is smaller.
         """
         bound = self.references[member("physics", physics, self.references)].bound
-        rows = [(r["cost"]["time_s"], max(r["error"], bound), k) for k, r in enumerate(self.judged) if _counts(r, physics)]
-        fastest, best = [], math.inf
-        for _, error, index in sorted(rows):
+        fastest, best = list[int](), math.inf
+        for _, error, index in sorted((time, max(error, bound), k) for time, error, k in self._timed(physics)):
             if error < best:
                 fastest.append(index)
                 best = error
@@ -140,25 +154,26 @@ class Precision(Answer):
     @door
     def cheapest(self, physics: str) -> dict[str, int | None]:
         """For each threshold the place of the fastest row whose error, with the reference's bound, is below it."""
-        rows = [(r["cost"]["time_s"], k) for k, r in enumerate(self.judged) if _counts(r, physics)]
-        fastest: dict[str, int | None] = {}
+        rows, fastest = self._timed(physics), dict[str, int | None]()
         for threshold in THRESHOLDS:
-            good = [(time, k) for time, k in rows if self._largest_error(self.judged[k]) <= threshold]
+            good = [(time, k) for time, error, k in rows if error + self.references[physics].bound <= threshold]
             fastest[f"{threshold:.10f}".rstrip("0")] = min(good)[1] if good else None
         return fastest
 
     @property
     def converged(self) -> bool:
         """Whether any row has an error below the coarsest threshold, or at least numbers where there is no reference."""
-        runs = [row for row in self.judged if row["status"] == "completed"]
-        with_error = [row for row in runs if row["error"] is not None]
-        return any(self._largest_error(row) <= THRESHOLDS[0] for row in with_error) if with_error else bool(runs)
+        bounds = {physics: reference.bound for physics, reference in self.references.items()}
+        errors = [error + bounds[row["physics"]] for row in self.judged if (error := row["error"]) is not None]
+        if errors:
+            return any(error <= THRESHOLDS[0] for error in errors)
+        return any(row["status"] == "completed" for row in self.rows)
 
     @property
-    def models(self) -> list[Tables]:
+    def models(self) -> list[Model]:
         """Each model: what sets it apart, its reference, its difference from the base, its own front."""
         base = self.references[self.base]
-        entries = []
+        entries = list[Model]()
         for physics, reference in self.references.items():
             rows = [row for row in self.rows if row["physics"] == physics]
             if not rows:
@@ -195,9 +210,7 @@ class Precision(Answer):
                 lines.append(f"no setting is known to be within {percent}")
             else:
                 row = self.judged[index]
-                lines.append(
-                    f"cheapest within {percent}: {_words_of(row['setting'])} ({1e3 * row['cost']['time_s']:.3g} ms)"
-                )
+                lines.append(f"cheapest within {percent}: {_words_of(row['setting'])} ({_time_of(row)})")
         for model in self.models:
             if not model["base"] and model["difference"] is not None:
                 lines.append(f"model error: {_words_of(model['model'])} differs by {100.0 * model['difference']:.2g} %")
@@ -205,15 +218,17 @@ class Precision(Answer):
 
     def to_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
-        rows = []
+        return cast(Tables, self.content)
+
+    @property
+    def content(self) -> Study:
+        """The same by its keys."""
+        rows = list[Entry]()
         for row in self.judged:
-            cost = row["cost"] or {}
-            plain = {name: row[name] for name in ("family", "setting", "model", "value", "error", "at_bound", "order")}
-            plain |= {name: row[name] for name in ("expected_order", "errors", "quantities")}
-            costs = {name: cost.get(name) for name in ("time_s", "wall_s", "cpu_s", "compile_s", "steps")}
-            state = {name: row[name] for name in ("status", "reason", "own_error", "reused")}
-            base = row["physics"] == self.base
-            rows.append({**plain, **costs, **state, "base": base, "cost": row["cost"]})
+            cost: Mapping[str, object] = row["cost"] or {}
+            judgement: Mapping[str, object] = row
+            base = {"base": row["physics"] == self.base}
+            rows.append(cast(Entry, {name: {**cost, **judgement, **base}.get(name) for name in _COLUMNS}))
         return {
             "title": self.title,
             "reference": _reference_table(self.references[self.base]),
@@ -251,7 +266,7 @@ class Precision(Answer):
         from raceway.points.precision_picture import draw_on, put_beside
 
         panel = given_axes(ax, 9.0, 6.0)
-        labels = draw_on(panel, self.to_dict())
+        labels = draw_on(panel, self.content)
         panel.legend(frameon=False, fontsize=8)
         put_beside(panel, labels)
         return panel
@@ -261,16 +276,15 @@ class Precision(Answer):
         facts: list[Fact] = [("reference", f"{reference.bound:.1g}", f"relative bound; {reference.how}")]
         for threshold, index in self.cheapest(self.base).items():
             row = None if index is None else self.judged[index]
-            value = "none" if row is None else f"{1e3 * row['cost']['time_s']:.3g} ms"
+            value = "none" if row is None else _time_of(row)
             words = "" if row is None else _words_of(row["setting"])
             facts.append((f"cheapest within {100.0 * float(threshold):g} %", value, words))
         front = set(self.front(self.base))
         rows = [
             (
                 _words_of(row["setting"]),
-                "-" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}",
-                ("on the front, " if index in front else "")
-                + (f"{1e3 * row['cost']['time_s']:.3g} ms" if row["cost"] else row["status"]),
+                _error_of(row) or "-",
+                f"{'on the front, ' if index in front else ''}{_time_of(row)}",
             )
             for index, row in enumerate(self.judged)
         ]
@@ -282,7 +296,7 @@ class Precision(Answer):
         for index, row in enumerate(self.judged):
             cost = row["cost"]
             text = {"setting": ("* " if index in front else "  ") + _words_of(row["setting"])}
-            text["error"] = "" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}"
+            text["error"] = _error_of(row)
             text["own estimate"] = "" if row["own_error"] is None else f"{row['own_error']:.1e}"
             text["order"] = "" if row["order"] is None else f"{row['order']:.2f}"
             text["wall ms"] = "" if cost is None else f"{1e3 * cost['wall_s']:.1f}"
@@ -296,13 +310,13 @@ class Precision(Answer):
         """precision.md."""
         from raceway.points.precision_picture import page
 
-        return {"md": page(self.to_dict(), pictures)}
+        return {"md": page(self.content, pictures)}
 
     def draw(self) -> Figure:
         """Error against run time."""
         from raceway.points.precision_picture import draw
 
-        return draw(self.to_dict())
+        return draw(self.content)
 
     def report(self) -> Iterator[Part]:
         """A line for each setting, and what they come to in words."""
@@ -342,11 +356,16 @@ def _reference_table(reference: Reference) -> Tables:
     }
 
 
-def _counts(row: Row, physics: str) -> bool:
-    return row["physics"] == physics and row["error"] is not None
+def _time_of(row: Judged) -> str:
+    return row["status"] if row["cost"] is None else f"{1e3 * row['cost']['time_s']:.3g} ms"
 
 
-def _ladders(rows: list[Row], key: str) -> list[list[int]]:
+def _error_of(row: Judged) -> str:
+    """With a mark where it is known to the reference's bound only; empty where there is none."""
+    return "" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}"
+
+
+def _ladders(rows: list[Judged], key: str) -> list[list[int]]:
     """Places of finished rows that differ in one key only, a list for each ladder."""
     ladders: dict[str, list[int]] = {}
     for index, row in enumerate(rows):
@@ -402,25 +421,25 @@ def _study(
         if setting.scene is not None:
             groups.setdefault(setting.physics, []).append(setting)
     total = len(design.settings) + len(groups)
-    results, references = list[Tables](), dict[str, Reference]()
+    results, references = list[Placed](), dict[str, Reference]()
 
     def tell(label: str) -> None:
         report(label, len(results) + len(references), total)
 
     for setting in design.settings:
         tell(_words_of(setting.values))
-        head = {name: getattr(setting, name) for name in ("family", "model", "physics")} | {"setting": setting.values}
-        head |= {"expected_order": None, "reused": False}
-        if setting.scene is None:
-            results.append(
-                {**head, "status": "refused", "reason": setting.reason, "quantities": {}, "own_error": None, "cost": None}
-            )
-            continue
-        method = resolve(setting.scene).integrator.method
-        if needs_motion(setting.scene) and method.inertial:
-            head["expected_order"] = method.order
-        row, is_old = measured_once(setting.scene, repeats, repeats, registry, store)
-        results.append({**head, **row, "reused": is_old})
+        row: Measured = {"status": "refused", "reason": setting.reason, "quantities": {}, "own_error": None, "cost": None}
+        order, is_old = None, False
+        if setting.scene is not None:
+            method = resolve(setting.scene).integrator.method
+            order = method.order if needs_motion(setting.scene) and method.inertial else None
+            row, is_old = measured_once(setting.scene, repeats, repeats, registry, store)
+        results.append(
+            {
+                "family": setting.family, "model": setting.model, "physics": setting.physics, "setting": setting.values,
+                "expected_order": order, **row, "reused": is_old,
+            }
+        )  # fmt: skip
     runner = Runner(registry, store, limit_s, tell)
     for physics, group in groups.items():
         references[physics] = find_reference(group, runner, reference)

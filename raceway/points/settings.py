@@ -15,7 +15,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 import attrs
 
@@ -26,7 +26,7 @@ from raceway.framework.registry import Registry
 from raceway.planning.plan import make_plan
 from raceway.points.axes import Vary, axes_of, points, refuse_mistakes, tables_at
 from raceway.points.store import Store
-from raceway.points.timing import measured_once
+from raceway.points.timing import Measured, measured_once
 from raceway.scene.scene import Scene, scene_from_dict
 from raceway.storage.tables import ReadTables, Tables
 
@@ -200,6 +200,69 @@ _TIGHT = 1e-10
 #: Smallest bound that is claimed [relative]: equilibria and steps are iterated to 1e-9 of the forces.
 _FLOOR = 1e-10
 
+
+class Ran(Measured):
+    """A setting that was run, with the order that its errors should have."""
+
+    family: str
+    setting: Tables
+    model: Tables
+    expected_order: int | None
+    reused: bool
+
+
+class Placed(Ran):
+    """With what decides which settings are compared."""
+
+    physics: str
+
+
+class Compared(TypedDict):
+    """Value of the main quantity, its error and those of all, whether the reference limits them, and the observed order."""
+
+    value: float | None
+    error: float | None
+    errors: dict[str, float]
+    at_bound: bool
+    order: float | None
+
+
+class Judged(Placed, Compared):
+    """A setting beside its reference."""
+
+
+class Entry(Ran, Compared):
+    """The same in precision.json; ``base``: whether it is of the model that others are compared with."""
+
+    time_s: float | None
+    base: bool
+
+
+class Model(TypedDict):
+    """What sets a model apart, its reference, its difference from the base, its own front and cheapest settings."""
+
+    model: Tables
+    base: bool
+    reference: Tables
+    difference: float | None
+    differences: dict[str, float]
+    front: list[int]
+    cheapest: dict[str, int | None]
+
+
+class Study(TypedDict):
+    """precision.json."""
+
+    title: str
+    reference: Tables
+    rows: list[Entry]
+    front: list[int]
+    cheapest: dict[str, int | None]
+    models: list[Model]
+    left_out: list[Tables]
+    words: list[str]
+
+
 Values = dict[str, float]
 _PARTS_OF_Z = (Z_REAL.name, Z_IMAG.name)
 
@@ -253,7 +316,7 @@ class Runner:
     limit_s: float
     on_run: Callable[[str], None]
 
-    def at(self, setting: Setting, values: ReadTables) -> Tables | None:
+    def at(self, setting: Setting, values: ReadTables) -> Measured | None:
         """The measured run of a setting with some values changed; None where it is refused, fails or takes too long."""
         tables = tables_at(setting.tables, values, self.registry)
         reference = setting_at(tables, "reference", {}, self.registry)

@@ -6,6 +6,7 @@ import resource
 import sys
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING, NotRequired, TypedDict, cast
 
 from raceway.answers.quantities import AXIAL_DISPLACEMENT, P0, PEAK_BALL_LOAD, Z_IMAG, Z_REAL, K, named
 from raceway.errors import RacewayError
@@ -13,7 +14,10 @@ from raceway.framework.registry import Registry
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import Store, row_key
 from raceway.scene.scene import Scene
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.pipeline.error import ErrorTable
 
 
 def processor_time() -> float:
@@ -28,6 +32,35 @@ _PROCESS = Path("/proc/self")
 _COMPARED = named(Z_REAL, Z_IMAG, K, AXIAL_DISPLACEMENT, PEAK_BALL_LOAD, P0)
 
 
+class Cost(TypedDict):
+    """Least times of the repeats [s], compiling apart; what is counted is of one run."""
+
+    wall_s: float
+    solve_s: float
+    error_s: float
+    cpu_s: float
+    time_s: float
+    wall_spread_s: float
+    compile_s: float
+    steps: int
+    iterations: int
+    peak_memory_bytes: int
+    peak_memory_of: str
+    repeats: int
+
+
+class Measured(TypedDict):
+    """A setting that was run; without quantities and cost where it failed."""
+
+    status: str
+    reason: str
+    quantities: dict[str, float]
+    own_error: float | None
+    transient_error: NotRequired[float | None]
+    warnings: NotRequired[list[str]]
+    cost: Cost | None
+
+
 def quantities(result: Tables) -> dict[str, float]:
     """What a study compares, as far as a result.json has it.
 
@@ -38,22 +71,22 @@ def quantities(result: Tables) -> dict[str, float]:
     return {name: value for name, quantity in _COMPARED.items() if (value := quantity.of(result)) is not None}
 
 
-def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry, store: Store) -> tuple[Tables, bool]:
+def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry, store: Store) -> tuple[Measured, bool]:
     """``measured``, and whether it was stored before; ``extra`` is a part of the row's key.
 
     In this process, with nothing beside it: times are what is asked for.
     """
     item = Item(row_key(scene, registry, extra), scene.title, (scene, repeats))
     (row,), reused = work_through(_measurement, [item], store, local(registry, 0), registry)
-    return row, reused == 1
+    return cast(Measured, row), reused == 1
 
 
 def _measurement(task: tuple[Scene, int], registry: Registry) -> Tables:
     scene, repeats = task
-    return measured(scene, registry, repeats)
+    return cast(Tables, measured(scene, registry, repeats))
 
 
-def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
+def measured(scene: Scene, registry: Registry, repeats: int) -> Measured:
     """Run a scene: status, quantities, its own error estimate, cost; a failure with its reason.
 
     Notes
@@ -75,13 +108,8 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
             cpu = time.process_time() - cpu
             result = answer.to_dict()
         except RacewayError as error:
-            return {
-                "status": error.status,
-                "reason": str(error).splitlines()[0],
-                "quantities": {},
-                "own_error": None,
-                "cost": None,
-            }
+            why = str(error).splitlines()[0]
+            return {"status": error.status, "reason": why, "quantities": {}, "own_error": None, "cost": None}
         cost = result["cost"]
         compiling += cost["compile_s"]
         if cold and cost["compile_s"] > 0.0:
@@ -91,6 +119,17 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
         # A plug-in that compiles in every run: no less than the wall time of the solution can be told.
         runs.append({"cpu_s": cpu if cost["compile_s"] == 0.0 else max(cpu - cost["compile_s"], cost["solve_s"]), **times})
     times = {name: min(timing[name] for timing in runs) for name in runs[0]}
+    least = {
+        **times,
+        # Other programs on the machine stretch the wall time, not the work; threads share the work.
+        "time_s": times["cpu_s"] if cost["threads"] == 1 else times["wall_s"],
+        "wall_spread_s": max(timing["wall_s"] for timing in runs) - times["wall_s"],
+        "compile_s": compiling,
+        "steps": cost["steps"],
+        "iterations": cost["newton_iterations"],
+        **_peak_memory("setting", own_peak),
+        "repeats": len(runs),
+    }
     return {
         "status": "completed",
         "reason": "",
@@ -98,21 +137,11 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Tables:
         "own_error": without_mesh(result["error"]),
         "transient_error": result["error"]["transient"],
         "warnings": result["warnings"],
-        "cost": {
-            **times,
-            # Other programs on the machine stretch the wall time, not the work; threads share the work.
-            "time_s": times["cpu_s"] if cost["threads"] == 1 else times["wall_s"],
-            "wall_spread_s": max(timing["wall_s"] for timing in runs) - times["wall_s"],
-            "compile_s": compiling,
-            "steps": cost["steps"],
-            "iterations": cost["newton_iterations"],
-            **_peak_memory("setting", own_peak),
-            "repeats": len(runs),
-        },
+        "cost": cast(Cost, least),
     }
 
 
-def without_mesh(error: ReadTables) -> float | None:
+def without_mesh(error: ErrorTable) -> float | None:
     """The run's own estimate, less its bodies': rows on one mesh are compared with a reference on the same."""
     return None if error["total"] is None else max(error["total"] - (error["bodies"] or 0.0), 0.0)
 

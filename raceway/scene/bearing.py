@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property, lru_cache
 from math import asin, degrees, pi
+from typing import Any, cast
 
 import attrs
 
@@ -11,7 +12,7 @@ from raceway.core.columns import acos, cos, has_columns, radians, sin, some, wit
 from raceway.errors import MeshError, SceneError
 from raceway.framework.options import at_least, between, finite, inside, length, one_of, option, optional, positive
 from raceway.framework.rules import Rule, speaking
-from raceway.scene.sets import GEOMETRY, RATINGS, SetRow, arrangement, places_of, signs_of, travel
+from raceway.scene.sets import GEOMETRY, RATINGS, arrangement, places_of, signs_of, travel
 
 #: Young's moduli of bearing steels [Pa], 206 to 212 GPa in catalogues with 1 % on either side, and their thermal expansion [1/K].
 STEEL, STEEL_EXPANSION = (2.04e11, 2.14e11), 12.5e-6
@@ -285,6 +286,38 @@ class Bearing:
         if clearance is not None and some(clearance) and (angle is None or not some(angle)):
             return acos(1.0 - clearance / (2.0 * self._centre_distance))
         return radians(angle) if angle is not None else 0.0
+
+
+def _with_geometry(row: type, own: list[attrs.Attribute[Any]]) -> list[attrs.Attribute[Any]]:
+    """Its own keys, and those of ``GEOMETRY`` as [bearing] declares them, each of which may be left out."""
+    declared = attrs.fields_dict(Bearing)
+    row.__annotations__ |= {key: f"{declared[key].type} | None" for key in GEOMETRY}
+    rules = {key: optional(cast(Any, declared[key].validator)) for key in GEOMETRY}
+    return [*own, *(declared[key].evolve(default=None, validator=rule) for key, rule in rules.items())]
+
+
+@attrs.frozen(field_transformer=_with_geometry)
+class SetRow:
+    """One row of a set: where it stands, which way it faces, and what of its bearing differs from the set's."""
+
+    direction: str | None = option(
+        None,
+        help="'+': a positive axial motion of the inner ring loads it; default: from the arrangement",
+        rule=optional(one_of("+", "-")),
+    )
+    position: float | None = option(
+        None,
+        unit="m",
+        help="axial position of its inner groove centres; default: rows `row_distance` apart",
+        rule=optional(finite()),
+    )
+    preload: float | None = option(
+        None,
+        unit="N",
+        help="preload for which this row is ground (preload_of = 'row'); default: bearing.preload",
+        rule=optional(at_least(0.0)),
+    )
+    preset: str | None = option(None, help="name in the catalogue; other keys override it")
 
 
 #: Dimensions that leave no bearing; ``when`` of a bearing with columns is one of each point.

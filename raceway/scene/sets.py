@@ -6,22 +6,7 @@ alike are in tandem and share a load; rows that face each other's way brace each
 
 from __future__ import annotations
 
-import attrs
-
-from raceway.framework.options import (
-    Rule,
-    at_least,
-    between,
-    finite,
-    inside,
-    length,
-    nearest,
-    one_of,
-    option,
-    optional,
-    positive,
-    worded,
-)
+from raceway.framework.options import Rule, nearest, worded
 
 #: Rows that face "+" and "-", and how they stand: with the "+" rows on the side of -x the pressure lines diverge towards the
 #: axis, back to back; the other way round they stand face to face.
@@ -93,63 +78,10 @@ def places_of(word: str, distance: float) -> tuple[tuple[float, float], ...]:
     return tuple(zip(sides, places if rising else places[::-1], strict=True))
 
 
-@attrs.frozen
-class SetRow:
-    """One row of a set: where it stands, which way it faces, and what of its bearing differs from the set's."""
-
-    direction: str | None = option(
-        None,
-        help="'+': a positive axial motion of the inner ring loads it; default: from the arrangement",
-        rule=optional(one_of("+", "-")),
-    )
-    position: float | None = option(
-        None,
-        unit="m",
-        help="axial position of its inner groove centres; default: rows `row_distance` apart",
-        rule=optional(finite()),
-    )
-    preload: float | None = option(
-        None,
-        unit="N",
-        help="preload for which this row is ground (preload_of = 'row'); default: bearing.preload",
-        rule=optional(at_least(0.0)),
-    )
-    preset: str | None = option(None, help="name in the catalogue; other keys override it")
-    ball_diameter: float | None = option(None, unit="m", help="D", rule=optional(length()))
-    pitch_diameter: float | None = option(None, unit="m", help="d_m", rule=optional(length()))
-    ball_count: int | None = option(None, help="Z", rule=optional(at_least(1)))
-    conformity_inner: float | None = option(
-        None, help="groove radius / ball diameter, inner", rule=optional(inside(0.5, 1.0))
-    )
-    conformity_outer: float | None = option(
-        None, help="groove radius / ball diameter, outer", rule=optional(inside(0.5, 1.0))
-    )
-    contact_angle_deg: float | None = option(None, unit="deg", help="free contact angle", rule=optional(between(0.0, 75.0)))
-    bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(length()))
-    outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(length()))
-    width: float | None = option(None, unit="m", help="width", rule=optional(length()))
-    dynamic_rating: float | None = option(
-        None,
-        unit="N",
-        help="dynamic load rating C of one row; default: the catalogue's, else ISO 281",
-        rule=optional(positive()),
-    )
-    static_rating: float | None = option(
-        None,
-        unit="N",
-        help="static load rating C0 of one row; default: the catalogue's, else ISO 76",
-        rule=optional(positive()),
-    )
-    first_ball_azimuth_deg: float | None = option(
-        None, unit="deg", help="azimuth of ball 0 from +y towards +z", rule=optional(finite())
-    )
-
-
-#: Keys of a row that describe its bearing.
-GEOMETRY = tuple(
-    field.name for field in attrs.fields(SetRow) if field.name not in ("direction", "position", "preload", "preset")
-)
-
-
+#: Keys of a row that describe its bearing: those of [bearing] where a row leaves them out.
+GEOMETRY = (
+    "ball_diameter", "pitch_diameter", "ball_count", "conformity_inner", "conformity_outer", "contact_angle_deg", "bore",
+    "outer_diameter", "width", "dynamic_rating", "static_rating", "first_ball_azimuth_deg",
+)  # fmt: skip
 #: Keys of printed load ratings.
 RATINGS = "dynamic_rating", "static_rating"
