@@ -7,8 +7,6 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
-from unittest.mock import patch
 
 import attrs
 import numpy as np
@@ -106,29 +104,23 @@ def of_precision() -> list[Figure]:
     return [precision.draw({**whole, "reference": {"error": bound}}) for bound in (1e-6, None)]
 
 
-def picture_of(answer: Any, content: dict[str, Any]) -> Figure:
-    """The picture of an answer whose content is another one."""
-    with patch.object(type(answer), "to_dict", lambda _answer: content):
-        figure: Figure = answer.draw()
-    return figure
-
-
 def of_sensitivities() -> list[Figure]:
     scene = b7206c(load={"axial": 300.0, "radial": [100.0, 0.0]})
     answer = raceway.sensitivities(scene)
-    whole = answer.to_dict()
-    odd = [{**key, "influence": {name: share * 1e4 for name, share in key["influence"].items()}} for key in whole["keys"]]
-    return [picture_of(answer, content) for content in (whole, {**whole, "keys": odd[:1]})]
+    first = answer.rows[0]
+    odd = attrs.evolve(first, influence={name: share * 1e4 for name, share in first.influence.items()})
+    return [answer.draw(), attrs.evolve(answer, rows=(odd,)).draw()]
 
 
 def of_a_band() -> list[Figure]:
     found = raceway.band(
         b7206c(load={"axial": 300.0}), {"load.axial": "±10 %", "bearing.contact_angle_deg": "±1 deg"}, count=16
     )
-    whole = found.to_dict()
-    lost = {name: {**one, "total": None, "first_order": None} for name, one in whole["quantities"].items()}
-    odd = {name: {**one, "total": [1.3, -0.2], "first_order": [1.1, -0.1]} for name, one in whole["quantities"].items()}
-    return [picture_of(found, {**whole, "quantities": one}) for one in (whole["quantities"], lost, odd)]
+    lost = attrs.evolve(found, total={}, first={})
+    odd = {
+        name: dict.fromkeys(found.nominal, indices) for name, indices in {"total": [1.3, -0.2], "first": [1.1, -0.1]}.items()
+    }
+    return [one.draw() for one in (found, lost, attrs.evolve(found, **odd))]
 
 
 def of_the_article() -> list[Figure]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from raceway.answers.quantities import C_ERROR, C, K
-from raceway.storage.tables import ReadTables
 
 #: Damping over stiffness by the rule of thumb of rotor programs [s]: ROSS 2.3 takes c = 1.25e-5 s k for a ball bearing without a
 #: given damping (``ross.BallBearingElement``), the middle of its "typical range" of 0.25e-5 to 2.5e-5 s.
@@ -17,7 +18,7 @@ DRY = "dry: no damping is modelled"
 _REMEDY = "set contact.damping or contact.time_constant"
 
 
-def dry_damping_note(content: ReadTables) -> str | None:
+def dry_damping_note(content: Mapping[str, object]) -> str | None:
     """The sentence for one run.
 
     Parameters

@@ -20,7 +20,6 @@ from raceway.answers.wrapping import Words, fixed
 from raceway.framework.shown import number as number
 from raceway.framework.shown import number_within as number_within
 from raceway.framework.shown import tilt_words as tilt_words
-from raceway.storage.tables import ReadTables
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, RenderableType
@@ -69,7 +68,7 @@ def file_lines(files: Sequence[str]) -> list[RenderableType]:
     return [Text(f"written: {name}", no_wrap=True, overflow="ignore") for name in files]
 
 
-def csv_text(rows: Sequence[ReadTables]) -> str:
+def csv_text(rows: Sequence[Mapping[str, object]]) -> str:
     """A table as CSV, with every key of any row as a column."""
     text = io.StringIO()
     writer = csv.DictWriter(text, list(dict.fromkeys(key for row in rows for key in row)), lineterminator="\n")
@@ -101,7 +100,7 @@ _WHOLE, _BETWEEN = 14, 2
 _PLACE = "#"
 
 
-def rows_table(rows: Sequence[ReadTables], title: str = "") -> RenderableType:
+def rows_table(rows: Sequence[Mapping[str, object]], title: str = "") -> RenderableType:
     """A table of dictionaries with the same keys; underscores become blanks, numbers are aligned.
 
     Columns that hold the same in all of several rows are said in one line above.  What is wider than the screen goes on in a

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import degrees
+from typing import cast
 
 import attrs
 import numpy as np
@@ -16,6 +17,7 @@ from raceway.core.ring.ring import COORDINATES
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import LawReport
 from raceway.framework.duties import law_report, renews
+from raceway.pipeline.content import AtRest
 from raceway.storage.tables import Tables
 
 #: Share of its free contact angle at which a row without a clearance counts as unseated.
@@ -104,7 +106,7 @@ def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndar
     return (*warnings, *model.bearing.edge_warnings(model, inner, outer, force))
 
 
-def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
+def equilibrium_table(model: Model, equilibrium: Equilibrium) -> AtRest:
     """The table ``equilibrium`` of result.json."""
     z = model.system.ball_count
     load_inner, load_outer = equilibrium.contact_force[:z], equilibrium.contact_force[z:]
@@ -125,9 +127,9 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
     for name, values in {} if law is None else law.columns.items():
         columns |= {f"inner_{name}": values[:z], f"outer_{name}": values[z:]}
     several = len(model.problem.bearing.rows) > 1
-    rows: list[Tables] = [{"row": int(row) + 1} if several else {} for row in model.basis.row]
+    rows: list[dict[str, int]] = [{"row": int(row) + 1} if several else {} for row in model.basis.row]
     peaks = np.concatenate([columns["peak_pressure_inner_pa"], columns["peak_pressure_outer_pa"]])
-    return {
+    table = {
         "displacement": dict(zip(COORDINATES, equilibrium.displacement.tolist(), strict=True)),
         "stiffness": equilibrium.stiffness.tolist(),
         "damping": equilibrium.damping.tolist(),
@@ -142,6 +144,7 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> Tables:
         "held_axial": held_table(model, equilibrium),
         "iterations": equilibrium.iterations,
     }
+    return cast(AtRest, table)
 
 
 def motion_table(model: Model, record: Record) -> Tables:

@@ -25,7 +25,7 @@ Trefethen, Weideman, SIAM Review 56 (2014), 385 (aliasing of the trapezoidal rul
 from __future__ import annotations
 
 from math import ceil, pi
-from typing import NotRequired, TypedDict, cast
+from typing import cast
 
 import attrs
 import numpy as np
@@ -37,11 +37,11 @@ from raceway.core.ring.system import compiled, surrogate
 from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.framework.estimate import Estimate, Note
 from raceway.framework.registry import default_registry
+from raceway.pipeline.content import ErrorTable
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.simulate import Simulation, simulate
 from raceway.pipeline.transient_error import Clean, Identified, Run, distance, settled_value, without_free_vibration
 from raceway.planning.resolve import fits
-from raceway.storage.tables import Tables
 
 #: Least steps per turn (of ``integrator.steps_per_turn``), and how close the second run may come to the stable limit.
 _LEAST_STEPS = 8
@@ -78,22 +78,6 @@ class Part:
     def estimate(self) -> Estimate | None:
         """What the note is made of; None of a plain sentence."""
         return self.how.estimate if isinstance(self.how, Note) else None
-
-
-class ErrorTable(TypedDict):
-    """``error`` of result.json: sizes relative to |Z|, None where not estimated; ``how`` and ``short`` have the same names."""
-
-    total: float | None
-    time_step: float | None
-    transient: float | None
-    mesh: float | None
-    contact: float | None
-    identification: float | None
-    bodies: float | None
-    how: dict[str, str]
-    unresolved: list[str]
-    model: NotRequired[Tables | None]
-    short: NotRequired[dict[str, str]]
 
 
 @attrs.frozen

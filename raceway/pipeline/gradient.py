@@ -26,7 +26,7 @@ from raceway.bodies.model import Equilibrium, Model, model_of
 from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.orbits import neighbours
 from raceway.core.periodic.search import PeriodicMotion, problem_of
-from raceway.core.periodic.steady import find, growth_of_disturbances, orbit_tables, refuse, synchronous_response
+from raceway.core.periodic.steady import find, growth_of_disturbances, refuse, synchronous_response
 from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import surrogate
@@ -162,10 +162,9 @@ class SteadyOrbit:
     @property
     def warning(self) -> str:
         """What a person must know of an orbit that is unstable; empty where it is not."""
-        table = orbit_tables([self.orbit])[0]
-        if table["stable"]:
+        if self.orbit.floquet.verdict != "unstable":
             return ""
-        return f"the steady orbit is unstable, {growth_of_disturbances(table)}: the ring leaves it, and its derivatives belong to no lasting motion"
+        return f"the steady orbit is unstable, {growth_of_disturbances(self.orbit.floquet)}: the ring leaves it, and its derivatives belong to no lasting motion"
 
     @cached_property
     def line(self) -> np.ndarray:

@@ -40,7 +40,12 @@ def stated_quantities(model: Model, equilibrium: Equilibrium, record: Record | N
     PluginError
         A plug-in that breaks a duty.
     """
-    points, values, tables, warnings = solved_point(model, equilibrium, record), Tables(), dict[str, Tables](), list[str]()
+    points, values, tables, warnings = (
+        solved_point(model, equilibrium, record),
+        dict[str, float | np.ndarray](),
+        dict[str, Tables](),
+        list[str](),
+    )
     for plugin in fitting_quantities(model.problem):
         numbers = quantities_at(plugin, points)
         tables[plugin.name], sentences = quantity_report(plugin, points, numbers)

@@ -25,8 +25,9 @@ from raceway.framework.estimate import Note, few_words
 from raceway.framework.options import nearest
 from raceway.framework.shown import Fact, in_micro, largest_facts, number, tilt_words
 from raceway.framework.sources import blamed
+from raceway.pipeline.content import AtRest, Content, ErrorTable
 from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts, motion_table, pressures
-from raceway.pipeline.error import Errors, ErrorTable
+from raceway.pipeline.error import Errors
 from raceway.pipeline.plausible import Spread, closed_bound, model_spread
 from raceway.pipeline.quantities import StatedQuantities
 from raceway.pipeline.simulate import Simulation
@@ -83,7 +84,7 @@ class Result(Answer):
     identification: Identification | None
     simulation: Simulation | None
     errors: Errors
-    cost: Tables
+    cost: dict[str, float]
     stability: Tables
     environment: Tables
     lines: list[Line]
@@ -249,7 +250,7 @@ class Result(Answer):
         return uncertainty_table(self)
 
     @cached_property
-    def at_rest(self) -> Tables:
+    def at_rest(self) -> AtRest:
         """The table ``equilibrium``."""
         return equilibrium_table(self.model, self.equilibrium)
 
@@ -346,11 +347,16 @@ class Result(Answer):
 
     def to_dict(self) -> Tables:
         """The content of result.json: plain numbers, lists and tables, None where a number does not exist."""
+        return cast(Tables, self.content)
+
+    @property
+    def content(self) -> Content:
+        """The same by its keys."""
         (model, note), error = self.model_spread, self.error
         notes = {**error["how"], "model": note}
         how, few = ({name: words(note) for name, note in notes.items()} for words in (str, few_words))
         motion = self.simulation
-        return without_nan(
+        content: Content = without_nan(
             {
                 "schema": SCHEMA,
                 "title": self.title,
@@ -372,25 +378,28 @@ class Result(Answer):
                 "warnings": list(self.warnings),
             }
         )
+        return content
 
     def _identification(self) -> Tables | None:
         z = self.identification
         if z is None:
             return None
-        lines = {
-            "name": "name",
-            "frequency_hz": "frequency_hz",
-            "forward_m": "forward",
-            "backward_m": "backward",
-            "axial_m": "axial",
-        }
         return {
             "definition": z.definition,
             **nested(IDENTIFIED, self)["identification"],
             "damping_origin": damping_origin(self.model.problem),
             "band": self.band,
             "tilt": self.model.problem.supports.tilt,
-            "lines": [{key: getattr(line, name) for key, name in lines.items()} for line in self.lines],
+            "lines": [
+                {
+                    "name": line.name,
+                    "frequency_hz": line.frequency_hz,
+                    "forward_m": line.forward,
+                    "backward_m": line.backward,
+                    "axial_m": line.axial,
+                }
+                for line in self.lines
+            ],
             "series": [
                 {
                     "speed_rpm": speed * 30.0 / math.pi,
@@ -413,7 +422,7 @@ class Result(Answer):
         """The answer first, then what it rests on; what makes the numbers doubtful before them."""
         from raceway.pipeline.run_screen import report
 
-        return report(self.to_dict())
+        return report(self.content)
 
     @door
     def picture(self, folder: Annotated[str | Path, PATH]) -> list[Path]:

@@ -302,7 +302,7 @@ def _friction(motion: Simulation) -> float:
     return motion.model.bearing.friction_lost(motion.model.system, motion.whole)
 
 
-def _work(motions: list[Simulation]) -> Tables:
+def _work(motions: list[Simulation]) -> dict[str, int]:
     """Counts of the table ``cost``."""
     counts, unit = [motion.whole.counts for motion in motions], 1 if sys.platform == "darwin" else 1024
     return {

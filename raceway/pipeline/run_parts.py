@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from raceway.answers.quantities import HEADLINE, K_ERROR, KXX, KYY, KYY_TILTS_FOLLOW, STIFFNESSES, K, Quantity, X
 from raceway.answers.table import Row, number, tilt_words
@@ -10,6 +10,7 @@ from raceway.errors import PluginError
 from raceway.framework.duties import quantity_screen
 from raceway.framework.registry import default_registry
 from raceway.framework.shown import in_micro
+from raceway.pipeline.content import AtRest, Content
 from raceway.pipeline.uncertainty import interval, stated
 from raceway.storage.tables import ReadTables
 
@@ -102,7 +103,7 @@ def _inertia(inertia: ReadTables) -> list[Row]:
 _ROUNDING_N = 1e-6
 
 
-def equilibrium_rows(result: ReadTables) -> list[Row]:
+def equilibrium_rows(result: Content) -> list[Row]:
     """Displacement and loads; the tangent stiffness where it is not the answer itself."""
     equilibrium, tilt = result["equilibrium"], result["scene"]["supports"]["tilt"]
     displacement, dynamic = equilibrium["displacement"], result["identification"] is not None
@@ -122,7 +123,7 @@ def equilibrium_rows(result: ReadTables) -> list[Row]:
     return rows + (tangent_rows(result) if dynamic else [])
 
 
-def mounting_rows(equilibrium: ReadTables) -> list[Row]:
+def mounting_rows(equilibrium: AtRest) -> list[Row]:
     """Preload and held axial force: running, mounted and before mounting."""
     rows, preload, axial = [], equilibrium["preload"], equilibrium["held_axial"]
     if preload is not None:
@@ -161,7 +162,7 @@ def quantity_rows(result: ReadTables) -> list[Row]:
 _NEGLIGIBLE = 1e-2
 
 
-def error_rows(result: ReadTables) -> list[Row]:
+def error_rows(result: Content) -> list[Row]:
     """Intervals of loads, pressure, life and preload; the numerical error of K with the parts of that of Z."""
     error, identification = result["error"], result["identification"]
     entries = {one.symbol.replace("_", " "): result["uncertainty"][one.name] for one in HEADLINE if one not in STIFFNESSES}
@@ -171,7 +172,8 @@ def error_rows(result: ReadTables) -> list[Row]:
     rows: list[Row] = [("", "", f"{intervals} %{', for one maker' if makers else ''}")] if intervals else []
     # Laws other than Hertz's are no part of the total: they widen the intervals.
     names = ["time_step", "transient", "identification", "mesh", *(["contact"] if error["bodies"] else [])]
-    parts = {name.replace("_", " "): error.get(name) for name in names}
+    numbers: ReadTables = error
+    parts = {name.replace("_", " "): numbers.get(name) for name in names}
     least = _NEGLIGIBLE * (error["total"] or 0.0)
     sizes = {name: f"{name} {value:.1e}" for name, value in parts.items() if value and value > least}
     if identification is None:
@@ -186,11 +188,11 @@ def error_rows(result: ReadTables) -> list[Row]:
         rows.append(("relative error of Z", total, "; ".join(words)))
     else:
         rows.append(("numerical error of K", K.text(absolute, 2), f"of Z, relative: {total}, {'; '.join(words)}"))
-    series = [window for window in identification.get("series", []) if window["error"] is not None]
+    series = [(off, one["speed_rpm"]) for one in identification["series"] if (off := one["error"]) is not None]
     if series:
-        worst = max(series, key=lambda window: window["error"])
-        how = f"at {worst['speed_rpm']:.6g} r/min; of {len(series)} windows, all in result.json"
-        rows.append(("largest of the series", f"{worst['error']:.1e}", how))
+        worst, speed = max(series, key=lambda window: window[0])
+        how = f"at {speed:.6g} r/min; of {len(series)} windows, all in result.json"
+        rows.append(("largest of the series", f"{worst:.1e}", how))
     return rows
 
 
@@ -207,7 +209,7 @@ def orbit_rows(orbits: Sequence[ReadTables]) -> list[Row]:
     return rows
 
 
-def cost_row(cost: ReadTables) -> Row:
+def cost_row(cost: Mapping[str, float]) -> Row:
     """Time and memory; of a run that compiled, which happens once, time alone."""
     compile_s, digits = cost["compile_s"], 2 if cost["compile_s"] else 3
     words = [number(cost["cpu_s"], "CPU-s", digits)] if "cpu_s" in cost else []
@@ -228,7 +230,7 @@ def stability_rows(stability: ReadTables) -> list[Row]:
     return [] if limit is None and drift is None else [("stability", stability["status"], words)]
 
 
-def interval_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
+def interval_rows(result: Content, *quantities: Quantity) -> list[Row]:
     """Quantities that the result has, with their intervals; what makes an interval is a line of its own."""
     rows: list[Row] = []
     for label, value, words in (stated(quantity, result) for quantity in quantities if quantity.of(result) is not None):
@@ -237,7 +239,7 @@ def interval_rows(result: ReadTables, *quantities: Quantity) -> list[Row]:
     return rows
 
 
-def tangent_rows(result: ReadTables) -> list[Row]:
+def tangent_rows(result: Content) -> list[Row]:
     """kxx, kyy and kyy with tilts that follow, each within its interval."""
     facts = [stated(one, result) for one in (KXX, KYY, KYY_TILTS_FOLLOW) if one.of(result) is not None]
     axial, radial, *follows = [(label, value, words.partition(":")[0]) for label, value, words in facts]
@@ -245,14 +247,14 @@ def tangent_rows(result: ReadTables) -> list[Row]:
     return [both, *follows, *held_rows(result)]
 
 
-def held_rows(result: ReadTables) -> list[Row]:
+def held_rows(result: Content) -> list[Row]:
     """kxx within a motion, of a set with rows on a spring."""
     stiffness = result["equilibrium"]["stiffness_rows_held"]
     how = "rows on the spring held as within a motion; above they follow"
     return [] if stiffness is None else [("kxx, rows held", KXX.text(stiffness[0][0]), how)]
 
 
-def loaded_balls(result: ReadTables, words: Sequence[str]) -> list[Row]:
+def loaded_balls(result: Content, words: Sequence[str]) -> list[Row]:
     """The ``most`` and the ``least`` loaded ball, each where it is asked for; one row where all balls carry the same."""
     loads = [ball["load_inner_n"] for ball in result["equilibrium"]["balls"]]
     if number(min(loads), "N") == number(max(loads), "N") and min(loads) > 0.0:
@@ -260,7 +262,7 @@ def loaded_balls(result: ReadTables, words: Sequence[str]) -> list[Row]:
     return [_loaded_ball(result, word, False) for word in words]
 
 
-def _loaded_ball(result: ReadTables, word: str, alike: bool) -> Row:
+def _loaded_ball(result: Content, word: str, alike: bool) -> Row:
     """By row and number in its row, with azimuth; the most loaded one on the race where that is, then on the other one."""
     equilibrium, balls = result["equilibrium"], result["equilibrium"]["balls"]
     outer = word == "most" and equilibrium["largest_ball_load_race"] == "outer"

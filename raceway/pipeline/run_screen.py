@@ -24,6 +24,7 @@ from raceway.answers.table import Row, micro, sections, tilt_words
 from raceway.answers.wrapping import Words
 from raceway.framework.duties import has_rollers
 from raceway.framework.registry import default_registry
+from raceway.pipeline.content import Content
 from raceway.pipeline.run_parts import (
     bodies_rows,
     cost_row,
@@ -47,7 +48,7 @@ _OF_Z = (
 )  # fmt: skip
 
 
-def _answer_rows(result: ReadTables) -> list[Row]:
+def _answer_rows(result: Content) -> list[Row]:
     """The first section."""
     identification = result["identification"]
     if identification is None:
@@ -68,16 +69,16 @@ def _answer_rows(result: ReadTables) -> list[Row]:
     return [
         (f"Answer at {SPEED.of(result):g} r/min, {force}, {tilt_words(identification['tilt'])}", "", ""),
         *interval_rows(result, K),
-        *_damping_rows(result),
+        *_damping_rows(result, identification),
         Z.fact(result, f"{identification['definition'].partition(':')[0]}, m = {MASS.of(result):.4g} kg"),
         ("orbit, semi-axes", axes, f"synchronous (1x){', a line' if thin else ''}"),
         *([("", "", dry)] if dry else []),
     ]
 
 
-def _damping_rows(result: ReadTables) -> list[Row]:
+def _damping_rows(result: Content, identification: ReadTables) -> list[Row]:
     """C with its origin; of a band C, loss factor and phase at both ends."""
-    band, origin = result["identification"]["band"], result["identification"]["damping_origin"]
+    band, origin = identification["band"], identification["damping_origin"]
     if band is None:
         name, value, remark = C.fact(result, origin)
         return [(name, value, origin if origin == DRY else remark)]
@@ -102,20 +103,19 @@ class Screen(NamedTuple):
     left_out: str
 
 
-def screen(result: ReadTables) -> Screen:
+def screen(result: Content) -> Screen:
     """Of one run, from the content of result.json."""
     rows = [*_answer_rows(result), *equilibrium_rows(result), *quantity_rows(result)]
-    if result.get("tolerances"):
+    if result["tolerances"]:
         from raceway.pipeline.first_order import tolerance_rows
 
         rows += tolerance_rows(result["tolerances"])
     # The rows without the numbers that a part of the error of Z is as large as, or larger.
-    error = result["error"]
-    parts = error.get("unresolved")
+    parts = result["error"]["unresolved"]
     why = f"the error of Z ({', '.join(parts)}) is as large as Z" if parts else ""
     rows = [(name, "not resolved", why) if parts and name in _OF_Z else (name, value, note) for name, value, note in rows]
-    rows += bodies_rows(result.get("model"))
-    rows += orbit_rows((result.get("motion") or {}).get("orbits") or [])
+    rows += bodies_rows(result["model"])
+    rows += orbit_rows(result["motion"]["orbits"] if result["motion"] else [])
     rows += [("Error and cost", "", ""), *error_rows(result), *stability_rows(result["stability"]), cost_row(result["cost"])]
     # Geometry, arrangement and model, one per line.
     scene, angle = result["scene"], f"{result['equilibrium']['free_contact_angle_deg']:.5g} deg"
@@ -125,7 +125,7 @@ def screen(result: ReadTables) -> Screen:
     if b.get("radial_clearance") and not b.get("contact_angle_deg") and not rollers:
         angle += ", from the clearance"
     balls = f"{b['ball_count']} {'rollers' if rollers else 'balls'} of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
-    geometry = result.get("geometry") or {}
+    geometry = result["geometry"] or {}
     maker = f"; maker {geometry['maker'] or 'not said'}" if geometry else ""
     words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}{maker}"]
     if b.get("arrangement", "single") != "single" or b.get("row"):
@@ -162,7 +162,7 @@ def screen(result: ReadTables) -> Screen:
     return Screen(result["title"], "\n".join(words), [micro(text) for text in result["warnings"]], rows, left_out)
 
 
-def report(result: ReadTables) -> list[Part]:
+def report(result: Content) -> list[Part]:
     """Of a terminal: what makes the numbers doubtful is read before them, how the bearing is arranged and modelled after them."""
     rows = screen(result)
     bearing, *model = rows.bearing.splitlines()

@@ -84,7 +84,7 @@ class Computed(Protocol):
     def equivalent_stiffness_error(self) -> float | None: ...
 
 
-class Part(TypedDict):
+class Cause(TypedDict):
     """Relative change by one cause, None where it is not known, and how it was found; ``of`` has the causes of data by their names."""
 
     low: float | None
@@ -92,22 +92,10 @@ class Part(TypedDict):
     how: str
     part: NotRequired[str]
     remedy: NotRequired[str]
-    of: NotRequired[list[Part]]
+    of: NotRequired[list[Cause]]
 
 
-class Interval(TypedDict):
-    """Of one quantity: its ends in its unit and relative to the value, by what parts, combined by which rule."""
-
-    value: float
-    unit: str
-    low: float
-    high: float
-    relative: list[float]
-    parts: dict[str, Part]
-    rule: str
-
-
-def combined(parts: Mapping[str, Part]) -> Range:
+def combined(parts: Mapping[str, Cause]) -> Range:
     """The interval of parts by ``RULE``, relative; 0 lies inside."""
     intervals = {name: change for name, part in parts.items() if (change := _range(part)) is not None}
     same_sign = [_with_zero(intervals.pop(name)) for name in _SIGNED if name in intervals]
@@ -125,18 +113,18 @@ def _squares(changes: Iterable[Iterable[float]]) -> Range:
     return -hypot(*(low for low, _ in sides)), hypot(*(high for _, high in sides))
 
 
-def _range(part: Part) -> Range | None:
+def _range(part: Cause) -> Range | None:
     return None if part["low"] is None or part["high"] is None else (part["low"], part["high"])
 
 
-def _part(change: Sequence[float] | None, how: str) -> Part:
+def _part(change: Sequence[float] | None, how: str) -> Cause:
     low, high = change or (None, None)
     return {"low": low, "high": high, "how": str(how)}
 
 
 def uncertainty_table(result: Computed) -> Tables:
     """The table: quantity -> value, unit, low, high, relative, parts, rule; None with its reason in ``why``."""
-    table, why, unclear = dict[str, Interval | None](), dict[str, str](), ", ".join(result.errors.unresolved)
+    table, why, unclear = dict[str, Tables | None](), dict[str, str](), ", ".join(result.errors.unresolved)
     lives = result.stated.missing.get(L10R.path.partition(".")[0], "no life is computed")
     absent = {K: "the scene is static", L10R: lives, PRELOAD: "the bearing has no preload"}
     scatters, hertz = _at_scatters(result), dict[str, float]()
@@ -158,10 +146,10 @@ def uncertainty_table(result: Computed) -> Tables:
         # K changes as the radial stiffness does.
         static = (KYY if result.kyy_tilts_follow is None else FOLLOWS).name if quantity is K else name
         data = [*_geometry(result, quantity, scatters), *_tolerances(result, quantity)]
-        each: list[Part] = [{"part": word, **part} for word, part in data]
+        each: list[Cause] = [{"part": word, **part} for word, part in data]
         intervals = [change for part in each if (change := _range(part)) is not None]
         how = "; ".join(f"{word}: {part['how']}" for word, part in data) or "the scene states its geometry"
-        parts: dict[str, Part] = {
+        parts: dict[str, Cause] = {
             "numerical": _numerical(result, quantity),
             "hypotheses": _hypotheses(result, name, static),
             "data": {**_part(_squares(intervals) if intervals else None, how), "of": each},
@@ -180,7 +168,7 @@ def uncertainty_table(result: Computed) -> Tables:
     return {**table, "why": why}
 
 
-def stated(quantity: Quantity, result: ReadTables) -> Fact:
+def stated(quantity: Quantity, result: Mapping[str, Any]) -> Fact:
     """Label, value with the digits that its interval deserves, and the interval with its parts, from the content of result.json."""
     entry, why = result["uncertainty"][quantity.name], result["uncertainty"]["why"].get(quantity.name, "")
     if entry is None:
@@ -190,10 +178,10 @@ def stated(quantity: Quantity, result: ReadTables) -> Fact:
     return quantity.label, number_within(value, _SHOWN * least * abs(value), quantity.read_unit), interval(entry)
 
 
-def interval(entry: Interval) -> str:
+def interval(entry: ReadTables) -> str:
     """An interval and its parts in a line, the largest first."""
     (low, high), parts = entry["relative"], entry["parts"]
-    causes = {part["part"]: part for part in parts["data"]["of"]} or {"tolerances": parts["data"]}
+    causes: dict[str, Cause] = {part["part"]: part for part in parts["data"]["of"]} or {"tolerances": parts["data"]}
     causes |= {words: parts[name] for name, words in _SIGNED.items()} | {"numerical": parts["numerical"]}
     changes = {words: _range(part) for words, part in causes.items()}
     known = {words: change for words, change in changes.items() if change is not None}
@@ -212,7 +200,7 @@ def _percents(change: Range, even: str) -> str:
     return percents(*(end for end in (low, high) if abs(end) > _SIDE * (high - low)))[:-2]
 
 
-def _numerical(result: Computed, quantity: Quantity) -> Part:
+def _numerical(result: Computed, quantity: Quantity) -> Cause:
     errors = result.errors
     if quantity is K or (quantity in (PEAK_BALL_LOAD, P0) and result.simulation is not None):
         if errors.total.size is None:
@@ -226,7 +214,7 @@ def _numerical(result: Computed, quantity: Quantity) -> Part:
     return _part((-size, size), "residual of the equilibrium, error.mesh")
 
 
-def _hypotheses(result: Computed, *names: str) -> Part:
+def _hypotheses(result: Computed, *names: str) -> Cause:
     """Of the first name that ``error.model`` has."""
     spread, note = result.spread
     if spread is None:
@@ -237,7 +225,7 @@ def _hypotheses(result: Computed, *names: str) -> Part:
     return _part(None, "not in error.model") if name is None else _part(spread.ranges[name], f"error.model.{name}")
 
 
-def _contact(result: Computed, quantity: Quantity, hertz: float | None) -> Part:
+def _contact(result: Computed, quantity: Quantity, hertz: float | None) -> Cause:
     contact = result.errors.contact
     size, note, estimate = contact.size, contact.how, contact.estimate
     if estimate in _NOTHING or size is None:
@@ -250,7 +238,7 @@ def _contact(result: Computed, quantity: Quantity, hertz: float | None) -> Part:
     return _part((-size, size) if result.model.traits.calibrated else (0.0, size / max(1.0 - size, 1e-9)), note)
 
 
-def _bodies(elastic: Mapping[str, float] | str, name: str) -> Part:
+def _bodies(elastic: Mapping[str, float] | str, name: str) -> Cause:
     if not elastic:
         return _part((0.0, 0.0), "elastic as computed")
     if isinstance(elastic, str) or name not in elastic:
@@ -258,7 +246,7 @@ def _bodies(elastic: Mapping[str, float] | str, name: str) -> Part:
     return _part(_with_zero([elastic[name]]), "walls below the grooves, and balls")
 
 
-def _geometry(result: Computed, quantity: Quantity, scatters: Mapping[str, Range]) -> Iterator[tuple[str, Part]]:
+def _geometry(result: Computed, quantity: Quantity, scatters: Mapping[str, Range]) -> Iterator[tuple[str, Cause]]:
     geometry = result.geometry
     if geometry is not None and quantity not in STIFFNESSES:
         yield "inferred geometry", _part(scatters.get(quantity.name), "inferred numbers at the ends of their uncertainties")
@@ -271,7 +259,7 @@ def _geometry(result: Computed, quantity: Quantity, scatters: Mapping[str, Range
             yield part["part"], {**_part(change, part["why"]), "remedy": part["remedy"]}
 
 
-def _tolerances(result: Computed, quantity: Quantity) -> Iterator[tuple[str, Part]]:
+def _tolerances(result: Computed, quantity: Quantity) -> Iterator[tuple[str, Cause]]:
     if (band := result.tolerances) is not None:
         names = {PEAK_BALL_LOAD: "largest_ball_load", L10R: L10R.name}
         ends_of = band["quantities"].get(names.get(quantity, quantity.symbol)) or {"value": 0.0}

@@ -188,20 +188,19 @@ class Band(Answer):
 
     def draw(self) -> Figure:
         """Histograms with their limits, and Sobol indices."""
-        content = self.to_dict()
-        quantities, keys = content["quantities"], [entry["key"] for entry in content["tolerances"]]
-        with_indices = any(entry["total"] is not None for entry in quantities.values())
+        keys, with_indices = [tolerance.key.path for tolerance in self.tolerances], bool(self.total)
         heights = [2.2, 0.8 + 0.35 * len(keys)] if with_indices else [2.2]
-        columns = min(len(quantities), MOST_COLUMNS)
-        blocks = -(-len(quantities) // columns)
+        columns = min(len(self.nominal), MOST_COLUMNS)
+        blocks = -(-len(self.nominal) // columns)
         figure = new_figure(1.2 + 2.9 * columns, 0.7 + (sum(heights) + 0.6 * len(heights)) * blocks)
         rows = figure.subplots(len(heights) * blocks, columns, squeeze=False, height_ratios=heights * blocks)
-        for k, (name, entry) in enumerate(quantities.items()):
+        for k, (name, nominal) in enumerate(self.nominal.items()):
             block, column = divmod(k, columns)
             axes = rows[len(heights) * block, column]
-            (value, unit), (low, _), (high, _) = (read_in(entry[end], entry["unit"]) for end in ("value", "low", "high"))
-            edges = [read_in(edge, entry["unit"])[0] for edge in entry["histogram"]["edges"]]
-            axes.stairs(entry["histogram"]["counts"], edges, fill=True, color=_SAMPLES)
+            ends, (bounds, counts) = (nominal, self.low[name], self.high[name]), self.histograms[name]
+            (value, unit), (low, _), (high, _) = (read_in(end, quantity_of(name).unit) for end in ends)
+            edges = [read_in(edge, quantity_of(name).unit)[0] for edge in bounds]
+            axes.stairs(counts, edges, fill=True, color=_SAMPLES)
             for end, label in ((low, "95 % of samples"), (high, None)):
                 axes.axvline(end, color=_LIMIT_COLOUR, linewidth=1.2, label=label)
             axes.axvline(value, color="#555f6b", linewidth=1.0, linestyle="--", label="nominal")
@@ -219,16 +218,17 @@ class Band(Answer):
                 panel.set_xlabel("Sobol' index", fontsize=9)
                 panel.tick_params(axis="x", labelsize=8)
                 # Estimates of small indices scatter about 0, those of a single cause about 1.
-                total, first = (np.clip(entry[order] or np.zeros(len(keys)), 0.0, 1.0) for order in ("total", "first_order"))
+                none = np.zeros(len(keys))
+                total, first = (np.clip(of.get(name, none), 0.0, 1.0) for of in (self.total, self.first))
                 panel.barh(places, total, color=_TOTAL, height=0.7, label="total")
                 panel.barh(places, first, color=_FIRST, height=0.3, label="first order")
-        for panel in rows[-len(heights) :, len(quantities) - columns * (blocks - 1) :].flat:
+        for panel in rows[-len(heights) :, len(self.nominal) - columns * (blocks - 1) :].flat:
             panel.set_visible(False)
         handles, labels = rows[0, 0].get_legend_handles_labels()
         if with_indices:
             handles, labels = (a + b for a, b in zip((handles, labels), rows[1, 0].get_legend_handles_labels(), strict=True))
         figure.legend(handles, labels, loc="outside lower right", ncols=4, fontsize=8, frameon=False)
-        figure.suptitle(wrapped(content["title"]), fontsize=11)
+        figure.suptitle(wrapped(self.title), fontsize=11)
         return figure
 
     def report(self) -> Iterator[Part]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar
@@ -258,18 +259,12 @@ def _by_one_method(
     return [tables_at(tables, {"integrator.kind": "newmark"}, registry) for tables in scenes]
 
 
-def _planned(tables: Tables, registry: Registry) -> Tables:
-    """The plan of a point; empty where it is refused, which it is as it is run, too."""
-    try:
-        return {"plan": make_plan(scene_from_dict(tables, registry)).to_dict()}
-    except RacewayError:
-        return {}
-
-
-def _method(result: Tables) -> str | None:
-    """The integrator of a result."""
-    integrator = result.get("plan", {}).get("integrator")
-    return None if integrator is None else str(integrator["kind"])
+def _planned_method(tables: Tables, registry: Registry) -> str | None:
+    """The integrator of a point; None where it has none or is refused, which it is as it is run, too."""
+    with suppress(RacewayError):
+        problem = make_plan(scene_from_dict(tables, registry)).problem
+        return problem.integrator.kind if problem.recorded else None
+    return None
 
 
 def _result(tables: ReadTables, registry: Registry) -> Tables:
@@ -341,7 +336,7 @@ def compare(
     axes = axes_of(vary, tables, registry)
     title, places = refuse_mistakes(tables, axes, registry), list(points(axes))
     scenes = [tables_at(tables, point, registry, notes) for point in places]
-    scenes = _by_one_method([_method(_planned(scene, registry)) for scene in scenes], scenes, registry, notes)
+    scenes = _by_one_method([_planned_method(scene, registry) for scene in scenes], scenes, registry, notes)
     items = [_item(scene, registry) for scene in scenes]
 
     def comparison(results: Iterable[Tables]) -> Comparison:
@@ -351,7 +346,8 @@ def compare(
     with telling(progress) as report, written(kept or folder) as store:
         try:
             results, _ = work_through(_result, items, store, local(registry, 0), registry, on_progress=report)
-            alike = _by_one_method(map(_method, results), scenes, registry, notes)
+            methods = ((result.get("plan", {}).get("integrator") or {}).get("kind") for result in results)
+            alike = _by_one_method(methods, scenes, registry, notes)
             if alike is not scenes:  # a steady orbit was not found, or is unstable
                 items = [_item(scene, registry) for scene in alike]
                 results, _ = work_through(_result, items, store, local(registry, 0), registry, on_progress=report)

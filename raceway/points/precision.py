@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, cast
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 import attrs
 import numpy as np
@@ -26,14 +26,11 @@ from raceway.plugins.formats.labelled import labelled_dataset
 from raceway.points.axes import Vary, shown
 from raceway.points.settings import (
     Design,
-    Entry,
     Judged,
-    Model,
-    Placed,
     Reference,
+    Row,
     Runner,
     Setting,
-    Study,
     distance,
     find_reference,
     main_size,
@@ -96,7 +93,7 @@ class Precision(Answer):
     stem: ClassVar[str] = "precision"
 
     title: str
-    rows: tuple[Placed, ...]
+    rows: tuple[Row, ...]
     references: dict[str, Reference]
     base: str
     left_out: tuple[tuple[str, Tables, str], ...]
@@ -170,10 +167,10 @@ class Precision(Answer):
         return any(row["status"] == "completed" for row in self.rows)
 
     @property
-    def models(self) -> list[Model]:
+    def models(self) -> list[Tables]:
         """Each model: what sets it apart, its reference, its difference from the base, its own front."""
         base = self.references[self.base]
-        entries = list[Model]()
+        entries = []
         for physics, reference in self.references.items():
             rows = [row for row in self.rows if row["physics"] == physics]
             if not rows:
@@ -218,17 +215,12 @@ class Precision(Answer):
 
     def to_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
-        return cast(Tables, self.content)
-
-    @property
-    def content(self) -> Study:
-        """The same by its keys."""
-        rows = list[Entry]()
+        rows = list[Tables]()
         for row in self.judged:
             cost: Mapping[str, object] = row["cost"] or {}
             judgement: Mapping[str, object] = row
             base = {"base": row["physics"] == self.base}
-            rows.append(cast(Entry, {name: {**cost, **judgement, **base}.get(name) for name in _COLUMNS}))
+            rows.append({name: {**cost, **judgement, **base}.get(name) for name in _COLUMNS})
         return {
             "title": self.title,
             "reference": _reference_table(self.references[self.base]),
@@ -266,7 +258,7 @@ class Precision(Answer):
         from raceway.points.precision_picture import draw_on, put_beside
 
         panel = given_axes(ax, 9.0, 6.0)
-        labels = draw_on(panel, self.content)
+        labels = draw_on(panel, self.to_dict())
         panel.legend(frameon=False, fontsize=8)
         put_beside(panel, labels)
         return panel
@@ -310,13 +302,13 @@ class Precision(Answer):
         """precision.md."""
         from raceway.points.precision_picture import page
 
-        return {"md": page(self.content, pictures)}
+        return {"md": page(self.to_dict(), pictures)}
 
     def draw(self) -> Figure:
         """Error against run time."""
         from raceway.points.precision_picture import draw
 
-        return draw(self.content)
+        return draw(self.to_dict())
 
     def report(self) -> Iterator[Part]:
         """A line for each setting, and what they come to in words."""
@@ -421,7 +413,7 @@ def _study(
         if setting.scene is not None:
             groups.setdefault(setting.physics, []).append(setting)
     total = len(design.settings) + len(groups)
-    results, references = list[Placed](), dict[str, Reference]()
+    results, references = list[Row](), dict[str, Reference]()
 
     def tell(label: str) -> None:
         report(label, len(results) + len(references), total)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from raceway.points.settings import Entry, Study
+    from raceway.points.settings import Judged
 
 
 #: Text, the point that it belongs to in the axes' data, its colour.
@@ -61,7 +61,7 @@ def put_beside(axes: Axes, labels: Sequence[_Label]) -> None:
 _LEAST = 1e-16
 
 
-def page(result: Study, picture: bool = False) -> str:
+def page(result: Tables, picture: bool = False) -> str:
     """The study as Markdown."""
     lines = [f"# Error against run time: {result['title']}", ""]
     lines += ["![error against run time](precision.png)", ""] if picture else []
@@ -89,7 +89,7 @@ def page(result: Study, picture: bool = False) -> str:
     return "\n".join(lines)
 
 
-def _table(result: Study) -> str:
+def _table(result: Tables) -> str:
     times = "wall ms", "spread", "cpu ms", "compile s"
     head = ("", "setting", "error", "own estimate", "order", *times, "steps", "iterations", "MiB", "status")
     lines = [_markdown_row(head), _markdown_row(["---"] * len(head))]
@@ -116,7 +116,7 @@ def _table(result: Study) -> str:
     return "\n".join([*lines, "", notes])
 
 
-def _quantities(result: Study) -> str:
+def _quantities(result: Tables) -> str:
     """Errors of all quantities, those of Z's parts relative to |Z|."""
     rows = [row for row in result["rows"] if row["errors"]]
     names = list(dict.fromkeys(name for row in rows for name in row["errors"]))
@@ -147,7 +147,7 @@ def _setting_words(setting: Tables) -> str:
     return ", ".join("without inertia" if key == "inertia" else f"{key} = {value}" for key, value in setting.items()) or "-"
 
 
-def draw(result: Study) -> Figure:
+def draw(result: Tables) -> Figure:
     """The figure of a study."""
     figure = new_figure(8.4, 7.6)
     labels = draw_on(panel := figure.add_subplot(), result)
@@ -158,7 +158,7 @@ def draw(result: Study) -> Figure:
     return figure
 
 
-def draw_on(panel: Axes, result: Study) -> list[_Label]:
+def draw_on(panel: Axes, result: Tables) -> list[_Label]:
     """Relative error of the main quantity over the run's time, both logarithmic, with the Pareto front; labels to be put."""
     bound = result["reference"]["error"]
     # What lies below the reference's bound is drawn at its lower edge: nobody knows how far below.
@@ -196,18 +196,18 @@ def draw_on(panel: Axes, result: Study) -> list[_Label]:
     return labels
 
 
-def _has_place(row: Entry) -> bool:
-    return row["error"] is not None and row["time_s"] is not None
+def _has_place(row: Judged) -> bool:
+    return row["error"] is not None and row.get("time_s") is not None
 
 
-def _point(row: Entry, least: float) -> tuple[float, float]:
-    return row["time_s"] or 0.0, max(row["error"] or 0.0, least)
+def _point(row: Judged, least: float) -> tuple[float, float]:
+    return row.get("time_s") or 0.0, max(row["error"] or 0.0, least)
 
 
 _RUNGS = ("integrator.steps_per_turn", "integrator.turns", "integrator.tolerance", "mesh.element_size")
 
 
-def _series(row: Entry) -> str:
+def _series(row: Judged) -> str:
     """Rows of one line: the same but for the family's ladder."""
     ladder = _ladder(row)
     values = {key: value for key, value in row["setting"].items() if key != ladder}
@@ -215,12 +215,12 @@ def _series(row: Entry) -> str:
     return f"{row['family']}: {_setting_words(short)}"
 
 
-def _ladder(row: Entry) -> str | None:
+def _ladder(row: Judged) -> str | None:
     keys = ("integrator.turns",) if row["family"] == "turns and start" else _RUNGS
     return next((key for key in keys if key in row["setting"]), None)
 
 
-def _rung(row: Entry) -> str:
+def _rung(row: Judged) -> str:
     ladder = _ladder(row)
     value = row["setting"].get(ladder) if ladder else None
     return "" if value is None else f"{value:g}" if isinstance(value, float) else str(value)

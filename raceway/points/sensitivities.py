@@ -28,7 +28,7 @@ from raceway.pipeline.run import steady_plan
 from raceway.scene.changes import Key, continuous_keys, key_of
 from raceway.scene.scene import SceneSource, as_scene
 from raceway.storage.files import without_nan
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -136,14 +136,10 @@ class Sensitivities(Answer):
         """Bars of relative influence."""
         if not self.rows:
             return None
-        content = self.to_dict()
-        names = list(content["quantities"])
-        keys = [
-            key
-            for key in content["keys"]
-            if _largest(key, names) >= _LEAST * max(_largest(k, names) for k in content["keys"])
-        ]
-        keys = sorted(keys, key=lambda key: -_largest(key, names))[:_MOST]
+        names = list(self.values)
+        largest = [max((abs(share) for share in row.influence.values()), default=0.0) for row in self.rows]
+        order = sorted(range(len(largest)), key=lambda k: -largest[k])
+        keys = [self.rows[k] for k in order if largest[k] >= _LEAST * max(largest)][:_MOST]
         columns = min(len(names), MOST_COLUMNS)
         rows = -(-len(names) // columns)
         figure = new_figure(2.6 + 2.3 * columns, 0.5 + (1.1 + 0.32 * max(len(keys), 3)) * rows)
@@ -151,7 +147,7 @@ class Sensitivities(Answer):
         for panel in panels[len(names) :]:
             panel.set_visible(False)
         for panel, name in zip(panels, names, strict=False):
-            shares = [key["influence"].get(name, 0.0) for key in keys]
+            shares = [row.influence.get(name, 0.0) for row in keys]
             colours = [_MORE if share >= 0.0 else _LESS for share in shares]
             panel.barh(range(len(keys)), shares, color=colours, height=0.66)
             panel.axvline(0.0, color="#555f6b", linewidth=0.8)
@@ -163,9 +159,9 @@ class Sensitivities(Answer):
                     panel.annotate(f"{share:+.2g}", (share, position), (3 if share >= 0.0 else -3, 0), textcoords="offset points", ha=side, va="center", fontsize=8)  # fmt: skip
             panel.set_title(name.replace("_", " "), fontsize=11)
             panel.set_xlabel("% per % of key", fontsize=9)
-            panel.set_yticks(range(len(keys)), [key["key"] for key in keys], fontsize=9)
+            panel.set_yticks(range(len(keys)), [row.key.path for row in keys], fontsize=9)
             panel.set_ylim(len(keys) - 0.4, -0.6)
-        figure.suptitle(wrapped(content["title"]), fontsize=11)
+        figure.suptitle(wrapped(self.title), fontsize=11)
         return figure
 
     def report(self) -> Iterator[Part]:
@@ -232,10 +228,6 @@ _SHOWN = 1e-6
 _MORE, _LESS = "#0b5fa5", "#c8501e"
 #: Keys at most, and influence over the largest one below which none is drawn.
 _MOST, _LEAST = 14, 1e-3
-
-
-def _largest(key: ReadTables, names: list[str]) -> float:
-    return max((abs(key["influence"].get(name, 0.0)) for name in names), default=0.0)
 
 
 @door

@@ -15,7 +15,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from itertools import product
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING, NotRequired
 
 import attrs
 
@@ -153,13 +153,13 @@ def _default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]
     """Family and values of every setting of the default design that has a meaning for the scene."""
     points: list[tuple[str, Tables]] = []
     if needs_motion(scene):
-        methods: Tables = {entry.name: entry.plugin for entry in registry.of_kind("integrator")}
+        methods: dict[str, type[Integrator]] = {entry.name: entry.plugin for entry in registry.of_kind("integrator")}
         steady = [name for name, method in methods.items() if method.steady]
         for name, steps in product((n for n, m in methods.items() if m.inertial and n not in steady), STEPS):
             points.append(("time step", {"integrator.kind": name, "integrator.steps_per_turn": steps}))
         for name, tolerance in product(steady, _TOLERANCES):
             options = {field.name for field in attrs.fields(methods[name])}
-            kind: Tables = {"integrator.kind": name}
+            kind: dict[str, object] = {"integrator.kind": name}
             points.append(("steady orbit", {**kind, "integrator.tolerance": tolerance} if "tolerance" in options else kind))
         integrator = scene.integrator.method
         if integrator.inertial and not integrator.steady:
@@ -201,66 +201,27 @@ _TIGHT = 1e-10
 _FLOOR = 1e-10
 
 
-class Ran(Measured):
-    """A setting that was run, with the order that its errors should have."""
+class Row(Measured):
+    """A setting that was run, with the order that its errors should have; ``physics`` decides which ones are compared."""
 
     family: str
     setting: Tables
     model: Tables
+    physics: str
     expected_order: int | None
     reused: bool
 
 
-class Placed(Ran):
-    """With what decides which settings are compared."""
-
-    physics: str
-
-
-class Compared(TypedDict):
-    """Value of the main quantity, its error and those of all, whether the reference limits them, and the observed order."""
+class Judged(Row):
+    """A row beside its reference; ``base`` and ``time_s`` as precision.json has them."""
 
     value: float | None
     error: float | None
     errors: dict[str, float]
     at_bound: bool
     order: float | None
-
-
-class Judged(Placed, Compared):
-    """A setting beside its reference."""
-
-
-class Entry(Ran, Compared):
-    """The same in precision.json; ``base``: whether it is of the model that others are compared with."""
-
-    time_s: float | None
-    base: bool
-
-
-class Model(TypedDict):
-    """What sets a model apart, its reference, its difference from the base, its own front and cheapest settings."""
-
-    model: Tables
-    base: bool
-    reference: Tables
-    difference: float | None
-    differences: dict[str, float]
-    front: list[int]
-    cheapest: dict[str, int | None]
-
-
-class Study(TypedDict):
-    """precision.json."""
-
-    title: str
-    reference: Tables
-    rows: list[Entry]
-    front: list[int]
-    cheapest: dict[str, int | None]
-    models: list[Model]
-    left_out: list[Tables]
-    words: list[str]
+    base: NotRequired[bool]
+    time_s: NotRequired[float | None]
 
 
 Values = dict[str, float]

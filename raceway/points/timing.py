@@ -17,7 +17,7 @@ from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from raceway.pipeline.error import ErrorTable
+    from raceway.pipeline.content import Content, ErrorTable
 
 
 def processor_time() -> float:
@@ -32,23 +32,6 @@ _PROCESS = Path("/proc/self")
 _COMPARED = named(Z_REAL, Z_IMAG, K, AXIAL_DISPLACEMENT, PEAK_BALL_LOAD, P0)
 
 
-class Cost(TypedDict):
-    """Least times of the repeats [s], compiling apart; what is counted is of one run."""
-
-    wall_s: float
-    solve_s: float
-    error_s: float
-    cpu_s: float
-    time_s: float
-    wall_spread_s: float
-    compile_s: float
-    steps: int
-    iterations: int
-    peak_memory_bytes: int
-    peak_memory_of: str
-    repeats: int
-
-
 class Measured(TypedDict):
     """A setting that was run; without quantities and cost where it failed."""
 
@@ -58,10 +41,10 @@ class Measured(TypedDict):
     own_error: float | None
     transient_error: NotRequired[float | None]
     warnings: NotRequired[list[str]]
-    cost: Cost | None
+    cost: Tables | None
 
 
-def quantities(result: Tables) -> dict[str, float]:
+def quantities(result: Content) -> dict[str, float]:
     """What a study compares, as far as a result.json has it.
 
     Returns
@@ -106,7 +89,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Measured:
         try:
             answer = run(scene, registry)
             cpu = time.process_time() - cpu
-            result = answer.to_dict()
+            result = answer.content
         except RacewayError as error:
             why = str(error).splitlines()[0]
             return {"status": error.status, "reason": why, "quantities": {}, "own_error": None, "cost": None}
@@ -137,7 +120,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Measured:
         "own_error": without_mesh(result["error"]),
         "transient_error": result["error"]["transient"],
         "warnings": result["warnings"],
-        "cost": cast(Cost, least),
+        "cost": least,
     }
 
 

@@ -84,7 +84,7 @@ def result_picture(result: Result, state: Snapshot) -> Tables:
     dict : title, bearing, warnings, rows (quantity, value, remark), left_out, columns and balls (of the inner and the outer race), polar
         (azimuth [deg], load inner, load outer [N]), orbit ((n, 2) [um], or None)
     """
-    content = result.to_dict()
+    content = result.content
     parts = screen(content)
     balls = content["equilibrium"]["balls"]
     polar = [[ball["azimuth_deg"], ball["load_inner_n"], ball["load_outer_n"]] for ball in balls]

@@ -34,7 +34,6 @@ from raceway.core.ring.kernels.structural import condensed
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError, MeshError
 from raceway.storage.array_cache import kept
-from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
@@ -149,7 +148,7 @@ def ring_compliance(
     last = max(shape.edge - half / shape.groove, abs(shape.contact))
     table = np.linspace(-last, last, angles)
     depths = length * np.linspace(*DEPTHS, COUNT)
-    inputs: Tables = {
+    inputs: dict[str, object] = {
         "points": profile.points, "quads": profile.quads, "race": profile.race, "race_angles": profile.angles,
         "seat_nodes": profile.seat, "divisions": divisions, "balls": balls, "half": half, "young": young,
         "poisson": poisson, "seat": seat, "angles": table, "depths": depths, "inner": shape.inner,
@@ -275,7 +274,7 @@ def calibrated(
     mean over loads removes the ripple of points that come and go.
     """
     profile = coarse_profile(body.shape, body.solid.bulk, body.solid.bulk)
-    inputs: Tables = {
+    inputs: dict[str, object] = {
         "points": profile.points, "seat_nodes": profile.seat, "inner": body.shape.inner, "groove": body.shape.groove,
         "centre": [body.shape.centre_r, body.shape.centre_x], "seat": body.seat, "load": load, "radius": radius,
         "balls": balls, "angle": angle, "solids": [*attrs.astuple(body.solid), *attrs.astuple(ball)],

@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.collocation import Problem, Solved, solve
+from raceway.core.periodic.floquet import Floquet
 from raceway.core.periodic.intervals import forces
 from raceway.core.periodic.refinement import displacements, record, refine, states
 from raceway.core.periodic.search import (
@@ -75,26 +76,24 @@ def synchronous_response(solution: Solved) -> tuple[complex, float]:
     return complex(stiffness(force, line)), float(forward + backward)
 
 
-def _coexistence(tables: list[Tables]) -> tuple[str, ...]:
+def _coexistence(motions: Sequence[PeriodicMotion]) -> tuple[str, ...]:
     """What a user should know where more than one motion exists that a ring can stay on."""
-    lasting = [table for table in tables if table["stable"]]
+    lasting = [motion for motion in motions if motion.floquet.verdict != "unstable"]
     if len(lasting) < 2:
         return ()
-    values = " and ".join(_complex(table) for table in lasting)
+    stiffnesses = [synchronous_response(motion.refined.solved)[0] for motion in lasting]
+    values = " and ".join(
+        f"{1e-6 * z.real:.5g} {'-' if z.imag < 0.0 else '+'} {1e-6 * abs(z.imag):.4g}j" for z in stiffnesses
+    )
     return (
         f"{len(lasting)} steady motions that are not unstable exist here, Z = {values} N/um: the history decides which one occurs. The "
         "first is reported; motion.orbits lists all found, others may exist",
     )
 
 
-def growth_of_disturbances(table: Tables) -> str:
-    """Growth of disturbances of a motion, in words."""
-    return f"disturbances grow {table['multiplier']:.4g} times per turn, {_WAYS[table['leaves_by']]}"
-
-
-def _complex(table: Tables) -> str:
-    z = table["dynamic_stiffness"]
-    return f"{1e-6 * z['real']:.5g} {'-' if z['imag'] < 0.0 else '+'} {1e-6 * abs(z['imag']):.4g}j"
+def growth_of_disturbances(floquet: Floquet) -> str:
+    """Growth of disturbances of an unstable motion, in words."""
+    return f"disturbances grow {floquet.largest:.4g} times per turn, {_WAYS[floquet.leaves_by]}"
 
 
 #: Imbalance of an equilibrium over the contact forces that the settled state is known by.
@@ -138,14 +137,14 @@ def steady(
     if on_chunk is not None:
         problem = attrs.evolve(problem, watch=lambda: on_chunk(0, schedule.steps))
     motion = find(problem, q, tangent, tolerance, start.near, start.stay)
-    refined, tables = motion.refined, orbit_tables(motion.all)
+    refined = motion.refined
     counts = {
         "steps": refined.solved.path.intervals,
         "evaluations": refined.evaluations,
         "error": refined.error,
         "floquet": {**motion.floquet.to_dict(), "span_deg": float(np.degrees(problem.symmetry.span)), "found": motion.how},
-        "orbits": tables,
-        "warnings": _warnings(motion, tables, tolerance),
+        "orbits": orbit_tables(motion.all),
+        "warnings": _warnings(motion, tolerance),
     }
     out = attrs.evolve(record(refined.solved, schedule, counts), solution=motion.neighbour(q, tangent))
     if on_chunk is not None:
@@ -182,16 +181,16 @@ def refuse(system: Ring, schedule: Schedule) -> None:
         raise SceneError.at("integrator.kind", "periodic", "the force does not repeat every turn. Use 'newmark'")
 
 
-def _warnings(motion: PeriodicMotion, tables: list[Tables], tolerance: float) -> tuple[str, ...]:
+def _warnings(motion: PeriodicMotion, tolerance: float) -> tuple[str, ...]:
     """What a user should know of a motion that was hard to find, is not stable or not alone, or not as exact as asked for."""
-    out = list(_coexistence(tables))
+    out = list(_coexistence(motion.all))
     if motion.fold is not None:
         out.append(
             f"no branch from rest reaches the force: it turns back at {100.0 * motion.fold:.3g} % of the force (an internal "
             f"resonance); this motion was reached {motion.how}, and others may exist"
         )
     if motion.floquet.verdict == "unstable":
-        out.append(f"the periodic motion is unstable, {growth_of_disturbances(tables[0])}; a ring does not stay on it")
+        out.append(f"the periodic motion is unstable, {growth_of_disturbances(motion.floquet)}; a ring does not stay on it")
     if motion.refined.error > tolerance:
         out.append(f"the mesh does not resolve the motion better than {motion.refined.error:.1e} of its amplitude")
     return tuple(out)
@@ -257,14 +256,13 @@ def starting_orbit(
             if highest <= HIGHEST:
                 raise
             return _StartingOrbit(orbit)  # so slow that no mesh holds the vibrations that it has none of
-    tables = orbit_tables(motion.all)
-    warnings = _coexistence(tables)
-    if not tables[0]["stable"]:
+    warnings = _coexistence(motion.all)
+    if motion.floquet.verdict == "unstable":
         warnings += (
-            f"the motion starts on a steady orbit that is unstable, {growth_of_disturbances(tables[0])}; no stable one was found, and a real "
+            f"the motion starts on a steady orbit that is unstable, {growth_of_disturbances(motion.floquet)}; no stable one was found, and a real "
             "ring does not stay on it",
         )
-    return _StartingOrbit(_sampled(motion, period), tables, warnings)
+    return _StartingOrbit(_sampled(motion, period), orbit_tables(motion.all), warnings)
 
 
 def _sampled(motion: PeriodicMotion, period: float) -> Orbit:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import time
 import traceback
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
@@ -50,7 +50,7 @@ class Case:
 
     name: str
     measure: str
-    setting: Tables = attrs.field(factory=dict)
+    setting: Mapping[str, object] = attrs.field(factory=dict)
     arguments: Tables = attrs.field(factory=dict)
     quick: bool = True
 
@@ -68,7 +68,7 @@ class _Row:
     """
 
     case: str
-    setting: Tables
+    setting: Mapping[str, object]
     quantity: str
     expected: str
     predicted: float | None
@@ -107,11 +107,11 @@ class Rows:
     """What a case writes: its name, the setting of all its rows, the rows so far."""
 
     case: str
-    setting: Tables = attrs.field(factory=dict)
+    setting: Mapping[str, object] = attrs.field(factory=dict)
     written: list[_Row] = attrs.field(factory=list)
 
     def check(
-        self, quantity: str, value: Measured | Callable[[], Measured], why: str, limit: Limit, at: Tables | None = None, note: str = ""
+        self, quantity: str, value: Measured | Callable[[], Measured], why: str, limit: Limit, at: Mapping[str, object] | None = None, note: str = ""
     ) -> _Row:  # fmt: skip
         """A number against its limit; an error of a function, or no number, fails.
 
@@ -133,7 +133,7 @@ class Rows:
         self.written[-1] = attrs.evolve(row, predicted=limit.near, observed=number, energy_drift=drift)
         return self.written[-1]
 
-    def refused(self, words: str, why: str, work: Callable[[], object], at: Tables | None = None) -> _Row:
+    def refused(self, words: str, why: str, work: Callable[[], object], at: Mapping[str, object] | None = None) -> _Row:
         """What must be refused, with a message that holds ``words``."""
         good, note = False, "it was computed instead"
         try:
@@ -147,11 +147,13 @@ class Rows:
         text = next((text for text in warnings if words in text), None)
         return self._row(text is not None, "warning", f"warned: '{words}'", why, text or "no such warning")
 
-    def lost(self, why: str, at: Tables | None = None) -> _Row:
+    def lost(self, why: str, at: Mapping[str, object] | None = None) -> _Row:
         """A case, or a part of it, that ended without an answer."""
         return self._row(False, "answer", "an answer or a refusal", "", why, at)
 
-    def _row(self, good: bool, quantity: str, expectation: str, why: str, note: str = "", at: Tables | None = None) -> _Row:
+    def _row(
+        self, good: bool, quantity: str, expectation: str, why: str, note: str = "", at: Mapping[str, object] | None = None
+    ) -> _Row:
         verdict = AS_EXPECTED if good else FAILED
         row = _Row(self.case, {**self.setting, **(at or {})}, quantity, expectation, None, None, None, verdict, why, note)
         self.written.append(row)
