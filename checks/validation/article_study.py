@@ -10,6 +10,7 @@ from raceway_article import study as driver
 from raceway_article.design import Curves, article_tables, design
 from raceway_article.elastic import ElasticArticle, ElasticRun
 from raceway_article.study import RIG_LOADS, RIG_SPEEDS, Article
+from raceway_checks.verify.reference import Verified
 
 from raceway.extend import Tables, read_toml
 
@@ -46,7 +47,7 @@ def curves(k: Any, bodies: tuple[str, ...] = ("rigid",), friction: float | None 
     return Curves(made, rows)
 
 
-def static(deviation: float | None) -> list[dict[str, Any]]:
+def static(deviation: float | None) -> list[Verified]:
     """Rows of the static verification, all with the same deviation; None for a solver that failed."""
     names = [
         f"peak pressure, {race} race, {where} [MPa]"
@@ -55,11 +56,9 @@ def static(deviation: float | None) -> list[dict[str, Any]]:
     ]
     computed = None if deviation is None else 1000.0 * (1.0 + deviation)
     note = "no equilibrium" if deviation is None else ""
-    return [
-        {"case": "seed-static-pressures", "quantity": name, "reference": 1000.0, "computed": computed, "error": deviation,
-         "tolerance": 0.0242, "ok": deviation is not None and deviation <= 0.0242, "source": "", "note": note}
-        for name in names
-    ]  # fmt: skip
+    ok = deviation is not None and deviation <= 0.0242
+    numbers = 1000.0, computed, deviation, 0.0242, ok
+    return [Verified("seed-static-pressures", name, *numbers, "", "own", note) for name in names]
 
 
 def study(found: Curves) -> Article:

@@ -74,33 +74,26 @@ Changes = dict[str, float | None]
 
 @attrs.frozen
 class Spread:
-    """``error.model`` of result.json.
+    """``rows`` : what hypotheses change, alone and together; ``bound`` : upper estimate of the relative change of kyy."""
 
-    Attributes
-    ----------
-    ranges : of each quantity the least and largest relative change, 0 between them; None where a row lacks the number
-    hypotheses : each by itself: its key in ``[kinematics]``, its value and what it changes
-    bound : upper estimate of the relative change of kyy
-    """
-
-    ranges: dict[str, list[float] | None]
-    hypotheses: list[tuple[str, Any, Changes]]
+    rows: list[tuple[Values, Changes]]
     bound: float
 
-    @classmethod
-    def over(cls, rows: list[tuple[Values, Changes]], bound: float) -> Spread:
-        """Of all hypotheses that were put into the ring, alone and together."""
+    @property
+    def ranges(self) -> dict[str, list[float] | None]:
+        """Of each quantity the least and largest change, 0 between them; None where a row lacks the number."""
         ranges: dict[str, list[float] | None] = {}
         for name in _QUANTITIES:
-            numbers = [number for _, change in rows if (number := change[name]) is not None]
-            complete = numbers and len(numbers) == len(rows)
+            numbers = [number for _, change in self.rows if (number := change[name]) is not None]
+            complete = numbers and len(numbers) == len(self.rows)
             ranges[name] = [min(0.0, *numbers), max(0.0, *numbers)] if complete else None
-        alone = [(key, value, change) for one, change in rows for key, value in one.items() if len(one) == 1]
-        return cls(ranges, alone, bound)
+        return ranges
 
     @property
     def table(self) -> Tables:
-        hypotheses = [{"key": f"kinematics.{key}", "value": value, **change} for key, value, change in self.hypotheses]
+        """``error.model`` of result.json, with each hypothesis by itself."""
+        alone = [(key, value, change) for one, change in self.rows for key, value in one.items() if len(one) == 1]
+        hypotheses = [{"key": f"kinematics.{key}", "value": value, **change} for key, value, change in alone]
         return {**self.ranges, "hypotheses": hypotheses, "bound": self.bound}
 
 
@@ -230,7 +223,7 @@ def model_spread(
         return None, why
     bound = _bound_of(model, equilibrium, values)
     if bound < NEGLIGIBLE:
-        return Spread.over([], bound), Estimate.BOUND(bound=bound, why=why)
+        return Spread([], bound), Estimate.BOUND(bound=bound, why=why)
     secant, how = _secant(model, equilibrium, identification, simulation)
     kinematics, own = model.problem.kinematics, _state_numbers(model, equilibrium)
     rows: list[tuple[Values, Changes]] = []
@@ -266,7 +259,7 @@ def model_spread(
             combinations.append(together)
     for combination in combinations:
         solve(combination)
-    return Spread.over(rows, bound), Estimate.EACH_HYPOTHESIS(how=how, why=why)
+    return Spread(rows, bound), Estimate.EACH_HYPOTHESIS(how=how, why=why)
 
 
 def _state_numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float | None]:

@@ -97,7 +97,7 @@ class Cause(TypedDict):
 
 def combined(parts: Mapping[str, Cause]) -> Range:
     """The interval of parts by ``RULE``, relative; 0 lies inside."""
-    intervals = {name: change for name, part in parts.items() if (change := _range(part)) is not None}
+    intervals = {name: change for name, part in parts.items() if (change := _change(part)) is not None}
     same_sign = [_with_zero(intervals.pop(name)) for name in _SIGNED if name in intervals]
     return _squares([(sum(low for low, _ in same_sign), sum(high for _, high in same_sign)), *intervals.values()])
 
@@ -113,7 +113,7 @@ def _squares(changes: Iterable[Iterable[float]]) -> Range:
     return -hypot(*(low for low, _ in sides)), hypot(*(high for _, high in sides))
 
 
-def _range(part: Cause) -> Range | None:
+def _change(part: Cause) -> Range | None:
     return None if part["low"] is None or part["high"] is None else (part["low"], part["high"])
 
 
@@ -147,7 +147,7 @@ def uncertainty_table(result: Computed) -> Tables:
         static = (KYY if result.kyy_tilts_follow is None else FOLLOWS).name if quantity is K else name
         data = [*_geometry(result, quantity, scatters), *_tolerances(result, quantity)]
         each: list[Cause] = [{"part": word, **part} for word, part in data]
-        intervals = [change for part in each if (change := _range(part)) is not None]
+        intervals = [change for part in each if (change := _change(part)) is not None]
         how = "; ".join(f"{word}: {part['how']}" for word, part in data) or "the scene states its geometry"
         parts: dict[str, Cause] = {
             "numerical": _numerical(result, quantity),
@@ -183,7 +183,7 @@ def interval(entry: ReadTables) -> str:
     (low, high), parts = entry["relative"], entry["parts"]
     causes: dict[str, Cause] = {part["part"]: part for part in parts["data"]["of"]} or {"tolerances": parts["data"]}
     causes |= {words: parts[name] for name, words in _SIGNED.items()} | {"numerical": parts["numerical"]}
-    changes = {words: _range(part) for words, part in causes.items()}
+    changes = {words: _change(part) for words, part in causes.items()}
     known = {words: change for words, change in changes.items() if change is not None}
     sizes = {words: max(map(abs, change)) for words, change in known.items()}
     largest = [words for words in sorted(sizes, key=lambda words: -sizes[words]) if sizes[words] > _TOLD * max(-low, high)]
@@ -219,10 +219,11 @@ def _hypotheses(result: Computed, *names: str) -> Cause:
     spread, note = result.spread
     if spread is None:
         return _part((0.0, 0.0) if note.estimate in _NOTHING else None, note)
-    if not spread.hypotheses:
+    if not spread.rows:
         return _part((-spread.bound, spread.bound), note)
-    name = next((name for name in names if spread.ranges.get(name) is not None), None)
-    return _part(None, "not in error.model") if name is None else _part(spread.ranges[name], f"error.model.{name}")
+    ranges = spread.ranges
+    name = next((name for name in names if ranges.get(name) is not None), None)
+    return _part(None, "not in error.model") if name is None else _part(ranges[name], f"error.model.{name}")
 
 
 def _contact(result: Computed, quantity: Quantity, hertz: float | None) -> Cause:

@@ -28,9 +28,9 @@ from raceway.points.settings import (
     Design,
     Judged,
     Reference,
-    Row,
     Runner,
     Setting,
+    SettingRun,
     distance,
     find_reference,
     main_size,
@@ -93,7 +93,7 @@ class Precision(Answer):
     stem: ClassVar[str] = "precision"
 
     title: str
-    rows: tuple[Row, ...]
+    rows: tuple[SettingRun, ...]
     references: dict[str, Reference]
     base: str
     left_out: tuple[tuple[str, Tables, str], ...]
@@ -413,7 +413,7 @@ def _study(
         if setting.scene is not None:
             groups.setdefault(setting.physics, []).append(setting)
     total = len(design.settings) + len(groups)
-    results, references = list[Row](), dict[str, Reference]()
+    results, references = list[SettingRun](), dict[str, Reference]()
 
     def tell(label: str) -> None:
         report(label, len(results) + len(references), total)

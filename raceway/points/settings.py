@@ -201,7 +201,7 @@ _TIGHT = 1e-10
 _FLOOR = 1e-10
 
 
-class Row(Measured):
+class SettingRun(Measured):
     """A setting that was run, with the order that its errors should have; ``physics`` decides which ones are compared."""
 
     family: str
@@ -212,7 +212,7 @@ class Row(Measured):
     reused: bool
 
 
-class Judged(Row):
+class Judged(SettingRun):
     """A row beside its reference; ``base`` and ``time_s`` as precision.json has them."""
 
     value: float | None

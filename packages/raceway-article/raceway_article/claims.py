@@ -25,9 +25,10 @@ from typing import Any, NamedTuple
 
 import attrs
 import numpy as np
+from raceway_checks.verify.reference import Verified
 from scipy.special import stdtrit
 
-from raceway.extend import ReadTables, Tables, trend
+from raceway.extend import Tables, trend
 from raceway_article.design import FRICTION_WORDS, MEASURES, ONE_WAY, ROTATING, TILT_WORDS, Curves
 from raceway_article.rules import BRIDGED, FAILED, HOLDS, LEVEL, NOT, PARTLY, UNTESTED, Finding, Verdict
 
@@ -253,7 +254,7 @@ def verdict_of(number: str, claim: str, rule: str, computed: str, findings: Sequ
     return Verdict(number, claim, rule, computed, kind, region, failures, tuple(findings))
 
 
-def verdicts(curves: Curves, static: Sequence[ReadTables]) -> list[Verdict]:
+def verdicts(curves: Curves, static: Sequence[Verified]) -> list[Verdict]:
     """Every claim.
 
     Parameters
@@ -270,10 +271,10 @@ def verdicts(curves: Curves, static: Sequence[ReadTables]) -> list[Verdict]:
     return sorted(out, key=lambda verdict: verdict.number[0])
 
 
-def _not_testable(static: Sequence[ReadTables]) -> list[Verdict]:
+def _not_testable(static: Sequence[Verified]) -> list[Verdict]:
     """Claims 1 and 2: load cases and measured stiffnesses are lost, so that there are only our numbers to report."""
-    pressures = [row for row in static if not row["quantity"].startswith("mesh independence")]
-    heaviest = [row for row in pressures if "inner" in row["quantity"] and "2000 N axial" in row["quantity"]]
+    pressures = [row for row in static if not row.quantity.startswith("mesh independence")]
+    heaviest = [row for row in pressures if "inner" in row.quantity and "2000 N axial" in row.quantity]
     rule = "none: the load cases are not in the text that is left of the article, so that no case can be computed again"
     out = []
     for number, claim, rows, deviation in (
@@ -282,9 +283,9 @@ def _not_testable(static: Sequence[ReadTables]) -> list[Verdict]:
         ("1b", f"In the heaviest case the inner race's is within {_HEAVIEST_DEVIATION:.2%}.", heaviest,
          "deviation of the inner race's peak pressure at 2000 N axial, the heaviest of ours"),
     ):  # fmt: skip
-        errors = [row["error"] for row in rows if row["error"] is not None]
+        errors = [row.error for row in rows if row.error is not None]
         finding = f"{deviation}: {max(errors):.2%}" if errors else "no number"
-        failures = next((row["note"] for row in rows if row["error"] is None), "")
+        failures = next((row.note for row in rows if row.error is None), "")
         out.append(Verdict(number, claim, rule, finding, UNTESTED if errors or not rows else FAILED, failed=failures))
     rule = "none: the table of measured stiffnesses is not in the text that is left of the article"
     finding = "K at the rig's speeds and loads is reported in a table of its own"

@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 import attrs
 import numpy as np
 from raceway_checks.verify import study as verification
-from raceway_checks.verify.reference import reference_cases
+from raceway_checks.verify.reference import Verified, reference_cases
 
 from raceway import Answer, ConvergenceError, RacewayError, function, scene_from_dict
 from raceway.extend import (
@@ -316,7 +316,7 @@ class Article(Answer):
     title: str
     curves: Curves
     rig: tuple[Tables, ...]
-    static: tuple[Tables, ...]
+    static: tuple[Verified, ...]
     trends: tuple[_Trend, ...]
     scan: dict[float, list[Tables]]
     seconds: float
@@ -363,7 +363,7 @@ class Article(Answer):
                 "friction_trends": _friction_trends(self.curves),
                 "verdicts": [verdict.to_dict() for verdict in self.verdicts],
                 "quasi_static": [trend.to_dict() for trend in self.trends],
-                "static": self.static,
+                "static": list(map(attrs.asdict, self.static)),
                 "rig": self.rig,
                 "causes": {f"{load:g}": dict(_one_at_a_time(self.curves, load)) for load in design.loads},
                 "tilt_stiffness": [
@@ -394,7 +394,7 @@ class Article(Answer):
             "curves": content["rows"],
             "verdicts": [verdict.row() for verdict in self.verdicts],
             "quasi-static": [trend.row() for trend in self.trends],
-            "static": list(self.static),
+            "static": content["static"],
             "rig": list(self.rig),
             "friction": content["friction_trends"],
             "tilt-stiffness": scan,
@@ -507,7 +507,7 @@ def solve_curves(
     with written(kept) as store:
         answers, reused = work_through(_rows, items, store, local(registry, processes), registry, plugins, on_progress)
     results = iter([row["rows"] for row in answers])
-    static = next(results)
+    static = [Verified(**row) for row in next(results)]
     trends = [_trend(case, next(results)) for case in TRENDS]
     scan = {load: next(results) for load in _scan_loads(design)}
     rig = [{"tilt": s.tilt, "bodies": s.bodies, **row} for s in _rig_settings(design) for row in next(results)]

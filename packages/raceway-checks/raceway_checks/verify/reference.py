@@ -17,7 +17,7 @@ BASES = {"published": "published numbers", "closed form": "numbers of closed for
 
 
 @attrs.frozen
-class Row:
+class Verified:
     """One computed number beside that of a case, in the unit of the source.
 
     Attributes
@@ -70,13 +70,13 @@ class Case:
 
     def row(
         self, quantity: str, reference: float | None, computed: float | None, tolerance: float | None, note: str = ""
-    ) -> Row:
+    ) -> Verified:
         """A number beside the case's own; ``note``: why there is none."""
         if computed is not None and not isfinite(computed):
             computed, note = None, f"computed {computed}: not a finite number"
         error = None if computed is None or reference is None else abs(computed - reference) / abs(reference)
         ok = error is not None and tolerance is not None and error <= tolerance
-        return Row(self.id, quantity, reference, computed, error, tolerance, ok, self.source, self.basis, note)
+        return Verified(self.id, quantity, reference, computed, error, tolerance, ok, self.source, self.basis, note)
 
 
 @cache

@@ -25,7 +25,7 @@ from raceway.extend import (
     integrate, micro, nearest, number, run, solve_equilibrium,
 )  # fmt: skip
 from raceway_checks.stability.catalogue import transient_integrators
-from raceway_checks.verify.reference import BASES, Case, Row, reference_cases
+from raceway_checks.verify.reference import BASES, Case, Verified, reference_cases
 
 if TYPE_CHECKING:
     from raceway.extend import Excitation, Integrator, Model
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 _INCH, _POUND, _PSI = 0.0254, 4.4482216152605, 6894.757293168361
 
-Rows = Iterator[Row]
+Rows = Iterator[Verified]
 
 
 def _scene(case: Case, registry: Registry, **tables: Tables) -> Scene:
@@ -297,7 +297,7 @@ class Verification(Answer):
 
     stem: ClassVar[str] = "verify"
 
-    rows: tuple[Row, ...]
+    rows: tuple[Verified, ...]
     every: bool = False
 
     @property
@@ -312,7 +312,7 @@ class Verification(Answer):
         return {basis: {"within": sum(ok), "of": len(ok)} for basis, ok in rows.items() if ok}
 
     @property
-    def worst(self) -> tuple[Row, ...]:
+    def worst(self) -> tuple[Verified, ...]:
         """Of each case the row that comes closest to its tolerance, or misses it by most."""
         cases = dict.fromkeys(row.case for row in self.rows)
         strain = [float("inf") if r.error is None or not r.tolerance else r.error / r.tolerance for r in self.rows]
@@ -380,7 +380,7 @@ def verify(
     if faults:
         raise SceneError(faults)
     selection = [case for name, case in checkable.items() if name in names]
-    rows, report = list[Row](), progress or (lambda *_: None)
+    rows, report = list[Verified](), progress or (lambda *_: None)
     for count, case in enumerate(selection):
         report(case.id, count, len(selection))
         rows += compute(case, registry)
@@ -388,9 +388,9 @@ def verify(
     return Verification(tuple(rows), every)
 
 
-def compute(case: Case, registry: Registry) -> list[Row]:
+def compute(case: Case, registry: Registry) -> list[Verified]:
     """The rows of one case; a solver that fails makes a row that says why."""
-    rows: list[Row] = []
+    rows: list[Verified] = []
     try:
         for row in COMPUTED[case.id](case, registry):
             rows.append(row)
