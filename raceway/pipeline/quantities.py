@@ -40,12 +40,8 @@ def stated_quantities(model: Model, equilibrium: Equilibrium, record: Record | N
     PluginError
         A plug-in that breaks a duty.
     """
-    points, values, tables, warnings = (
-        solved_point(model, equilibrium, record),
-        dict[str, float | np.ndarray](),
-        dict[str, Tables](),
-        list[str](),
-    )
+    points, tables, warnings = solved_point(model, equilibrium, record), dict[str, Tables](), list[str]()
+    values: dict[str, float | np.ndarray] = {}
     for plugin in fitting_quantities(model.problem):
         numbers = quantities_at(plugin, points)
         tables[plugin.name], sentences = quantity_report(plugin, points, numbers)

@@ -47,6 +47,8 @@ if TYPE_CHECKING:
     from raceway.pipeline.gradient import Gradient
 
 SCHEMA = 2
+#: Of a spectral line, in the order of ``Line``.
+_LINE = ("name", "frequency_hz", "forward_m", "backward_m", "axial_m")
 #: The entry in the registry of a format of results, and the format with its options' defaults.
 Chosen = tuple["Entry", "Format"]
 
@@ -390,16 +392,7 @@ class Result(Answer):
             "damping_origin": damping_origin(self.model.problem),
             "band": self.band,
             "tilt": self.model.problem.supports.tilt,
-            "lines": [
-                {
-                    "name": line.name,
-                    "frequency_hz": line.frequency_hz,
-                    "forward_m": line.forward,
-                    "backward_m": line.backward,
-                    "axial_m": line.axial,
-                }
-                for line in self.lines
-            ],
+            "lines": [dict(zip(_LINE, attrs.astuple(line), strict=True)) for line in self.lines],
             "series": [
                 {
                     "speed_rpm": speed * 30.0 / math.pi,

@@ -274,10 +274,6 @@ def _result(tables: ReadTables, registry: Registry) -> Tables:
         return {"status": error.status, "reason": str(error)}
 
 
-#: The answer, in the folder of the results.
-_CONTENT = "compare.json"
-
-
 @door
 def compare(
     scene: SceneSource,

@@ -162,9 +162,8 @@ class Precision(Answer):
         """Whether any row has an error below the coarsest threshold, or at least numbers where there is no reference."""
         bounds = {physics: reference.bound for physics, reference in self.references.items()}
         errors = [error + bounds[row["physics"]] for row in self.judged if (error := row["error"]) is not None]
-        if errors:
-            return any(error <= THRESHOLDS[0] for error in errors)
-        return any(row["status"] == "completed" for row in self.rows)
+        states = [row["status"] == "completed" for row in self.rows]
+        return any(error <= THRESHOLDS[0] for error in errors) if errors else any(states)
 
     @property
     def models(self) -> list[Tables]:
