@@ -122,9 +122,9 @@ class Errors:
 
 def body_errors(model: Model, equilibrium: Equilibrium, how: Note) -> Errors:
     """Those of mesh and contacts, which the equilibrium has; of all else ``how``."""
+    mesh = model.bearing.mesh_error(model, equilibrium)  # before the contacts': bodies go on from what they solved last
     has_contact = (equilibrium.contact_force > 0.0).any()
     contact = model.bearing.contact_error(model, equilibrium) if has_contact else (None, Estimate.UNLOADED())
-    mesh = model.bearing.mesh_error(model, equilibrium)
     return attrs.evolve(Errors.unknown(how), mesh=Part(*mesh), contact=Part(*contact))
 
 
