@@ -143,7 +143,7 @@ def nested(quantities: Iterable[Quantity], result: object) -> Tables:
 # Of the 1x line.
 _ID = "identification"
 SPEED = Quantity("speed_rpm", "r/min", "speed of the excitation", f"{_ID}.speed_rpm")
-_FREQUENCY = Quantity("frequency", "Hz", "of the synchronous (1x) component", f"{_ID}.frequency_hz", f"{_ID}.frequency_hz")
+FREQUENCY = Quantity("frequency", "Hz", "of the synchronous (1x) component", f"{_ID}.frequency_hz", f"{_ID}.frequency_hz")
 FORCE_AMPLITUDE = Quantity("force_amplitude", "N", "amplitude of the 1x force", f"{_ID}.force_amplitude_n", f"{_ID}.force_amplitude", label="force")
 _Z = f"{_ID}.dynamic_stiffness"
 Z = Quantity("dynamic_stiffness", "N/m", "size of Z = F/x", f"{_Z}.abs", symbol="|Z|", label="|Z|")
@@ -215,12 +215,12 @@ PRECISION = (
 )
 #: What result.json states of the identification, in its order.
 IDENTIFIED = (
-    SPEED, _FREQUENCY, FORCE_AMPLITUDE, Z_REAL, Z_IMAG, Z, _Z_IMAG_ERROR, K, K_ERROR, C, C_ERROR, MASS, PHASE_LAG, _PHASE_LAG_ERROR,
+    SPEED, FREQUENCY, FORCE_AMPLITUDE, Z_REAL, Z_IMAG, Z, _Z_IMAG_ERROR, K, K_ERROR, C, C_ERROR, MASS, PHASE_LAG, _PHASE_LAG_ERROR,
     _FORWARD, _BACKWARD, ORBIT_MAJOR, ORBIT_MINOR, RESIDUAL, _SPREAD,
 )
 #: Columns of a sweep, numbers before arrays.
 COLUMNS = named(
-    Z_REAL, Z_IMAG, K, C, FORCE_AMPLITUDE, _FREQUENCY, MASS, _FORWARD, _BACKWARD, ORBIT_MAJOR, ORBIT_MINOR, RESIDUAL,
+    Z_REAL, Z_IMAG, K, C, FORCE_AMPLITUDE, FREQUENCY, MASS, _FORWARD, _BACKWARD, ORBIT_MAJOR, ORBIT_MINOR, RESIDUAL,
     AXIAL_DISPLACEMENT, KYY_TILTS_FOLLOW, PEAK_BALL_LOAD, _PEAK_INNER, _PEAK_OUTER, _LEAST_LOAD, P0, _P0_INNER, _P0_OUTER,
     ERROR, *_ERRORS, MODEL_BOUND, DISPLACEMENT, STIFFNESS, _DAMPING,
 )

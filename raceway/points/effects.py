@@ -31,7 +31,7 @@ from itertools import combinations, product
 import attrs
 import numpy as np
 
-from raceway.answers.quantities import C_ERROR, KXX, KYY, RESIDUAL, C, K, Quantity, X, Z, named
+from raceway.answers.quantities import C_ERROR, ERROR, FREQUENCY, KXX, KYY, MASS, RESIDUAL, C, K, Quantity, X, Z, named
 from raceway.framework.doors import member
 from raceway.points.axes import Axis, shown
 from raceway.storage.tables import Tables
@@ -219,7 +219,7 @@ class Row:
     @property
     def error(self) -> float:
         """Estimated relative error of Z, 0 where none was estimated."""
-        return float((self.result.get("error") or {}).get("total") or 0.0)
+        return float(ERROR.of(self.result) or 0.0)
 
     def error_of(self, quantity: str) -> float:
         """Relative error of a quantity: of K that of Z over its own size, since m w^2 has none; 0 of static ones, solved to rounding."""
@@ -229,7 +229,7 @@ class Row:
     @property
     def estimated(self) -> bool:
         """Whether the run has estimated its error."""
-        return (self.result.get("error") or {}).get("total") is not None
+        return ERROR.of(self.result) is not None
 
     @property
     def doubt(self) -> str | None:
@@ -516,11 +516,11 @@ def _courses(comparison: Findings) -> list[str]:
 
 def _inertia(comparison: Findings) -> list[str]:
     """By how much |Z| is less than K, with the mass that was used."""
-    runs = [row.result["identification"] for row in comparison.rows if row.doubt is None]
-    if not all(runs):
+    runs = [row.result for row in comparison.rows if row.doubt is None]
+    if not all(run["identification"] for run in runs):
         return []
-    masses = [run["mass_used_kg"] for run in runs]
-    force = [m * (2.0 * math.pi * run["frequency_hz"]) ** 2 for m, run in zip(masses, runs, strict=True)]
+    masses = [MASS.of(run) for run in runs]
+    force = [m * (2.0 * math.pi * FREQUENCY.of(run)) ** 2 for m, run in zip(masses, runs, strict=True)]
     mass = f"{min(masses):.3f}" if max(masses) - min(masses) < 5e-4 else f"{min(masses):.3f} to {max(masses):.3f}"
     return [
         f"|Z| is K less m w^2, with m = {mass} kg: {1e-6 * min(force):.2f} to {1e-6 * max(force):.2f} N/µm; damping adds to it."
