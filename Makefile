@@ -3,7 +3,8 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 SCENE  ?= examples/b7206.toml
 PACKAGES := $(wildcard ./packages/*)
-INSTALL = $(BIN)/python -m pip install -q -c constraints.txt
+# Byte code is written by the first import: most of what is installed is never imported.
+INSTALL = $(BIN)/python -m pip install -q --no-compile -c constraints.txt
 
 # What a bare Debian lacks for gmsh (linked), pyvista (opened at run time, without a display), the tests of pages (a browser)
 # and of the .inp files (CalculiX).  Without them these tests are skipped; with CI=true or RACEWAY_TEST_ALL=1 they fail.
@@ -76,7 +77,7 @@ $(VENV)/.all: $(VENV)/.python pyproject.toml constraints.txt $(wildcard packages
 $(VENV)-docs/.installed: $(VENV)/.python pyproject.toml constraints.txt $(wildcard packages/*/pyproject.toml)
 	@echo "installing Sphinx and ROSS into $(VENV)-docs: some minutes, 2.1 GB, most of it what ROSS needs"
 	$(PYTHON) -m venv $(VENV)-docs
-	$(VENV)-docs/bin/python -m pip install -q -c constraints.txt -e '.[pictures,sweep,docs]' $(addprefix -e ,$(PACKAGES)) -e './packages/raceway-rotor[ross]' pytest
+	$(VENV)-docs/bin/python -m pip install -q --no-compile -c constraints.txt -e '.[pictures,sweep,docs]' $(addprefix -e ,$(PACKAGES)) -e './packages/raceway-rotor[ross]' pytest
 	touch $@
 
 constraints: $(VENV)/.python ## constraints.txt, kept where pyproject.toml allows; UPGRADE=--upgrade takes the newest versions
