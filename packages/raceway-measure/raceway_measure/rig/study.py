@@ -61,6 +61,27 @@ class _Point:
     def name(self) -> str:
         return f"{self.state.speed * 30.0 / pi:.0f}rpm-{self.axial:.0f}N"
 
+    @property
+    def place(self) -> str:
+        """Speed and load, without a line's end between number and unit."""
+        return f"{self.state.speed * 30.0 / pi:.0f}\u00a0r/min, {self.axial:.0f}\u00a0N"
+
+    @property
+    def cells(self) -> dict[str, str]:
+        """Of a table: what the bearing does, and K as it is identified."""
+        state, found = self.state, self.identified
+        return {
+            "point": self.place,
+            "force N": f"{abs(state.force):.4g}",
+            "over m e w²/2": f"{2.0 * abs(state.force) / self.unbalance_force:.4g}",
+            "bearing µm": f"{1e6 * abs(state.deflection):.4g}",
+            "sensor µm": f"{1e6 * abs(state.sensor):.4g}",
+            "true K N/µm": f"{1e-6 * state.stiffness:.3f}",
+            "identified": f"{1e-6 * found.equivalent_stiffness:.3f}",
+            "±": f"{1e-6 * found.equivalent_stiffness_error:.3f}",
+            "off %": f"{100 * (found.state.stiffness / state.stiffness - 1.0):.3f}",
+        }
+
     def to_dict(self) -> Tables:
         state, true, identification = self.state, self.state.stiffness, self.identified.content()
         return {
@@ -176,14 +197,13 @@ class _RigStudy(Answer):
 
     def report(self) -> Iterator[Part]:
         """A row for each speed and load: the true bearing, the beam inverted, the article's procedure; errors by their causes."""
-        content, rows = self.to_dict(), []
-        for row in content["rows"]:
-            ratios = {reading["correction"]: reading["over_true"] for reading in row["printed"]}
+        rows, worst = [], self.worst
+        for point in self.points:
+            ratios = {reading.correction: reading.stiffness / point.state.stiffness for reading in point.readings}
             cells = {
-                name: cell for name, cell in _point_row(row).items() if name not in ("force N", "over m e w²/2", "sensor µm")
+                name: cell for name, cell in point.cells.items() if name not in ("force N", "over m e w²/2", "sensor µm")
             }
             rows.append(cells | {words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()})
-        worst = content["worst"]
         speeds = ", ".join(f"{value:.0f} r/min on {name}" for name, value in self.critical.items())
         yield Words(self.title, "bold")
         yield Words(f"first critical speed {speeds}", "dim")
@@ -192,7 +212,7 @@ class _RigStudy(Answer):
         yield f"inverted beam: at most {100 * worst['clean']:.2g} % off without noise, {100 * worst['disturbed']:.2g} % with all"
         causes = [
             {"cause": cause["kind"], "what": cause["what"], "error %": f"{100 * cause['error']:+.3g}"}
-            for cause in content["worst_by_cause"]
+            for cause in self.worst_by_cause
         ]
         yield rows_table(causes, "Largest error of K by one cause at a time")
         yield from (Words(f"failed: {_failure_words(point)}", "red") for point in self.failed)
@@ -204,25 +224,6 @@ _SHOWN = {"as printed": "printed", "simply supported beam, amplified bow and for
 
 def _failure_words(point: ReadTables) -> str:
     return f"{point['speed_rpm']:.0f} r/min, {point['axial_n']:.0f} N: {point['reason']}"
-
-
-def _point_name(row: ReadTables) -> str:
-    return f"{row['speed_rpm']:.0f}\u00a0r/min, {row['axial_n']:.0f}\u00a0N"  # no line ends between number and unit
-
-
-def _point_row(row: ReadTables) -> Tables:
-    true, identification = row["true"], row["identified"]["identification"]
-    return {
-        "point": _point_name(row),
-        "force N": f"{true['force_n']:.4g}",
-        "over m e w²/2": f"{true['force_over_half_unbalance']:.4g}",
-        "bearing µm": f"{1e6 * true['deflection_m']:.4g}",
-        "sensor µm": f"{1e6 * true['sensor_m']:.4g}",
-        "true K N/µm": f"{1e-6 * true[K.name]:.3f}",
-        "identified": f"{1e-6 * identification[K.name]:.3f}",
-        "±": f"{1e-6 * identification[K_ERROR.name]:.3f}",
-        "off %": f"{100 * row['identified']['error']:.3f}",
-    }
 
 
 def rig(
@@ -378,8 +379,7 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
     drawings = {"procedures": _procedures(study), **record, "error-split": _causes(study)}
     files = [save_figure(figure, folder / f"{name}.png", 110) for name, figure in drawings.items()]
     # Words, tables and figures.
-    content, rig, signals = study.to_dict(), study.rig, study.rig.signals
-    worst, rows = content["worst"], content["rows"]
+    points, worst, rig, signals = study.points, study.worst, study.rig, study.rig.signals
     words = (
         f"Shaft {1e3 * rig.shaft_length:g} mm long, {1e3 * rig.shaft_diameter:g} mm thick, disc of {rig.disc_mass:.3g} kg, bearings "
         f"{1e3 * rig.span:g} mm apart, {1e3 * rig.unbalance_mass:g} g at {1e3 * rig.unbalance_radius:g} mm; sensor "
@@ -395,9 +395,8 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
         f"{1e6 * signals.run_out:g} µm of run-out, less what a slow roll shows.",
         kind="lead",
     )
-    out.rows(
-        list(map(_point_row, rows)), "The tested bearing in the rig, and K as it is identified; ±: its uncertainty at 95 %"
-    )
+    caption = "The tested bearing in the rig, and K as it is identified; ±: its uncertainty at 95 %"
+    out.rows([point.cells for point in points], caption)
     alternative = "K over speed for each axial load, true and by each procedure"
     out.figures([(drawings["procedures"], alternative, "K by each procedure")])
     for point in study.failed:
@@ -409,9 +408,11 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
         "beam bends by m e w² a (3 L² - 4 a²) / (48 E I), which is the printed formula for an L of twice the span; the bearing's "
         "force is amplified, too, because the bow moves the disc outwards."
     )
-    names = [_point_name(row) for row in rows]
-    ratios = zip(*(row["printed"] for row in rows), strict=True)
-    lines = [[readings[0]["correction"], *(f"{reading['over_true']:.3f}" for reading in readings)] for readings in ratios]
+    names, true = [point.place for point in points], [point.state.stiffness for point in points]
+    lines = [
+        [of[0].correction, *(f"{reading.stiffness / k:.3f}" for reading, k in zip(of, true, strict=True))]
+        for of in zip(*(point.readings for point in points), strict=True)
+    ]
     out.table(["correction", *names], lines, "K over the true K, by the correction for the shaft")
     out.section("Signals")
     out.figures([
@@ -423,12 +424,9 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
     out.text("One cause at a time is switched on. Dashed: 1 % and 3 %; a dot for each speed and load.")
     alternative = "dots of error for each cause on a logarithmic scale"
     out.figures([(drawings["error-split"], alternative, "Error of K by its causes")], wide=True)
-    causes_of_points = zip(*(row["split"] for row in rows), strict=True)
-    lines = [
-        [f"{cause[0]['kind']}: {cause[0]['what']}", *(f"{100 * row['error']:.3g}" for row in cause)]
-        for cause in causes_of_points
-    ]
-    out.table(["cause", *map(_point_name, rows)], lines, "Error of K [%] by one cause at a time")
+    causes = zip(*(point.causes for point in points), strict=True)
+    lines = [[f"{of[0].kind}: {of[0].what}", *(f"{100 * cause.error:.3g}" for cause in of)] for of in causes]
+    out.table(["cause", *names], lines, "Error of K [%] by one cause at a time")
     out.section("What is assumed")
     out.listing(_ASSUMED)
     return [out.write(folder / "rig.html"), *files]
