@@ -232,8 +232,7 @@ class Followed(Answer):
         for k, branch in enumerate(self.doubled, 1):
             yield f"branch {k} of twice the period: {len(branch.rows)} orbits, {_range(branch)}"
         for attractor in (a for branch in (self, *self.doubled) for a in branch.attractors):
-            table = attractor.to_dict()
-            yield f"beside the unstable orbit at {table['parameter']:.6g}: {table['words']}"
+            yield f"beside the unstable orbit at {attractor.parameter:.6g}: {attractor.words}"
         yield from self.notes
         if self.end:
             yield Words(self.end, "bold")
