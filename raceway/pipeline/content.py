@@ -45,7 +45,7 @@ class ErrorTable(TypedDict):
 
 
 class Content(TypedDict):
-    """The whole file, beside a table for each plug-in of quantities."""
+    """All tables of the file, beside one for each plug-in of quantities."""
 
     schema: int
     title: str

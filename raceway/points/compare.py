@@ -259,14 +259,6 @@ def _by_one_method(
     return [tables_at(tables, {"integrator.kind": "newmark"}, registry) for tables in scenes]
 
 
-def _planned_method(tables: Tables, registry: Registry) -> str | None:
-    """The integrator of a point; None where it has none or is refused, which it is as it is run, too."""
-    with suppress(RacewayError):
-        problem = make_plan(scene_from_dict(tables, registry)).problem
-        return problem.integrator.kind if problem.recorded else None
-    return None
-
-
 def _result(tables: ReadTables, registry: Registry) -> Tables:
     try:
         return run(scene_from_dict(tables, registry), registry).to_dict()
@@ -332,7 +324,12 @@ def compare(
     axes = axes_of(vary, tables, registry)
     title, places = refuse_mistakes(tables, axes, registry), list(points(axes))
     scenes = [tables_at(tables, point, registry, notes) for point in places]
-    scenes = _by_one_method([_planned_method(scene, registry) for scene in scenes], scenes, registry, notes)
+    methods = list[str | None]()
+    for scene_tables in scenes:
+        with suppress(RacewayError):  # what is refused is so as it is run, too
+            problem = make_plan(scene_from_dict(scene_tables, registry)).problem
+            methods += [problem.integrator.kind] if problem.recorded else []
+    scenes = _by_one_method(methods, scenes, registry, notes)
     items = [_item(scene, registry) for scene in scenes]
 
     def comparison(results: Iterable[Tables]) -> Comparison:
@@ -342,7 +339,7 @@ def compare(
     with telling(progress) as report, written(kept or folder) as store:
         try:
             results, _ = work_through(_result, items, store, local(registry, 0), registry, on_progress=report)
-            methods = ((result.get("plan", {}).get("integrator") or {}).get("kind") for result in results)
+            methods = [(result.get("plan", {}).get("integrator") or {}).get("kind") for result in results]
             alike = _by_one_method(methods, scenes, registry, notes)
             if alike is not scenes:  # a steady orbit was not found, or is unstable
                 items = [_item(scene, registry) for scene in alike]
