@@ -80,6 +80,8 @@ def test_what_is_stated_is_no_spread():
     model = _of(said)["model"]
     assert set(_alone(model)) == {False, True}
     assert model["kyy"] == [_alone(model)[False], _alone(model)[True]] and 0.0 < model["kyy"][1] < model["bound"]
+    fitted = _of({**said, "mounting": {"shaft_interference": 5e-6}})["model"]  # a fit that is given is not left out
+    assert fitted["kyy"] == [_alone(fitted)[False], 0.0]  # the scene's own hypotheses change nothing
     assert "none" in _alone(_of(rw.Scene.from_dict(STATIC).to_dict())["model"])
     said["kinematics"]["ring_growth"] = False
     assert (error := _of(said))["model"] is None and "stated" in error["how"]["model"]
