@@ -55,7 +55,7 @@ def test_a_motion_that_is_complete_is_kept_without_its_error():
 
 def test_a_stepped_motion_keeps_its_state(monkeypatch):
     """Elastic bodies are stepped from Python; the allowance is spent at the first report after the equilibrium."""
-    monkeypatch.setattr("raceway.core.record._REPORT_S", 0.0)
+    monkeypatch.setattr("raceway.core.recorder._REPORT_S", 0.0)
     monkeypatch.setattr(Allowance, "spent", False)
 
     def progress(what, done, total):

@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sp
 
 from raceway.core.fem.elastic.linear_statics import BlockMatrix
-from raceway.core.ring.equilibrium import cholesky_solve, eliminate, solve
+from raceway.core.ring.elimination import cholesky_solve, eliminate, solve
 
 
 @pytest.mark.parametrize("gauss", [eliminate, solve])

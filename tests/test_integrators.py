@@ -13,7 +13,8 @@ from checks.validation import orders
 from checks.validation.scenes import built_in, rotating
 from raceway import PluginError, SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
 from raceway.core.record import State
-from raceway.core.ring.ring import Increment, SteppedBearing
+from raceway.core.ring.ring import Increment
+from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.signatures import Outer
 from raceway.core.time.compiled import outer_force
 from raceway.core.time.schemes import Drivers, OneStep

@@ -17,10 +17,11 @@ from checks.validation.several import heavy
 from raceway import SceneError, run
 from raceway.core.periodic.branch import Branch
 from raceway.core.periodic.branches import force_continuation
-from raceway.core.periodic.collocation import Problem, newton_iteration, one_turn, solve, stiff
+from raceway.core.periodic.collocation import Problem, newton_iteration, solve, stiff
 from raceway.core.periodic.refinement import motion_at, record
 from raceway.core.periodic.search import Recorded, guess, highest_order, mesh_of, neighbour_of, problem_of, response
 from raceway.core.periodic.steady import find, static_equilibrium
+from raceway.core.periodic.turn import one_turn
 from raceway.extend import Motion, Schedule, integrate, steady_orbit
 from raceway.pipeline.simulate import steady_record
 from raceway.testing import model_of, solve_equilibrium

@@ -15,7 +15,8 @@ from scipy.optimize import fsolve
 from scipy.special import beta
 
 from raceway import LAW, jit
-from raceway.core.periodic.collocation import Path, Problem, Solved, one_turn, solve
+from raceway.core.periodic.collocation import Path, Problem, Solved, solve
+from raceway.core.periodic.turn import one_turn
 from raceway.extend import System
 from raceway.testing.systems import along_x, contact_system
 

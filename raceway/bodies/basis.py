@@ -8,9 +8,9 @@ import attrs
 import numpy as np
 
 from raceway.core.columns import Number, largest, per_ball, radians, where
-from raceway.core.contact.geometry import BallBearing
+from raceway.core.contact.geometry import BallBearing, Growth
 from raceway.core.contact.hertz import Ellipse, contact_modulus, every
-from raceway.core.ring.ring import ChangingSpeed, Growth
+from raceway.core.ring.ring import ChangingSpeed
 from raceway.core.signatures import FORCE
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.duties import force_params

@@ -18,8 +18,9 @@ from raceway.bodies.running import ITERATIONS, LOAD_TOLERANCE, running_pairs
 from raceway.core.columns import at_rows, distinct, has_columns, per_ball, some
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.excitations import no_force
-from raceway.core.periodic.collocation import one_pitch
-from raceway.core.periodic.orbits import Orbits, Turning, neighbours, orbits
+from raceway.core.periodic.fourier import Turning
+from raceway.core.periodic.orbits import Orbits, neighbours, orbits
+from raceway.core.periodic.turn import one_pitch
 from raceway.core.ring.equilibria import LOOSE, Kernels, Points, States, equilibria, groove_centres
 from raceway.core.ring.equilibrium import NOT_CONVERGED
 from raceway.core.ring.kernels import layout as ring

@@ -14,9 +14,10 @@ import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, first_guess, growth_of
+from raceway.core.contact.geometry import Growth
 from raceway.core.contact.hertz import regula_falsi
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.ring import Evaluation, Growth, Ring
+from raceway.core.ring.ring import Evaluation, Ring
 from raceway.core.ring.system import System
 from raceway.errors import ConvergenceError
 from raceway.framework.duties import renews

@@ -10,49 +10,39 @@ as they were found.
 
 from __future__ import annotations
 
-import gc
 import hashlib
-import marshal
 import sys
 import time
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
 from functools import cache, cached_property
 from importlib import import_module
-from itertools import count
 from pathlib import Path
-from types import CodeType, FunctionType
 from typing import Any
 
 import numba
 import numpy as np
-from numba.core.bytecode import FunctionIdentity
 from numba.core.caching import IndexDataCacheFile, NullCache
-from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, CompileResult, DefaultPassBuilder
+from numba.core.compiler import CompileResult
 from numba.core.compiler_lock import global_compiler_lock
-from numba.core.registry import CPUDispatcher
-from numba.core.serialize import dumps
-from numba.core.targetconfig import ConfigStack
-from numba.core.typed_passes import DumpParforDiagnostics, NopythonRewrites
-from numba.core.types.functions import BaseFunction
-from numba.core.typing.templates import Signature, _OverloadFunctionTemplate
-from numba.core.untyped_passes import (
-    FindLiterallyCalls,
-    InlineClosureLikes,
-    InlineInlinables,
-    LiteralPropagationSubPipelinePass,
-    LiteralUnroll,
-    MakeFunctionToJitFunction,
-    RewriteDynamicRaises,
-    WithLifting,
-)
+from numba.core.typing.templates import Signature
 
 from raceway.core import wheel_kernels
-from raceway.core.signatures import Pointer
+from raceway.core.compiler import (
+    CORE_MODULES,
+    Compiler,
+    Dispatcher,
+    Inlined,
+    Numba,
+    collector_off,
+    marks,
+    numba_cache_in,
+    numbered_from,
+    resolved_once,
+)
+from raceway.core.signatures import Pointer, signature_words
 from raceway.errors import PluginError, RacewayError
-from raceway.storage.kernel_cache import SHARED, FilesOfKernel, OpenFolder, current_folder, opened
+from raceway.storage.kernel_cache import FilesOfKernel, OpenFolder, current_folder, opened
 
 if getattr(numba.config, "DISABLE_JIT", 0):
     raise RacewayError(
@@ -111,124 +101,7 @@ def _warn_incomplete(folder: Path, why: str) -> None:
     )
 
 
-#: Objects that may wait for Python's search for cycles once kernels were compiled, and how many before.
-_WAITING = 3_000_000
-_thresholds: list[tuple[int, int, int]] = []
-
-
-@contextmanager
-def _collector_off() -> Iterator[None]:
-    """Python's search for cycles among the millions of small objects that numba makes takes a tenth of its time.
-
-    Where it is on, it comes at the next of some million objects, so that it comes in few first runs: they take 0.1 GB more.
-    """
-    before = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if before:
-            if not _thresholds:
-                _thresholds.append(gc.get_threshold())
-                gc.set_threshold(_WAITING, *_thresholds[0][1:])
-                gc.callbacks.append(_search_as_before)
-            gc.enable()
-
-
-def _search_as_before(_phase: str, _counts: dict[str, int]) -> None:
-    gc.set_threshold(*_thresholds.pop())
-    gc.callbacks.remove(_search_as_before)
-
-
-#: A part of numba's compiler, which types some of itself only.
-_Numba = Any
-_Function: _Numba = BaseFunction
-_resolve = _Function.get_call_type
-_Overload: _Numba = _OverloadFunctionTemplate
-#: Signatures and implementations of operators and functions of numba's own, by their arguments' types and the compiler's flags.
-_resolved: dict[tuple[_Numba, ...], tuple[Signature, _Numba]] = {}
-
-
-@contextmanager
-def _resolved_once() -> Iterator[None]:
-    """numba tries some ten templates at each ``a + b`` and ``a[i]``, an eighth of the time that it compiles for; here once per types.
-
-    Functions of numba's own become parts of their callers, once for all kernels that may allocate and once for the others.
-    """
-
-    def resolve(function: _Numba, context: _Numba, args: _Numba, kws: _Numba) -> Signature:
-        flags = ConfigStack.top_or_none()
-        options = None if flags is None else (flags.nrt, flags.error_model, str(flags.fastmath))
-        key = function, args, tuple(kws.items()), options
-        if key not in _resolved:
-            signature = _resolve(function, context, args, kws)
-            _resolved[key] = signature, function._impl_keys[signature.args]
-        signature, implementation = _resolved[key]
-        function._impl_keys[signature.args] = implementation
-        return signature
-
-    def compiler(_template: _Numba) -> _Numba:
-        return lambda **options: lambda function: _Helper(function, targetoptions=options)
-
-    before, _Function.get_call_type = _Function.get_call_type, resolve
-    jitter, _Overload._get_jit_decorator = _Overload._get_jit_decorator, compiler
-    try:
-        yield
-    finally:
-        _Function.get_call_type, _Overload._get_jit_decorator = before, jitter
-
-
-@contextmanager
-def _numba_cache_in(folder: Path) -> Iterator[None]:
-    config: _Numba = numba.config
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(folder)
-    try:
-        yield
-    finally:
-        config.CACHE_DIR = before
-
-
-@contextmanager
-def _numbered_from(base: str) -> Iterator[None]:
-    """Number functions from a number of the kernel's own, by the name of its files.
-
-    Symbols of machine code end in numba's count of the functions of a process.  Two variants of a closure that two processes compile
-    may have one number, and so one symbol: a process that loads both would run the first one for either.
-    """
-    before = FunctionIdentity._unique_ids
-    first = int.from_bytes(hashlib.blake2b(base.encode(), digest_size=7).digest(), "big")
-    FunctionIdentity._unique_ids = count(first)
-    try:
-        yield
-    finally:
-        FunctionIdentity._unique_ids = before
-
-
-#: For closures, ``with``, ``literal_unroll``, functions that are written into their callers, parallel loops, and one loop for several
-#: operators of arrays: kernels have none of them.
-_NEEDLESS = {
-    DumpParforDiagnostics, FindLiterallyCalls, InlineClosureLikes, InlineInlinables, LiteralPropagationSubPipelinePass, LiteralUnroll,
-    MakeFunctionToJitFunction, NopythonRewrites, RewriteDynamicRaises, WithLifting,
-}  # fmt: skip
-
-
-class _Compiler(CompilerBase):
-    """numba's, without passes that kernels of the core do not need."""
-
-    def define_pipelines(self) -> list[_Numba]:
-        passes: _Numba = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.passes = [each for each in passes.passes if each[0] not in _NEEDLESS]
-        passes.finalize()
-        return [passes]
-
-
-_Dispatcher: _Numba = CPUDispatcher
-#: Modules whose kernels need no more than ``_Compiler`` does, and whose sources name the folders of compiled kernels.
-_SHARED = tuple(f"raceway.{folder.replace('/', '.')}." for folder in SHARED)
-
-
-class Kernel(_Dispatcher):
+class Kernel(Dispatcher):
     """A function that is compiled for its one signature, or read from the cache, at its first use.
 
     That is a call from Python, its address being taken, or the compiling of a kernel that calls it.
@@ -239,8 +112,8 @@ class Kernel(_Dispatcher):
     """
 
     def __init__(self, function: Callable[..., Any], signature: Signature, options: dict[str, Any]) -> None:
-        if function.__module__.startswith(_SHARED):
-            super().__init__(function, targetoptions=options, pipeline_class=_Compiler)
+        if function.__module__.startswith(CORE_MODULES):
+            super().__init__(function, targetoptions=options, pipeline_class=Compiler)
         else:
             super().__init__(function, targetoptions=options)
         self.signature = signature
@@ -248,16 +121,16 @@ class Kernel(_Dispatcher):
         self._of_wheel = False
 
     @staticmethod
-    def _flags(flags: _Numba) -> _Numba:
+    def _flags(flags: Numba) -> Numba:
         """Without the entry point that C calls: no kernel is called by that."""
         flags.no_cfunc_wrapper = True
         return flags
 
-    def compile(self, sig: object = None) -> _Numba:
+    def compile(self, sig: object = None) -> Numba:
         """The machine code's entry point, for ``signature`` whatever is asked for; numba's own calls come here, too."""
         with global_compiler_lock:  # numba's, not one of our own: kernels of others may call this one
             if self._can_compile:
-                with _collector_off(), _resolved_once():
+                with collector_off(), resolved_once():
                     self._make()
         return self.overloads[tuple(self.signature.args)].entry_point
 
@@ -273,15 +146,15 @@ class Kernel(_Dispatcher):
         self.compile()
         return list(super().nopython_signatures)
 
-    def get_compile_result(self, sig: object) -> _Numba:
+    def get_compile_result(self, sig: object) -> Numba:
         self.compile()
         return super().get_compile_result(sig)
 
-    def get_call_template(self, args: _Numba, kws: _Numba) -> _Numba:
+    def get_call_template(self, args: Numba, kws: Numba) -> Numba:
         """The types of a call by a kernel that is being compiled, which takes a part where this kernel is not compiled by itself."""
         return super().get_call_template(args, kws) if self._links else self._part.get_call_template(args, kws)
 
-    def get_overload(self, sig: object) -> _Numba:
+    def get_overload(self, sig: object) -> Numba:
         return super().get_overload(sig) if self._links else self._part.get_overload(sig)
 
     @property
@@ -342,12 +215,12 @@ class Kernel(_Dispatcher):
     @cached_property
     def _digest(self) -> str:
         """Of all that decides the machine code beside signature and processor."""
-        return hashlib.sha256(repr(_marks(self.py_func, [])).encode()).hexdigest()
+        return hashlib.sha256(repr(marks(self.py_func, [])).encode()).hexdigest()
 
     def _from_wheel(self) -> bool:
         """Take the machine code that came with the package, if it has this kernel's."""
         name = f"{self.py_func.__module__}.{self.py_func.__qualname__}"
-        if not name.startswith(_SHARED) or (wheel_kernels.folder() is None and not wheel_kernels.writing):
+        if not name.startswith(CORE_MODULES) or (wheel_kernels.folder() is None and not wheel_kernels.writing):
             return False
         marks = str(self.signature), self._digest
         if wheel_kernels.writing:
@@ -357,7 +230,7 @@ class Kernel(_Dispatcher):
         if (payload := wheel_kernels.read(name, marks)) is None:
             return False
         self.targetctx.refresh()
-        code: _Numba = CompileResult._rebuild(self.targetctx, *payload)
+        code: Numba = CompileResult._rebuild(self.targetctx, *payload)
         self.targetctx.insert_user_function(code.entry_point, code.fndesc, [code.library])
         self.add_overload(code)
         self._of_wheel = True
@@ -373,10 +246,10 @@ class Kernel(_Dispatcher):
         for attempt in (1, 2):
             files: FilesOfKernel | None = None
             try:
-                with _numba_cache_in(folder.path):
+                with numba_cache_in(folder.path):
                     files = self._open_cache()
                     files.discard_damaged()
-                    with _numbered_from(files.base):
+                    with numbered_from(files.base):
                         super().compile(self.signature)
                 if not self.stats.cache_hits:
                     files.note_digests()
@@ -407,7 +280,7 @@ class Kernel(_Dispatcher):
         once each would take the same number, and the index of one would name the machine code of the other.
         """
         self.enable_caching()
-        cache_: _Numba = self._cache
+        cache_: Numba = self._cache
         machine = self.targetctx.codegen().magic_tuple()
         key = self.signature, machine, self._digest
         cache_._index_key = lambda signature, codegen: key
@@ -427,71 +300,10 @@ class Kernel(_Dispatcher):
         return next((line for line in lines if not line.startswith("Failed in")), "unknown reason")
 
 
-def _marks(value: _Numba, above: list[_Numba]) -> Any:
-    """Of a function, or of what a closure holds, all that decides machine code, the same in every process.
-
-    numba's own mark of a function in a closure is a random number: kernels around it would never be found again.  ``above`` : functions
-    that hold it, for one that calls itself.
-    """
-    function = getattr(value, "py_func", value)
-    if not isinstance(function, FunctionType):
-        return dumps(value)
-    if function in above:
-        return above.index(function)
-    code, cells = function.__code__, [_marks(cell.cell_contents, [*above, function]) for cell in function.__closure__ or ()]
-    stamp: object = None
-    if f"{function.__module__}.".startswith(_SHARED):  # whose sources name the folder, wherever they lie
-        code = _without_place(code)
-    else:
-        with suppress(OSError):  # a file that is changed changes globals, too
-            status = Path(code.co_filename).stat()
-            stamp = status.st_mtime_ns, status.st_size
-    options = str(getattr(value, "signature", "")), sorted(getattr(value, "targetoptions", {}).items())
-    return function.__module__, marshal.dumps(code, 2), function.__defaults__, stamp, options, cells
-
-
-def _without_place(code: CodeType) -> CodeType:
-    inner = tuple(_without_place(const) if isinstance(const, CodeType) else const for const in code.co_consts)
-    return code.replace(co_filename="", co_consts=inner)
-
-
-class _Linked(JITCodeLibrary):
-    """Code that is linked into callers only: no machine code is made of it."""
-
-    def _optimize_final_module(self) -> None:
-        pass
-
-    def _finalize_final_module(self) -> None:
-        self._finalize_dynamic_globals()
-        self._finalized = True
-
-
-class _Inlined(_Dispatcher):
-    """Code that has no entry points for Python and pointers either: a first run takes a quarter less."""
-
-    @staticmethod
-    def _flags(flags: _Numba) -> _Numba:
-        flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
-        return flags
-
-    def add_overload(self, cres: _Numba) -> None:
-        cres.library.__class__ = _Linked
-        self.overloads[tuple(cres.signature.args)] = cres = cres._replace(entry_point=object())
-        self.targetctx.insert_user_function(cres.entry_point, cres.fndesc, [cres.library])
-
-
-class _Helper(_Inlined):
-    """A function of numba's own as a part of kernels."""
-
-    def __init__(self, function: _Numba, targetoptions: _Numba) -> None:
-        super().__init__(function, targetoptions=targetoptions)
-        self._compiler._customize_flags = self._flags
-
-
-class _Part(_Inlined, Kernel):
+class _Part(Inlined, Kernel):
     """A kernel as a part of those that call it, without files of its own."""
 
-    get_call_template, get_overload = _Dispatcher.get_call_template, _Dispatcher.get_overload
+    get_call_template, get_overload = Dispatcher.get_call_template, Dispatcher.get_overload
 
     def _from_wheel(self) -> bool:
         return False
@@ -499,13 +311,13 @@ class _Part(_Inlined, Kernel):
     def _through_cache(self) -> None:
         folder = kernel_folder()
         if folder is None:
-            _Dispatcher.compile(self, self.signature)
+            Dispatcher.compile(self, self.signature)
             return
-        with _numba_cache_in(folder.path):
+        with numba_cache_in(folder.path):
             base = self._open_cache().base
         self._cache = NullCache()
-        with _numbered_from(f"{base}.part"):
-            _Dispatcher.compile(self, self.signature)
+        with numbered_from(f"{base}.part"):
+            Dispatcher.compile(self, self.signature)
 
 
 class _DirectKernel(Kernel):
@@ -582,18 +394,3 @@ def jit(
         options["nogil"] = True
     direct = any(isinstance(kind, (numba.types.BaseNamedTuple, Pointer)) for kind in signature.args)
     return lambda function: (_DirectKernel if direct else Kernel)(function, signature, options)
-
-
-def signature_words(signature: Signature) -> str:
-    """A numba signature as one writes it: ``none(float64[::1], float64[:, ::1])``."""
-
-    def word(kind: Any) -> str:
-        if isinstance(kind, numba.types.BaseNamedTuple):
-            numba_type: Any = kind  # numba types a part of it only
-            return str(numba_type.instance_class.__name__)
-        if not isinstance(kind, numba.types.Array):
-            return str(kind)
-        last = "::1" if kind.layout == "C" else ":"
-        return f"{kind.dtype}[{', '.join([':'] * (kind.ndim - 1) + [last])}]"
-
-    return f"{signature.return_type}({', '.join(word(kind) for kind in signature.args)})"

@@ -8,6 +8,7 @@ import operator
 from collections.abc import Mapping
 from typing import Any, NamedTuple, cast
 
+import numba
 import numpy as np
 from numba import float64, int64, types, void
 from numba.core import cgutils
@@ -237,3 +238,18 @@ LOOP = int64(FORCES, LINEAR, OUTER, VECTOR, STEPS, STATE, RECORDING)
 
 #: solve_equilibrium(forces, linear, tolerance, t, state, response, report (2,)) -> status, see raceway.core.ring.equilibrium
 EQUILIBRIUM = int64(FORCES, LINEAR, float64, float64, STATIC, RESPONSE, VECTOR)
+
+
+def signature_words(signature: Signature) -> str:
+    """A numba signature as one writes it: ``none(float64[::1], float64[:, ::1])``."""
+
+    def word(kind: Any) -> str:
+        if isinstance(kind, numba.types.BaseNamedTuple):
+            numba_type: Any = kind  # numba types a part of it only
+            return str(numba_type.instance_class.__name__)
+        if not isinstance(kind, numba.types.Array):
+            return str(kind)
+        last = "::1" if kind.layout == "C" else ":"
+        return f"{kind.dtype}[{', '.join([':'] * (kind.ndim - 1) + [last])}]"
+
+    return f"{signature.return_type}({', '.join(word(kind) for kind in signature.args)})"

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from raceway.core.jit import Kernel, signature_words
+from raceway.core.jit import Kernel
+from raceway.core.signatures import signature_words
 from raceway.errors import PluginError, RacewayError
 from raceway.storage.tables import Tables
 

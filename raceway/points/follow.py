@@ -12,12 +12,13 @@ import numpy as np
 
 from raceway.answers.answer import Interrupted
 from raceway.answers.progress import ShowProgress, telling
-from raceway.core.periodic.branch import DOUBLING, Branch, Point, apart, located, special_points
+from raceway.core.periodic.branch import Branch, Point, apart
 from raceway.core.periodic.branch import doubled as doubled_branch
 from raceway.core.periodic.collocation import Path as OrbitPath
 from raceway.core.periodic.collocation import solve
 from raceway.core.periodic.refinement import motion_at
 from raceway.core.periodic.search import MOST, directly, highest_order, mesh_of
+from raceway.core.periodic.special_points import DOUBLING, located, special_points
 from raceway.core.periodic.steady import find
 from raceway.errors import ConvergenceError
 from raceway.framework.doors import PATH, PATHS, door

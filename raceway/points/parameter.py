@@ -14,9 +14,10 @@ import attrs
 import numpy as np
 
 from raceway.bodies.model import Equilibrium, Model, build_model
-from raceway.core.periodic.collocation import Problem, Symmetry, one_turn
+from raceway.core.periodic.collocation import Problem
 from raceway.core.periodic.search import problem_of
 from raceway.core.periodic.steady import refuse
+from raceway.core.periodic.turn import Symmetry, one_turn
 from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import System, compiled

@@ -270,7 +270,7 @@ def check_class(kind: str, plugin: attrs.AttrsInstance) -> None:
 
 def check_kernel(kernel: Kernel, signature: Signature, word: str) -> None:
     """A dispatcher compiled for exactly the contract's signature."""
-    from raceway.core.jit import signature_words
+    from raceway.core.signatures import signature_words
 
     signatures = getattr(kernel, "nopython_signatures", None)  # compiles it
     if signatures is None:

@@ -9,7 +9,7 @@ from checks.validation.scenes import built_in
 from raceway import ConvergenceError, SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.energy import friction_energy
 from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, SINE
-from raceway.core.ring.ring import SteppedBearing
+from raceway.core.ring.stepped import SteppedBearing
 from raceway.extend import CAGE, Schedule, at_rest, integrate
 from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c

@@ -17,11 +17,11 @@ from checks.validation.reference.shooting import periodic as shooting
 from checks.validation.reference.shooting import rotating as turning
 from checks.validation.reference.shooting import swinging
 from checks.validation.scenes import built_in, rig_force, rotating
-from raceway.core.periodic.branch import FOLD, PAIR
 from raceway.core.periodic.branches import force_continuation
-from raceway.core.periodic.collocation import one_turn
 from raceway.core.periodic.refinement import displacements, states
 from raceway.core.periodic.search import highest_order, mesh_of, problem_of
+from raceway.core.periodic.special_points import FOLD, PAIR
+from raceway.core.periodic.turn import one_turn
 from raceway.core.signals import stiffness
 from raceway.extend import Motion, Schedule, integrate
 from raceway.scene.growth import ring_inertia

@@ -16,6 +16,7 @@ from __future__ import annotations
 from math import pi
 
 import attrs
+import numpy as np
 
 from raceway.core.columns import cos, sin
 from raceway.core.contact.hertz import Ellipse, ellipse
@@ -93,3 +94,22 @@ class BallBearing:
     def ball_mass(self, density: float) -> float:
         """Mass of one ball [kg]."""
         return density * pi * self.ball_diameter**3 / 6.0
+
+
+@attrs.frozen(eq=False)
+class Growth:
+    """By how much the grooves of a running, warm bearing differ from those before mounting [m].
+
+    Attributes
+    ----------
+    common : (5,) of the scalars REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM
+    by_ball : (Z, 5) of the rows' own columns of the same, beyond that
+    """
+
+    common: np.ndarray
+    by_ball: np.ndarray
+
+    @classmethod
+    def of_inner_raceways(cls, growth: float, balls: int) -> Growth:
+        """All inner raceways have grown alike, radially [m]."""
+        return cls(np.array([0.0, growth, 0.0, 0.0, 0.0]), np.zeros((balls, 5)))

@@ -18,7 +18,7 @@ import numpy as np
 from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.ring.equilibrium import eliminate
+from raceway.core.ring.elimination import eliminate
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 #: Phase of the fastest vibration in a step where the stiffness hardly changes, and steps between two samples at least.

@@ -19,34 +19,40 @@ Krack, Gross, Harmonic Balance for Nonlinear Vibration Problems (2019), chapters
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
 from raceway.core.periodic.extremes import force_extremes
-from raceway.core.periodic.monodromy import span_transfer
-from raceway.core.ring.equilibria import KERNELS, POINTS, STATES
-from raceway.core.ring.equilibrium import copy_matrix, solve
-from raceway.core.ring.kernels import CONTACT_FORCE
-from raceway.core.ring.kernels.layout import DAMPING, TILT_ARM, TIME_CONSTANT, keep_slips, work_rows
-from raceway.core.signatures import (
-    CONSTANTS,
-    CUBE,
-    FORCE_POINTER,
-    LINEAR,
-    MATRIX,
-    VECTOR,
-    Balls,
-    Constants,
-    Contacts,
-    Response,
-    record,
+from raceway.core.periodic.fourier import (
+    LEVEL,
+    NOT_SOLVED,
+    NUMBERS,
+    SOLVED,
+    TURNING,
+    UNRESOLVED,
+    Level,
+    Numbers,
+    at_twice_the_angles,
+    ball_rates,
+    circulants,
+    first_guess,
+    force_line,
+    harmonic_lines,
+    line_difference,
+    orbit_imbalances,
+    orbit_jacobian,
+    stiffness_change,
+    turn_vector,
 )
+from raceway.core.periodic.monodromy import span_transfer
+from raceway.core.ring.elimination import copy_matrix, solve
+from raceway.core.ring.equilibria import KERNELS, POINTS, STATES
+from raceway.core.ring.kernels.layout import DAMPING, TILT_ARM, TIME_CONSTANT, work_rows
+from raceway.core.signatures import CUBE, LINEAR, MATRIX, VECTOR, Constants, record
 
-#: Status beside those of equilibria.
-SOLVED, NOT_SOLVED, UNRESOLVED = 0, 10, 11
 #: Newton's steps of a level, and the last one's size over the motion's.
 _STEPS, _CONVERGED, _ROUNDED = 12, 1e-11, 1e-8
 #: What a neighbour's steps may leave of its motion.
@@ -55,28 +61,6 @@ _LEFT = 1e-13
 _WILD = 1.0
 #: Unknowns up to which all harmonics are solved for at once.
 _DENSE = 48
-
-
-class Turning(NamedTuple):
-    """The force of n points and the symmetry of their motion.
-
-    ``force`` (a ``FORCE``) with ``params`` (n, k), ``speed`` (n,) [rad/s], ``damping`` (n, 5, 5) of rotor and gyroscopic moments, ``mass``
-    (n, 5); ``sense`` +1 or -1 of the turning frame, 0 where it stands; ``span`` [rad]; ``order`` (Z,) see
-    ``raceway.core.periodic.collocation.Symmetry``; ``samples`` the least and the largest number of a span, powers of 2; ``tolerance`` of
-    the 1x component.
-    """
-
-    force: Any
-    params: np.ndarray
-    speed: np.ndarray
-    damping: np.ndarray
-    mass: np.ndarray
-    sense: float
-    span: float
-    order: np.ndarray
-    least: int
-    most: int
-    tolerance: float
 
 
 class Orbits(NamedTuple):
@@ -100,226 +84,178 @@ class Orbits(NamedTuple):
     transfer: np.ndarray
 
 
-TURNING = record(
-    Turning, FORCE_POINTER, MATRIX, VECTOR, CUBE, MATRIX, float64, float64, int64[::1], int64, int64, float64
-)  # fmt: skip
 ORBITS = record(
     Orbits, MATRIX, MATRIX, MATRIX, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, CUBE, int64[::1], int64[::1], VECTOR, CUBE
 )
 
 
-@jit(void(int64, float64, VECTOR, VECTOR))
-def _differences(n, span, first, second):
-    """Columns (n,) of the circulant matrices of the first and second derivative of n samples of a span; n is even."""
-    wave = 2.0 * np.pi / span
-    first[0], second[0] = 0.0, -wave * wave * (n * n / 12.0 + 1.0 / 6.0)
-    for m in range(1, n):
-        sign, half = 1.0 - 2.0 * (m % 2), np.pi * m / n
-        first[m] = 0.5 * wave * sign / np.tan(half)
-        second[m] = -0.5 * wave * wave * sign / np.sin(half) ** 2
-
-
-@jit(void(MATRIX, MATRIX))
-def _at_twice_the_angles(u, out):
-    """out (2 n, 5): the trigonometric polynomial through u (n, 5) at twice as many angles."""
-    n = u.shape[0]
-    for j in range(n):
-        for i in range(5):
-            out[2 * j, i] = u[j, i]
-            out[2 * j + 1, i] = 0.0
-        for m in range(n):
-            angle = np.pi * (2 * (j - m) + 1) / n
-            weight = np.sin(0.5 * n * angle) / (n * np.tan(0.5 * angle))
-            for i in range(5):
-                out[2 * j + 1, i] += weight * u[m, i]
-
-
-@jit(void(float64, VECTOR, VECTOR))
-def _turn(angle, vector, out):
-    """out (5,) = R(angle) vector (5,)."""
-    c, s = np.cos(angle), np.sin(angle)
-    out[0] = vector[0]
-    out[1], out[2] = c * vector[1] - s * vector[2], s * vector[1] + c * vector[2]
-    out[3], out[4] = c * vector[3] - s * vector[4], s * vector[3] + c * vector[4]
-
-
-@jit(void(float64, MATRIX, MATRIX, MATRIX))
-def _turn_matrix(angle, matrix, half, out):
-    """out (5, 5) = R(angle)^T matrix R(angle); ``half`` is scratch."""
+@jit(types.Tuple((int64, float64, LEVEL))(KERNELS, LINEAR, TURNING, NUMBERS, MATRIX, MATRIX, MATRIX), allocates=True)
+def _orbit(kernels, linear, turning, numbers, K, ball, work):
+    """Status, change of the 1x line by the last doubling, and samples of the orbit about an equilibrium with the tangent K."""
+    spans, dofs = int(np.round(2.0 * np.pi / turning.span)), np.flatnonzero(linear.free > 0.0)
+    d = dofs.size
+    push, line, before, mean, error = np.empty((2, 5)), np.empty(10), np.zeros(10), np.empty(5), np.inf
+    force_line(turning, numbers, push, mean)
+    # The 1x line of M q'' + C q' + (K + S) q = F
+    A, speed = np.zeros((10, 11)), numbers.speed
     for i in range(5):
-        _turn(-angle, matrix[i], half[i])  # rows: (R^T m_i) = m_i R
-    for j in range(5):
-        a, b, c, d, e = half[0, j], half[1, j], half[2, j], half[3, j], half[4, j]
-        cosine, sine = np.cos(angle), np.sin(angle)
-        out[0, j] = a
-        out[1, j], out[2, j] = cosine * b + sine * c, cosine * c - sine * b
-        out[3, j], out[4, j] = cosine * d + sine * e, cosine * e - sine * d
+        if linear.free[i] == 0.0:
+            A[i, i] = A[5 + i, 5 + i] = 1.0
+            continue
+        for j in range(5):
+            A[i, j] = A[5 + i, 5 + j] = K[i, j] * linear.free[j]
+            A[5 + i, j] = speed * numbers.damping[i, j] * linear.free[j]
+            A[i, 5 + j] = -A[5 + i, j]
+        dynamic_stiffness = (numbers.shaft if i > 2 else 0.0) - speed * speed * numbers.mass[i]
+        A[i, i] += dynamic_stiffness
+        A[5 + i, 5 + i] += dynamic_stiffness
+        A[i, 10], A[5 + i, 10] = push[0, i], push[1, i]
+    solve(A)
+    for i in range(10):
+        line[i] = A[i, 10]
+    n, u = turning.least, np.empty((turning.least, 5))
+    first_guess(numbers.centre, line, turning, u)
+    while True:
+        start, dense = u.copy(), n * d <= _DENSE
+        level = _level(u, ball, spans, turning.span, dense, d)
+        status, step, _ = _solve_orbit(kernels, turning, numbers, level, work, dofs)
+        if status != SOLVED and not dense and n * d <= 4 * _DENSE:
+            copy_matrix(start, u)
+            level = _level(u, ball, spans, turning.span, True, d)
+            status, step, _ = _solve_orbit(kernels, turning, numbers, level, work, dofs)
+        if status != SOLVED:
+            break
+        harmonic_lines(level.u, turning.sense, mean, line)
+        error = max(line_difference(line, before), step)
+        if error <= turning.tolerance:
+            break
+        before[:] = line
+        if 2 * n > turning.most or stiffness_change(level.A0) > _WILD:
+            status = UNRESOLVED
+            break
+        u = np.empty((2 * n, 5))
+        at_twice_the_angles(level.u, u)
+        n *= 2
+    return status, error, level
 
 
-@jit(void(CUBE, int64[::1], VECTOR, float64, CUBE))
-def _ball_rates(ball, order, first, speed, rate):
-    """rate (n, Z, b) of positions ball (n, Z, b) over the span; ``first`` (2 n m,) is the derivative's column of all m spans of a turn, twice."""
-    n, z, columns = ball.shape
-    size = first.size // 2
-    for k in range(z):
+@jit(void(TURNING, NUMBERS, LEVEL, int64, float64, int64, ORBITS), allocates=True)
+def _report(turning, numbers, level, status, error, p, out):
+    """One point's answer."""
+    push, force = np.empty((2, 5)), np.empty(5)
+    force_line(turning, numbers, push, force)
+    harmonic_lines(level.u, turning.sense, out.mean[p], out.line[p])
+    out.status[p], out.error[p], out.samples[p], out.change[p] = status, error, level.u.shape[0], stiffness_change(level.A0)
+    out.span[p] = turning.span
+    # Rms of what is neither mean nor 1x, over that of 1x, radially
+    mean = out.mean[p]
+    line = out.line[p]
+    n, square, size = level.u.shape[0], 0.0, 0.0
+    for i in range(3):
+        size += 0.5 * (line[i] ** 2 + line[5 + i] ** 2)
+    for j in range(n):
+        angle = 2.0 * np.pi * j / n
+        for i in (1, 2):
+            synchronous = line[i] if turning.sense != 0.0 else line[i] * np.cos(angle) - line[5 + i] * np.sin(angle)
+            square += (level.u[j, i] - mean[i] - synchronous) ** 2 / n
+    out.residual[p] = np.sqrt(square / max(size, 1e-300))
+    force_extremes(
+        level.force, turning.order, int(np.round(2.0 * np.pi / turning.span)), out.peak[p], out.least[p], out.turn[p]
+    )
+    for i in range(5):
+        out.force[p, i], out.force[p, 5 + i] = push[0, i], push[1, i]
+
+
+@jit(void(KERNELS, LINEAR, POINTS, STATES, TURNING, ORBITS), allocates=True, releases=True)
+def orbits(kernels, linear, points, states, turning, out):
+    """The steady orbit of every point whose equilibrium in ``states`` has the status 0."""
+    z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
+    work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
+    for p in range(points.table.shape[0]):
+        out.status[p] = states.status[p]
+        if states.status[p] != 0:
+            continue
+        numbers = _orbit_numbers(linear, points, states, turning, p, weight)
+        status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[p], states.ball[p], work)
+        _report(turning, numbers, level, status, error, p, out)
+        if status == SOLVED and out.transfer.shape[1] > 0:
+            mass = numbers.speed**2 * numbers.mass
+            if not span_transfer(level.A0, level.A1, mass, dofs, turning.span, out.transfer[p]):
+                out.status[p] = NOT_SOLVED
+
+
+@jit(types.Tuple((int64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, MATRIX, int64[::1]), allocates=True)
+def _by_chords(kernels, turning, numbers, level, inverse, work, dofs):
+    """Status and last step over the motion, from a neighbour's motion in a level with the inverse of its derivatives."""
+    n, d, before = level.u.shape[0], dofs.size, 0.0
+    right = np.empty(n * d)
+    for count in range(4 * _STEPS):
+        if not orbit_imbalances(kernels, turning, numbers, level, work):
+            return NOT_SOLVED, np.inf
         for j in range(n):
-            for c in range(columns):
-                rate[j, k, c] = 0.0
-        follower = k
-        for m in range(size // n):
-            for i in range(n):
-                behind = size - m * n - i
-                for c in range(columns):
-                    position = speed * ball[i, follower, c]
-                    for j in range(n):
-                        rate[j, k, c] += first[behind + j] * position
-            follower = order[follower]
-
-
-class _Level(NamedTuple):
-    """Arrays of one number of samples n: motion u and its derivatives u1, u2 by the angle, imbalance r (n, 5), in the frame; derivatives
-    of r by u and u1, A0, A1 (n, 5, 5); places of balls and their rates (n, Z, b); contact forces (n, 2 Z); columns of the derivatives over the span d1, d2 (n,)
-    and over a turn, twice (2 m,); J the scratch of the step."""
-
-    u: np.ndarray
-    u1: np.ndarray
-    u2: np.ndarray
-    r: np.ndarray
-    A0: np.ndarray
-    A1: np.ndarray
-    ball: np.ndarray
-    ball_rate: np.ndarray
-    force: np.ndarray
-    d1: np.ndarray
-    d2: np.ndarray
-    turn: np.ndarray
-    J: np.ndarray
-
-
-class Numbers(NamedTuple):
-    """Of one point: ``constants`` and law's ``params``, load (5,), mass (5,), damping (5, 5), stiffness against tilts, speed of the force and its ``force_params``; whether contacts are
-    damped; its equilibrium ``centre`` (5,), and ``weight`` (5,) that makes lengths of coordinates."""
-
-    constants: Constants
-    params: np.ndarray
-    load: np.ndarray
-    mass: np.ndarray
-    damping: np.ndarray
-    shaft: float
-    speed: float
-    force_params: np.ndarray
-    damped: bool
-    centre: np.ndarray
-    weight: np.ndarray
-
-
-LEVEL = record(_Level, MATRIX, MATRIX, MATRIX, MATRIX, CUBE, CUBE, CUBE, CUBE, MATRIX, VECTOR, VECTOR, VECTOR, MATRIX)
-NUMBERS = record(Numbers, CONSTANTS, MATRIX, VECTOR, VECTOR, MATRIX, float64, float64, VECTOR, boolean, VECTOR, VECTOR)
-
-
-@jit(void(MATRIX, VECTOR, MATRIX))
-def _differentiate(u, column, out):
-    """out (n, 5): the circulant matrix of a column (n,) times u (n, 5)."""
-    n = u.shape[0]
-    for j in range(n):
-        a, b, c, d, e = 0.0, 0.0, 0.0, 0.0, 0.0
-        for m in range(n):
-            weight = column[(j - m) % n]
-            a += weight * u[m, 0]
-            b += weight * u[m, 1]
-            c += weight * u[m, 2]
-            d += weight * u[m, 3]
-            e += weight * u[m, 4]
-        out[j, 0], out[j, 1], out[j, 2], out[j, 3], out[j, 4] = a, b, c, d, e
-
-
-@jit(void(VECTOR, VECTOR))
-def _generate(u, out):
-    """out (5,) = G u."""
-    out[0], out[1], out[2], out[3], out[4] = 0.0, -u[2], u[1], -u[4], u[3]
-
-
-@jit(boolean(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX), allocates=True)
-def _imbalances(kernels, turning, numbers, level, work):
-    """r, A0 and A1 of all samples, from u; False where balls find no place."""
-    n, columns, sense, w = level.u.shape[0], level.ball.shape[2], turning.sense, numbers.speed
-    f, force, rate, state, v, q = np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5)
-    response = Response(f, np.empty((5, 5)), np.empty((5, 5)), work)
-    half, viscous, across = np.empty((5, 5)), np.empty((5, 5)), np.empty((5, 5))
-    memory, history = np.zeros((numbers.params.shape[0], 0)), np.zeros(level.ball.shape[1:])
-    contacts = Contacts(kernels.law, numbers.params, memory, memory, 0.0)
-    _differentiate(level.u, level.d1, level.u1)
-    _differentiate(level.u, level.d2, level.u2)
-    for j in range(n):
-        angle = turning.span * j / n
-        A0, A1, u, u1 = level.A0[j], level.A1[j], level.u[j], level.u1[j]
-        _generate(u, state)
-        for i in range(5):
-            rate[i] = u1[i] + sense * state[i]  # over w, in the frame
-            state[i] = w * rate[i]
-        _turn(sense * angle, u, q)
-        _turn(sense * angle, state, v)
-        keep_slips(numbers.constants.scalars, level.ball[j], history)
+            for a in range(d):
+                right[j * d + a] = -level.r[j, dofs[a]]
+            for i in range(5):
+                level.r[j, i] = 0.0
+        for row in range(n * d):
+            total = 0.0
+            for column in range(n * d):
+                total += inverse[row, column] * right[column]
+            level.r[row // d, dofs[row % d]] = total
+        step, size = _apply_step(level, turning, numbers)
+        if not step < 1e-2:
+            return NOT_SOLVED, np.inf
         if numbers.damped:
-            for k in range(history.shape[0]):
-                for c in range(columns):
-                    if columns == kernels.columns or c < 2 or c > 3:  # slips have no rates
-                        history[k, c] = level.ball_rate[j, k, c]
-        balls = Balls(level.ball[j], 0.0, history)
-        if kernels.system(angle / w, q, v, balls, contacts, numbers.constants, response) != 0:
-            return False
-        for i in range(level.force.shape[1]):
-            level.force[j, i] = work[CONTACT_FORCE, i]
-        turning.force(angle / w, numbers.force_params, force)
-        for i in range(5):
-            force[i] = f[i] - numbers.load[i] - force[i]
-        _turn(-sense * angle, force, level.r[j])
-        _turn_matrix(sense * angle, response.K, half, A0)
-        _turn_matrix(sense * angle, response.C, half, viscous)
-        _generate(u1, state)
-        for i in range(5):
-            shaft = numbers.shaft if i > 2 else 0.0
-            inertia = w * w * numbers.mass[i]
-            centre = u[i] if i > 0 else 0.0  # -G^2 u
-            level.r[j, i] += shaft * u[i] + inertia * (level.u2[j, i] + sense * (2.0 * state[i] - sense * centre))
-            for k in range(5):
-                level.r[j, i] += w * numbers.damping[i, k] * rate[k]
-                A1[i, k] = w * (numbers.damping[i, k] + viscous[i, k])
-        for i in range(5):
-            across[i, 0], across[i, 1], across[i, 2] = 0.0, A1[i, 2], -A1[i, 1]
-            across[i, 3], across[i, 4] = A1[i, 4], -A1[i, 3]
-        for i in range(5):
-            for k in range(5):
-                A0[i, k] += sense * across[i, k]
-            A0[i, i] += numbers.shaft if i > 2 else 0.0
-            A0[i, i] -= sense * sense * w * w * numbers.mass[i] if i > 0 else 0.0
-        for i in (1, 3):
-            A1[i, i + 1] -= 2.0 * sense * w * w * numbers.mass[i]
-            A1[i + 1, i] += 2.0 * sense * w * w * numbers.mass[i]
-    return True
+            ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
+        # What is left is the last step times the rate at which steps fall.
+        left = step if count == 0 else min(step, step * step / before)
+        converged = left <= _LEFT * size or (count > 0 and step <= _ROUNDED * size and step > 0.5 * before)
+        if converged and (count > 2 or not numbers.damped):
+            return SOLVED, step / max(size, 1e-300)
+        before = step
+    return NOT_SOLVED, np.inf
 
 
-@jit(void(LEVEL, VECTOR, float64, int64[::1], MATRIX), inline=True)
-def _jacobian(level, mass, speed, dofs, J):
-    """Derivatives of all samples' imbalances by u, in the first columns of J."""
+@jit(void(KERNELS, LINEAR, POINTS, STATES, TURNING, ORBITS), allocates=True, releases=True)
+def neighbours(kernels, linear, points, states, turning, out):
+    """The same of points next to the first one: its samples, and steps by the derivatives of its imbalance."""
+    z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
+    work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
+    out.status[:] = NOT_SOLVED
+    numbers = _orbit_numbers(linear, points, states, turning, 0, weight)
+    status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[0], states.ball[0], work)
     n, d = level.u.shape[0], dofs.size
-    for j in range(n):
-        for a in range(d):
-            i, row = dofs[a], j * d + a
-            for m in range(n):
-                d1, d2 = level.d1[(j - m) % n], level.d2[(j - m) % n]
-                for b in range(d):
-                    J[row, m * d + b] = level.A1[j, i, dofs[b]] * d1
-                J[row, m * d + a] += speed * speed * mass[i] * d2
-            for b in range(d):
-                J[row, j * d + b] += level.A0[j, i, dofs[b]]
+    if status != SOLVED or n * d > 4 * _DENSE:
+        return
+    _report(turning, numbers, level, status, error, 0, out)
+    inverse, J = np.empty((n * d, n * d)), np.zeros((n * d, 2 * n * d))
+    orbit_jacobian(level, numbers.mass, numbers.speed, dofs, J)
+    for row in range(n * d):
+        J[row, n * d + row] = 1.0
+    if not solve(J):
+        return
+    inverse[:] = J[:, n * d :]
+    u, ball, rate, shift, answer = level.u.copy(), level.ball.copy(), level.ball_rate.copy(), np.empty(5), np.empty(5)
+    for p in range(1, points.table.shape[0]):
+        if states.status[p] != 0:
+            continue
+        numbers = _orbit_numbers(linear, points, states, turning, p, weight)
+        for i in range(5):
+            shift[i] = states.q[p, i] - states.q[0, i]
+        for j in range(n):  # along with the equilibrium
+            turn_vector(-turning.sense * turning.span * j / n, shift, answer)
+            for i in range(5):
+                level.u[j, i] = u[j, i] + answer[i]
+        level.ball[:], level.ball_rate[:] = ball, rate
+        status, error = _by_chords(kernels, turning, numbers, level, inverse, work, dofs)
+        _report(turning, numbers, level, status, error, p, out)
 
 
 @jit(boolean(LEVEL, VECTOR, float64, int64[::1]))
 def _orbit_step(level, mass, speed, dofs):
     """u of all samples by Newton's method; False where the matrix is singular."""
     n, d, J = level.u.shape[0], dofs.size, level.J
-    _jacobian(level, mass, speed, dofs, J)
+    orbit_jacobian(level, mass, speed, dofs, J)
     for j in range(n):
         for a in range(d):
             J[j * d + a, n * d] = -level.r[j, dofs[a]]
@@ -373,13 +309,13 @@ def _harmonic_step(level, mass, speed, wave, dofs):
 def _level(u, ball, spans, span, dense, d):
     """Arrays for the samples u (n, 5), balls beginning at their places (Z, b) of the equilibrium."""
     n, (z, columns) = u.shape[0], ball.shape
-    level = _Level(
+    level = Level(
         u, np.empty((n, 5)), np.empty((n, 5)), np.empty((n, 5)), np.empty((n, 5, 5)), np.empty((n, 5, 5)),
         np.empty((n, z, columns)), np.zeros((n, z, columns)), np.empty((n, 2 * z)), np.empty(n), np.empty(n), np.empty(2 * n * spans),
         np.zeros((n * d, n * d + 1) if dense else (1, 2)),
     )  # fmt: skip
-    _differences(n, span, level.d1, level.d2)
-    _differences(n * spans, 2.0 * np.pi, level.turn[: n * spans], np.empty(n * spans))
+    circulants(n, span, level.d1, level.d2)
+    circulants(n * spans, 2.0 * np.pi, level.turn[: n * spans], np.empty(n * spans))
     level.turn[n * spans :] = level.turn[: n * spans]
     for j in range(n):
         copy_matrix(ball, level.ball[j])
@@ -409,7 +345,7 @@ def _solve_orbit(kernels, turning, numbers, level, work, dofs):
     dense, before, size = level.J.shape[0] > 1, np.inf, 0.0
     wave = 2.0 * np.pi / turning.span
     for count in range(_STEPS if dense else 4 * _STEPS):
-        if not _imbalances(kernels, turning, numbers, level, work):
+        if not orbit_imbalances(kernels, turning, numbers, level, work):
             return NOT_SOLVED, np.inf, size
         if dense:
             fine = _orbit_step(level, numbers.mass, numbers.speed, dofs)
@@ -419,79 +355,12 @@ def _solve_orbit(kernels, turning, numbers, level, work, dofs):
         if not fine or not step < 1e-2 or not size < 1e-2:
             return NOT_SOLVED, np.inf, size
         if numbers.damped:
-            _ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
+            ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
         converged = step <= _CONVERGED * size or (step <= _ROUNDED * size and step > 0.5 * before)
         if converged and (count > 2 or not numbers.damped):
             return SOLVED, step / max(size, 1e-300), size
         before = step
     return NOT_SOLVED, np.inf, size
-
-
-@jit(void(TURNING, NUMBERS, MATRIX, VECTOR))
-def _force_line(turning, numbers, push, force):
-    """1x line of the force, real and imaginary part (2, 5); ``force`` (5,) is scratch."""
-    for i in range(5):
-        push[0, i], push[1, i] = 0.0, 0.0
-    for k in range(16):
-        angle = 2.0 * np.pi * k / 16.0
-        turning.force(angle / numbers.speed, numbers.force_params, force)
-        for i in range(5):
-            push[0, i] += force[i] * np.cos(angle) / 8.0
-            push[1, i] -= force[i] * np.sin(angle) / 8.0
-
-
-@jit(void(VECTOR, VECTOR, TURNING, MATRIX), allocates=True)
-def _first_guess(centre, line, turning, u):
-    """u (n, 5): the linear response about an equilibrium (5,), seen from the frame."""
-    q = np.empty(5)
-    for j in range(u.shape[0]):
-        angle = turning.span * j / u.shape[0]
-        for i in range(5):
-            q[i] = centre[i] + line[i] * np.cos(angle) - line[5 + i] * np.sin(angle)
-        _turn(-turning.sense * angle, q, u[j])
-
-
-@jit(void(MATRIX, float64, VECTOR, VECTOR))
-def _harmonic_lines(u, sense, mean, line):
-    """Mean (5,) and 1x line (10,) of the motion u (n, 5)."""
-    n = u.shape[0]
-    for i in range(5):
-        mean[i], line[i], line[5 + i] = 0.0, 0.0, 0.0
-        for j in range(n):
-            angle = 2.0 * np.pi * j / n
-            if sense == 0.0:
-                mean[i] += u[j, i] / n
-                line[i] += 2.0 * u[j, i] * np.cos(angle) / n
-                line[5 + i] -= 2.0 * u[j, i] * np.sin(angle) / n
-            elif i == 0:
-                mean[i] += u[j, i] / n
-            else:  # what stands in the frame is the 1x part
-                line[i] += u[j, i] / n
-    if sense != 0.0:
-        for i in (1, 3):
-            line[5 + i], line[6 + i] = sense * line[i + 1], -sense * line[i]
-
-
-@jit(float64(VECTOR, VECTOR))
-def _difference(line, before):
-    """Of two 1x lines (10,), radial parts, over the first one."""
-    square, size = 0.0, 0.0
-    for i in (1, 2, 6, 7):
-        square += (line[i] - before[i]) ** 2
-        size += line[i] ** 2
-    return np.sqrt(square / max(size, 1e-300))
-
-
-@jit(float64(CUBE))
-def _change(A0):
-    """Largest change of the radial stiffness over the samples, over its mean."""
-    low, high, n = np.inf, -np.inf, A0.shape[0]
-    mean = 0.0
-    for j in range(n):
-        for i in (1, 2):
-            low, high = min(low, A0[j, i, i]), max(high, A0[j, i, i])
-            mean += abs(A0[j, i, i]) / (2.0 * n)
-    return (high - low) / max(mean, 1e-300)
 
 
 @jit(NUMBERS(LINEAR, POINTS, STATES, TURNING, int64, VECTOR), allocates=True)
@@ -505,165 +374,3 @@ def _orbit_numbers(linear, points, states, turning, p, weight):
         constants, points.params[p], points.load[p], turning.mass[p], turning.damping[p], points.shaft[p], turning.speed[p],
         turning.params[p], damping, states.q[p], weight,
     )  # fmt: skip
-
-
-@jit(types.Tuple((int64, float64, LEVEL))(KERNELS, LINEAR, TURNING, NUMBERS, MATRIX, MATRIX, MATRIX), allocates=True)
-def _orbit(kernels, linear, turning, numbers, K, ball, work):
-    """Status, change of the 1x line by the last doubling, and samples of the orbit about an equilibrium with the tangent K."""
-    spans, dofs = int(np.round(2.0 * np.pi / turning.span)), np.flatnonzero(linear.free > 0.0)
-    d = dofs.size
-    push, line, before, mean, error = np.empty((2, 5)), np.empty(10), np.zeros(10), np.empty(5), np.inf
-    _force_line(turning, numbers, push, mean)
-    # The 1x line of M q'' + C q' + (K + S) q = F
-    A, speed = np.zeros((10, 11)), numbers.speed
-    for i in range(5):
-        if linear.free[i] == 0.0:
-            A[i, i] = A[5 + i, 5 + i] = 1.0
-            continue
-        for j in range(5):
-            A[i, j] = A[5 + i, 5 + j] = K[i, j] * linear.free[j]
-            A[5 + i, j] = speed * numbers.damping[i, j] * linear.free[j]
-            A[i, 5 + j] = -A[5 + i, j]
-        dynamic_stiffness = (numbers.shaft if i > 2 else 0.0) - speed * speed * numbers.mass[i]
-        A[i, i] += dynamic_stiffness
-        A[5 + i, 5 + i] += dynamic_stiffness
-        A[i, 10], A[5 + i, 10] = push[0, i], push[1, i]
-    solve(A)
-    for i in range(10):
-        line[i] = A[i, 10]
-    n, u = turning.least, np.empty((turning.least, 5))
-    _first_guess(numbers.centre, line, turning, u)
-    while True:
-        start, dense = u.copy(), n * d <= _DENSE
-        level = _level(u, ball, spans, turning.span, dense, d)
-        status, step, _ = _solve_orbit(kernels, turning, numbers, level, work, dofs)
-        if status != SOLVED and not dense and n * d <= 4 * _DENSE:
-            copy_matrix(start, u)
-            level = _level(u, ball, spans, turning.span, True, d)
-            status, step, _ = _solve_orbit(kernels, turning, numbers, level, work, dofs)
-        if status != SOLVED:
-            break
-        _harmonic_lines(level.u, turning.sense, mean, line)
-        error = max(_difference(line, before), step)
-        if error <= turning.tolerance:
-            break
-        before[:] = line
-        if 2 * n > turning.most or _change(level.A0) > _WILD:
-            status = UNRESOLVED
-            break
-        u = np.empty((2 * n, 5))
-        _at_twice_the_angles(level.u, u)
-        n *= 2
-    return status, error, level
-
-
-@jit(void(TURNING, NUMBERS, LEVEL, int64, float64, int64, ORBITS), allocates=True)
-def _report(turning, numbers, level, status, error, p, out):
-    """One point's answer."""
-    push, force = np.empty((2, 5)), np.empty(5)
-    _force_line(turning, numbers, push, force)
-    _harmonic_lines(level.u, turning.sense, out.mean[p], out.line[p])
-    out.status[p], out.error[p], out.samples[p], out.change[p] = status, error, level.u.shape[0], _change(level.A0)
-    out.span[p] = turning.span
-    # Rms of what is neither mean nor 1x, over that of 1x, radially
-    mean = out.mean[p]
-    line = out.line[p]
-    n, square, size = level.u.shape[0], 0.0, 0.0
-    for i in range(3):
-        size += 0.5 * (line[i] ** 2 + line[5 + i] ** 2)
-    for j in range(n):
-        angle = 2.0 * np.pi * j / n
-        for i in (1, 2):
-            synchronous = line[i] if turning.sense != 0.0 else line[i] * np.cos(angle) - line[5 + i] * np.sin(angle)
-            square += (level.u[j, i] - mean[i] - synchronous) ** 2 / n
-    out.residual[p] = np.sqrt(square / max(size, 1e-300))
-    force_extremes(
-        level.force, turning.order, int(np.round(2.0 * np.pi / turning.span)), out.peak[p], out.least[p], out.turn[p]
-    )
-    for i in range(5):
-        out.force[p, i], out.force[p, 5 + i] = push[0, i], push[1, i]
-
-
-@jit(void(KERNELS, LINEAR, POINTS, STATES, TURNING, ORBITS), allocates=True, releases=True)
-def orbits(kernels, linear, points, states, turning, out):
-    """The steady orbit of every point whose equilibrium in ``states`` has the status 0."""
-    z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
-    work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
-    for p in range(points.table.shape[0]):
-        out.status[p] = states.status[p]
-        if states.status[p] != 0:
-            continue
-        numbers = _orbit_numbers(linear, points, states, turning, p, weight)
-        status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[p], states.ball[p], work)
-        _report(turning, numbers, level, status, error, p, out)
-        if status == SOLVED and out.transfer.shape[1] > 0:
-            mass = numbers.speed**2 * numbers.mass
-            if not span_transfer(level.A0, level.A1, mass, dofs, turning.span, out.transfer[p]):
-                out.status[p] = NOT_SOLVED
-
-
-@jit(types.Tuple((int64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, MATRIX, int64[::1]), allocates=True)
-def _by_chords(kernels, turning, numbers, level, inverse, work, dofs):
-    """Status and last step over the motion, from a neighbour's motion in a level with the inverse of its derivatives."""
-    n, d, before = level.u.shape[0], dofs.size, 0.0
-    right = np.empty(n * d)
-    for count in range(4 * _STEPS):
-        if not _imbalances(kernels, turning, numbers, level, work):
-            return NOT_SOLVED, np.inf
-        for j in range(n):
-            for a in range(d):
-                right[j * d + a] = -level.r[j, dofs[a]]
-            for i in range(5):
-                level.r[j, i] = 0.0
-        for row in range(n * d):
-            total = 0.0
-            for column in range(n * d):
-                total += inverse[row, column] * right[column]
-            level.r[row // d, dofs[row % d]] = total
-        step, size = _apply_step(level, turning, numbers)
-        if not step < 1e-2:
-            return NOT_SOLVED, np.inf
-        if numbers.damped:
-            _ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
-        # What is left is the last step times the rate at which steps fall.
-        left = step if count == 0 else min(step, step * step / before)
-        converged = left <= _LEFT * size or (count > 0 and step <= _ROUNDED * size and step > 0.5 * before)
-        if converged and (count > 2 or not numbers.damped):
-            return SOLVED, step / max(size, 1e-300)
-        before = step
-    return NOT_SOLVED, np.inf
-
-
-@jit(void(KERNELS, LINEAR, POINTS, STATES, TURNING, ORBITS), allocates=True, releases=True)
-def neighbours(kernels, linear, points, states, turning, out):
-    """The same of points next to the first one: its samples, and steps by the derivatives of its imbalance."""
-    z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
-    work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
-    out.status[:] = NOT_SOLVED
-    numbers = _orbit_numbers(linear, points, states, turning, 0, weight)
-    status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[0], states.ball[0], work)
-    n, d = level.u.shape[0], dofs.size
-    if status != SOLVED or n * d > 4 * _DENSE:
-        return
-    _report(turning, numbers, level, status, error, 0, out)
-    inverse, J = np.empty((n * d, n * d)), np.zeros((n * d, 2 * n * d))
-    _jacobian(level, numbers.mass, numbers.speed, dofs, J)
-    for row in range(n * d):
-        J[row, n * d + row] = 1.0
-    if not solve(J):
-        return
-    inverse[:] = J[:, n * d :]
-    u, ball, rate, shift, answer = level.u.copy(), level.ball.copy(), level.ball_rate.copy(), np.empty(5), np.empty(5)
-    for p in range(1, points.table.shape[0]):
-        if states.status[p] != 0:
-            continue
-        numbers = _orbit_numbers(linear, points, states, turning, p, weight)
-        for i in range(5):
-            shift[i] = states.q[p, i] - states.q[0, i]
-        for j in range(n):  # along with the equilibrium
-            _turn(-turning.sense * turning.span * j / n, shift, answer)
-            for i in range(5):
-                level.u[j, i] = u[j, i] + answer[i]
-        level.ball[:], level.ball_rate[:] = ball, rate
-        status, error = _by_chords(kernels, turning, numbers, level, inverse, work, dofs)
-        _report(turning, numbers, level, status, error, p, out)

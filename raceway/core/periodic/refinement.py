@@ -17,8 +17,9 @@ from collections.abc import Callable
 import attrs
 import numpy as np
 
-from raceway.core.periodic.collocation import Path, Problem, Solved, integrals, rotations, solve
+from raceway.core.periodic.collocation import Path, Problem, Solved, solve
 from raceway.core.periodic.intervals import forces
+from raceway.core.periodic.turn import integrals, rotations
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import States, responses
 from raceway.errors import ConvergenceError

@@ -8,10 +8,11 @@ from typing import ClassVar
 import attrs
 import numpy as np
 
-from raceway.core.periodic.collocation import Path, Problem, Solved, one_pitch, one_turn, solve, stiff
+from raceway.core.periodic.collocation import Path, Problem, Solved, solve, stiff
 from raceway.core.periodic.floquet import Floquet, floquet
 from raceway.core.periodic.intervals import forces
 from raceway.core.periodic.refinement import Refined, motion_at, refine
+from raceway.core.periodic.turn import one_pitch, one_turn
 from raceway.core.ring.system import System
 
 #: Samples a turn of the force: enough for eight harmonics.
@@ -117,7 +118,7 @@ MOST_NONLINEAR = 0.1
 
 
 @attrs.frozen(eq=False)
-class _Neighbour:
+class Neighbour:
     """A solved motion, to be followed.
 
     problem : that it solves
@@ -174,7 +175,7 @@ class Recorded:
     near_linear: ClassVar[bool] = False
 
     def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
-        """The same motion on a mesh; parameters as of ``_Neighbour``'s."""
+        """The same motion on a mesh; parameters as of ``Neighbour``'s."""
         w, inner = problem.speed, problem.angles(nodes)
         still = standing(problem, q, nodes)
         return attrs.evolve(
@@ -193,13 +194,13 @@ class Recorded:
         return np.ascontiguousarray((waves @ lines).real)
 
 
-def neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> _Neighbour:
+def neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> Neighbour:
     """A solved motion, for other problems to start from; ``q``, ``tangent`` as in ``first_guess``."""
     problem, path = solved.problem, solved.path
     first = guess(problem, q, tangent, path.nodes)
     excess = attrs.evolve(path, q=path.q - first.q, v=path.v - first.v, a=path.a - first.a)
     share = float(np.abs(excess.v / problem.weight).max()) / max(solved.size, 1e-300)
-    return _Neighbour(problem, excess, share)
+    return Neighbour(problem, excess, share)
 
 
 @attrs.frozen(eq=False)
@@ -223,9 +224,9 @@ class PeriodicMotion:
     floquet: Floquet
     fold: float | None = None
     coexisting: tuple[PeriodicMotion, ...] = ()
-    _neighbour: list[_Neighbour] = attrs.field(factory=list, init=False, repr=False)
+    _neighbour: list[Neighbour] = attrs.field(factory=list, init=False, repr=False)
 
-    def neighbour(self, q: np.ndarray, tangent: np.ndarray) -> _Neighbour:
+    def neighbour(self, q: np.ndarray, tangent: np.ndarray) -> Neighbour:
         """What the motion lends to others, about the problem's equilibrium q (5,) with its tangent (5, 5); made once."""
         if not self._neighbour:
             self._neighbour.append(neighbour_of(self.refined.solved, q, tangent))

@@ -13,9 +13,9 @@ from raceway.core.periodic.intervals import forces
 from raceway.core.periodic.refinement import displacements, record, refine, states
 from raceway.core.periodic.search import (
     HIGHEST,
+    Neighbour,
     PeriodicMotion,
     Recorded,
-    _Neighbour,
     can_continue,
     directly,
     full_steps,
@@ -287,7 +287,7 @@ def find(
     q: np.ndarray,
     tangent: np.ndarray,
     tolerance: float,
-    near: _Neighbour | Recorded | None = None,
+    near: Neighbour | Recorded | None = None,
     stay: bool = False,
 ) -> PeriodicMotion:
     """The periodic motion of a ring about the equilibrium q (5,), to a relative tolerance, and others beside it.
@@ -337,7 +337,7 @@ def find(
 
 
 def _continued(
-    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, near: _Neighbour | Recorded
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, near: Neighbour | Recorded
 ) -> PeriodicMotion | None:
     """The motion that continues a neighbour, if it is close to it and not unstable."""
     first = near.first_guess(problem, q, tangent, mesh_of(problem, highest))

@@ -8,7 +8,8 @@ import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.ring.equilibrium import CONVERGED, SLOW, cholesky_solve, copy_matrix, find_root, solve_equilibrium
+from raceway.core.ring.elimination import cholesky_solve, copy_matrix
+from raceway.core.ring.equilibrium import CONVERGED, SLOW, find_root, solve_equilibrium
 from raceway.core.ring.kernels import CONTACT_FORCE
 from raceway.core.ring.kernels.layout import GYROSCOPIC, TILT_ARM, keep_slips, place, work_rows
 from raceway.core.signatures import (

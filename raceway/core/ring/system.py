@@ -5,12 +5,13 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
+from raceway.core.contact.geometry import Growth
 from raceway.core.jit import Kernel
 from raceway.core.record import check_state
 from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, SLOW, solve_equilibrium
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP, layout
 from raceway.core.ring.kernels.layout import are_condensed, elastic_columns, work_rows
-from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Growth, Increment, Ring
+from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Increment, Ring
 from raceway.core.signatures import Balls, Constants, Contacts, Forces, Linear, Response, StaticState
 from raceway.errors import ConvergenceError
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from raceway.core.jit import Kernel
-from raceway.core.record import Motion, OnChunk, Record, Schedule, check_start, unbounded
+from raceway.core.record import Motion, OnChunk, Record, Schedule, check_start
+from raceway.core.recorder import unbounded
 from raceway.core.ring.system import System
 from raceway.core.signatures import Outer, Recording, State, Steps
 from raceway.core.time.compiled import (

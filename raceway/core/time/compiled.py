@@ -21,7 +21,8 @@ import numpy as np
 from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import Kernel, jit
-from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, NOT_FINITE, at_rest, copy_matrix, solve
+from raceway.core.ring.elimination import copy_matrix, solve
+from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, NOT_FINITE, at_rest
 from raceway.core.ring.equilibrium import RESIDUAL as LEFT
 from raceway.core.ring.kernels import CONTACT_FORCE as CONTACT_FORCE_ROW
 from raceway.core.ring.kernels import GAP

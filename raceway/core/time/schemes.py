@@ -10,7 +10,8 @@ import attrs
 from raceway.errors import PluginError
 
 if TYPE_CHECKING:
-    from raceway.core.record import Motion, OnChunk, Record, Recorder, Schedule, SteppedSystem
+    from raceway.core.record import Motion, OnChunk, Record, Schedule, SteppedSystem
+    from raceway.core.recorder import Recorder
     from raceway.core.ring.ring import Ring
     from raceway.core.ring.system import System
 
@@ -64,8 +65,9 @@ def integrate(
     PluginError
         A scheme without the driver, which a plan refuses before.
     """
-    from raceway.core.record import Recorder
+    from raceway.core.recorder import Recorder
     from raceway.core.ring.ring import Ring
+    from raceway.core.ring.stepped import SteppedBearing
     from raceway.core.ring.system import compiled
 
     scheme: Scheme = integrator.scheme
@@ -77,7 +79,7 @@ def integrate(
         raise PluginError(
             f"integrator '{name}' has no driver `{missing_driver(scheme, ring is not None)}`, which these bodies need"
         )
-    stepper: SteppedSystem = system.stepped() if isinstance(system, Ring) else system
+    stepper: SteppedSystem = (system.stepped() or SteppedBearing(system)) if isinstance(system, Ring) else system
     with stepper.threads:
         recorder = Recorder(stepper, stepper.begin(start), schedule, on_chunk)
         scheme.stepped(stepper, recorder)

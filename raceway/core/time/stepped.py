@@ -6,7 +6,8 @@ from collections import deque
 
 import numpy as np
 
-from raceway.core.record import BOUND, Recorder, State, SteppedSystem, finish, predict
+from raceway.core.record import State, SteppedSystem, finish, predict
+from raceway.core.recorder import BOUND, Recorder
 from raceway.errors import ConvergenceError, StabilityError
 
 #: alpha_m, alpha_f, beta, gamma.

@@ -16,12 +16,12 @@ from raceway.bodies.model import BuiltBearing, Told, calibration_error, untold
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.core.contact.hertz import ball_compliance
+from raceway.core.fem.calibration import calibrated
 from raceway.core.fem.mesh.ring_mesh import ring_shape
 from raceway.core.fem.patches.patch import RingBody, Solid
 from raceway.core.fem.structural import (
     SURFACE,
     ElasticBodies,
-    calibrated,
     elastic_scalars,
     elastic_system,
     first_frequency,

@@ -8,11 +8,12 @@ from contextlib import contextmanager
 import attrs
 import numpy as np
 
+from raceway.core.contact.geometry import Growth
 from raceway.core.fem.elastic.bearing import ElasticBearing, ElasticSystem
 from raceway.core.fem.elastic.superelement_solver import CondensedSolver
 from raceway.core.record import Motion
 from raceway.core.ring.orbit import Orbit, at_time
-from raceway.core.ring.ring import AT_ONCE, Evaluation, Growth, Increment
+from raceway.core.ring.ring import AT_ONCE, Evaluation, Increment
 from raceway.core.ring.system import SteppedRing, System
 from raceway.errors import ConvergenceError
 

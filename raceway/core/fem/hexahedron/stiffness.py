@@ -18,7 +18,7 @@ from raceway.core.fem.hexahedron.strain import (
     strain_matrices,
 )
 from raceway.core.jit import jit
-from raceway.core.ring.equilibrium import eliminate
+from raceway.core.ring.elimination import eliminate
 from raceway.core.signatures import CUBE, MATRIX, VECTOR, record
 
 

@@ -25,7 +25,7 @@ import attrs
 import numpy as np
 
 from raceway.core.fem.patches.pressure import Contact, ContactState, SlipState
-from raceway.core.ring.kernels.tangential import gyroscopic_moment, traction_within
+from raceway.core.ring.kernels.rolling import gyroscopic_moment, traction_within
 from raceway.errors import ConvergenceError
 
 #: Step of the difference quotients of the moment [rad], see there.

@@ -23,18 +23,8 @@ from numba import boolean, float64, int64, types, void
 from raceway.core.jit import jit
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.kernels.layout import (
-    PAIR,
-    TENSOR,
-    Pair,
-    Tensor,
-    add_products,
-    put_tensor,
-    seat_of,
-    tensor_of,
-    to_ring,
-    weighted_sum,
-)
+from raceway.core.ring.kernels.layout import add_products, seat_of, to_ring
+from raceway.core.ring.kernels.tensors import PAIR, TENSOR, Pair, Tensor, put_tensor, tensor_of, weighted_sum
 from raceway.core.signatures import MATRIX, VECTOR
 
 

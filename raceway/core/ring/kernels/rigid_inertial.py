@@ -14,7 +14,8 @@ from numba import boolean, float64, int64, void
 from raceway.core.jit import jit
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.kernels.layout import (
+from raceway.core.ring.kernels.layout import move_centres, normal_forces, offsets_of, place, ring_force, ring_tangent
+from raceway.core.ring.kernels.tensors import (
     NOTHING,
     TENSOR,
     Pair,
@@ -22,13 +23,7 @@ from raceway.core.ring.kernels.layout import (
     less,
     less_column,
     less_row,
-    move_centres,
-    normal_forces,
-    offsets_of,
-    place,
     put_tensor,
-    ring_force,
-    ring_tangent,
     row_times_adjugate,
     times_adjugate,
 )

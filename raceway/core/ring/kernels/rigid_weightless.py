@@ -13,16 +13,8 @@ from numba import boolean, float64, int64, void
 from raceway.core.jit import jit
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.kernels.layout import (
-    Tensor,
-    move_centres,
-    normal_forces,
-    offsets_of,
-    place,
-    put_tensor,
-    ring_force,
-    ring_tangent,
-)
+from raceway.core.ring.kernels.layout import move_centres, normal_forces, offsets_of, place, ring_force, ring_tangent
+from raceway.core.ring.kernels.tensors import Tensor, put_tensor
 from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
 
 _ITERATIONS = 60

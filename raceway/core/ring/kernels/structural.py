@@ -26,19 +26,8 @@ from raceway.core.jit import Kernel, jit
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.between import centrifugal_displacement, forces, reduce_tangents, step
-from raceway.core.ring.kernels.layout import (
-    Pair,
-    Tensor,
-    add_ball,
-    add_products,
-    place,
-    put_tensor,
-    seat_of,
-    slips_end,
-    tensor_of,
-    to_ring,
-    weighted_sum,
-)
+from raceway.core.ring.kernels.layout import add_ball, add_products, place, seat_of, slips_end, to_ring
+from raceway.core.ring.kernels.tensors import Pair, Tensor, put_tensor, tensor_of, weighted_sum
 from raceway.core.signatures import CONSTANTS, MATRIX, SYSTEM, VECTOR
 
 #: Iterations until it is given up, and answers of ``_correct``.

@@ -1,0 +1,225 @@
+"""What numba does otherwise for kernels: its compiler without needless passes, parts of callers without entry points, marks of sources."""
+
+from __future__ import annotations
+
+import gc
+import hashlib
+import marshal
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from itertools import count
+from pathlib import Path
+from types import CodeType, FunctionType
+from typing import Any
+
+import numba
+from numba.core.bytecode import FunctionIdentity
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.registry import CPUDispatcher
+from numba.core.serialize import dumps
+from numba.core.targetconfig import ConfigStack
+from numba.core.typed_passes import DumpParforDiagnostics, NopythonRewrites
+from numba.core.types.functions import BaseFunction
+from numba.core.typing.templates import Signature, _OverloadFunctionTemplate
+from numba.core.untyped_passes import (
+    FindLiterallyCalls,
+    InlineClosureLikes,
+    InlineInlinables,
+    LiteralPropagationSubPipelinePass,
+    LiteralUnroll,
+    MakeFunctionToJitFunction,
+    RewriteDynamicRaises,
+    WithLifting,
+)
+
+from raceway.storage.kernel_cache import SHARED
+
+#: Objects that may wait for Python's search for cycles once kernels were compiled, and how many before.
+_WAITING = 3_000_000
+
+
+_thresholds: list[tuple[int, int, int]] = []
+
+
+@contextmanager
+def collector_off() -> Iterator[None]:
+    """Python's search for cycles among the millions of small objects that numba makes takes a tenth of its time.
+
+    Where it is on, it comes at the next of some million objects, so that it comes in few first runs: they take 0.1 GB more.
+    """
+    before = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if before:
+            if not _thresholds:
+                _thresholds.append(gc.get_threshold())
+                gc.set_threshold(_WAITING, *_thresholds[0][1:])
+                gc.callbacks.append(_search_as_before)
+            gc.enable()
+
+
+def _search_as_before(_phase: str, _counts: dict[str, int]) -> None:
+    gc.set_threshold(*_thresholds.pop())
+    gc.callbacks.remove(_search_as_before)
+
+
+#: A part of numba's compiler, which types some of itself only.
+Numba = Any
+
+
+_Function: Numba = BaseFunction
+
+
+_resolve = _Function.get_call_type
+
+
+_Overload: Numba = _OverloadFunctionTemplate
+
+
+#: Signatures and implementations of operators and functions of numba's own, by their arguments' types and the compiler's flags.
+_resolved: dict[tuple[Numba, ...], tuple[Signature, Numba]] = {}
+
+
+@contextmanager
+def resolved_once() -> Iterator[None]:
+    """numba tries some ten templates at each ``a + b`` and ``a[i]``, an eighth of the time that it compiles for; here once per types.
+
+    Functions of numba's own become parts of their callers, once for all kernels that may allocate and once for the others.
+    """
+
+    def resolve(function: Numba, context: Numba, args: Numba, kws: Numba) -> Signature:
+        flags = ConfigStack.top_or_none()
+        options = None if flags is None else (flags.nrt, flags.error_model, str(flags.fastmath))
+        key = function, args, tuple(kws.items()), options
+        if key not in _resolved:
+            signature = _resolve(function, context, args, kws)
+            _resolved[key] = signature, function._impl_keys[signature.args]
+        signature, implementation = _resolved[key]
+        function._impl_keys[signature.args] = implementation
+        return signature
+
+    def compiler(_template: Numba) -> Numba:
+        return lambda **options: lambda function: _Helper(function, targetoptions=options)
+
+    before, _Function.get_call_type = _Function.get_call_type, resolve
+    jitter, _Overload._get_jit_decorator = _Overload._get_jit_decorator, compiler
+    try:
+        yield
+    finally:
+        _Function.get_call_type, _Overload._get_jit_decorator = before, jitter
+
+
+@contextmanager
+def numba_cache_in(folder: Path) -> Iterator[None]:
+    config: Numba = numba.config
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(folder)
+    try:
+        yield
+    finally:
+        config.CACHE_DIR = before
+
+
+@contextmanager
+def numbered_from(base: str) -> Iterator[None]:
+    """Number functions from a number of the kernel's own, by the name of its files.
+
+    Symbols of machine code end in numba's count of the functions of a process.  Two variants of a closure that two processes compile
+    may have one number, and so one symbol: a process that loads both would run the first one for either.
+    """
+    before = FunctionIdentity._unique_ids
+    first = int.from_bytes(hashlib.blake2b(base.encode(), digest_size=7).digest(), "big")
+    FunctionIdentity._unique_ids = count(first)
+    try:
+        yield
+    finally:
+        FunctionIdentity._unique_ids = before
+
+
+#: For closures, ``with``, ``literal_unroll``, functions that are written into their callers, parallel loops, and one loop for several
+#: operators of arrays: kernels have none of them.
+_NEEDLESS = {
+    DumpParforDiagnostics, FindLiterallyCalls, InlineClosureLikes, InlineInlinables, LiteralPropagationSubPipelinePass, LiteralUnroll,
+    MakeFunctionToJitFunction, NopythonRewrites, RewriteDynamicRaises, WithLifting,
+}  # fmt: skip
+
+
+class Compiler(CompilerBase):
+    """numba's, without passes that kernels of the core do not need."""
+
+    def define_pipelines(self) -> list[Numba]:
+        passes: Numba = DefaultPassBuilder.define_nopython_pipeline(self.state)
+        passes.passes = [each for each in passes.passes if each[0] not in _NEEDLESS]
+        passes.finalize()
+        return [passes]
+
+
+Dispatcher: Numba = CPUDispatcher
+
+
+#: Modules whose kernels need no more than ``Compiler`` does, and whose sources name the folders of compiled kernels.
+CORE_MODULES = tuple(f"raceway.{folder.replace('/', '.')}." for folder in SHARED)
+
+
+def marks(value: Numba, above: list[Numba]) -> Any:
+    """Of a function, or of what a closure holds, all that decides machine code, the same in every process.
+
+    numba's own mark of a function in a closure is a random number: kernels around it would never be found again.  ``above`` : functions
+    that hold it, for one that calls itself.
+    """
+    function = getattr(value, "py_func", value)
+    if not isinstance(function, FunctionType):
+        return dumps(value)
+    if function in above:
+        return above.index(function)
+    code, cells = function.__code__, [marks(cell.cell_contents, [*above, function]) for cell in function.__closure__ or ()]
+    stamp: object = None
+    if f"{function.__module__}.".startswith(CORE_MODULES):  # whose sources name the folder, wherever they lie
+        code = _without_place(code)
+    else:
+        with suppress(OSError):  # a file that is changed changes globals, too
+            status = Path(code.co_filename).stat()
+            stamp = status.st_mtime_ns, status.st_size
+    options = str(getattr(value, "signature", "")), sorted(getattr(value, "targetoptions", {}).items())
+    return function.__module__, marshal.dumps(code, 2), function.__defaults__, stamp, options, cells
+
+
+def _without_place(code: CodeType) -> CodeType:
+    inner = tuple(_without_place(const) if isinstance(const, CodeType) else const for const in code.co_consts)
+    return code.replace(co_filename="", co_consts=inner)
+
+
+class _Linked(JITCodeLibrary):
+    """Code that is linked into callers only: no machine code is made of it."""
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._finalized = True
+
+
+class Inlined(Dispatcher):
+    """Code that has no entry points for Python and pointers either: a first run takes a quarter less."""
+
+    @staticmethod
+    def _flags(flags: Numba) -> Numba:
+        flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
+        return flags
+
+    def add_overload(self, cres: Numba) -> None:
+        cres.library.__class__ = _Linked
+        self.overloads[tuple(cres.signature.args)] = cres = cres._replace(entry_point=object())
+        self.targetctx.insert_user_function(cres.entry_point, cres.fndesc, [cres.library])
+
+
+class _Helper(Inlined):
+    """A function of numba's own as a part of kernels."""
+
+    def __init__(self, function: Numba, targetoptions: Numba) -> None:
+        super().__init__(function, targetoptions=targetoptions)
+        self._compiler._customize_flags = self._flags

@@ -1,0 +1,96 @@
+"""Pairs and two by two matrices in kernels."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from numba import float64, int64, types, void
+
+from raceway.core.jit import jit
+from raceway.core.signatures import MATRIX
+
+
+class Pair(NamedTuple):
+    """A vector or a row: axial, radial."""
+
+    axial: float
+    radial: float
+
+
+class Tensor(NamedTuple):
+    """A 2x2 matrix: first index the row."""
+
+    aa: float
+    ar: float
+    ra: float
+    rr: float
+
+
+PAIR = types.NamedUniTuple(float64, 2, Pair)
+
+
+TENSOR = types.NamedUniTuple(float64, 4, Tensor)
+
+
+NOTHING = Pair(0.0, 0.0)
+
+
+@jit(TENSOR(float64, TENSOR, float64, TENSOR), inline=True)
+def weighted_sum(a, s, b, t):
+    """a S + b T."""
+    return Tensor(a * s.aa + b * t.aa, a * s.ar + b * t.ar, a * s.ra + b * t.ra, a * s.rr + b * t.rr)
+
+
+@jit(TENSOR(TENSOR, TENSOR), inline=True)
+def times_adjugate(a, j):
+    """A adj J.
+
+    Notes
+    -----
+    Products leave out the determinant that quotients by a matrix share: A J^-1 = (A adj J) / det J.
+    """
+    return Tensor(a.aa * j.rr - a.ar * j.ra, a.ar * j.aa - a.aa * j.ar, a.ra * j.rr - a.rr * j.ra, a.rr * j.aa - a.ra * j.ar)
+
+
+@jit(PAIR(PAIR, TENSOR), inline=True)
+def row_times_adjugate(n, j):
+    """n^T adj J."""
+    return Pair(n.axial * j.rr - n.radial * j.ra, n.radial * j.aa - n.axial * j.ar)
+
+
+@jit(TENSOR(TENSOR, TENSOR, TENSOR), inline=True)
+def less(e, t, x):
+    """E - T X."""
+    return Tensor(
+        e.aa - t.aa * x.aa - t.ar * x.ra,
+        e.ar - t.aa * x.ar - t.ar * x.rr,
+        e.ra - t.ra * x.aa - t.rr * x.ra,
+        e.rr - t.ra * x.ar - t.rr * x.rr,
+    )
+
+
+@jit(PAIR(PAIR, TENSOR, PAIR), inline=True)
+def less_column(e, t, x):
+    """e - T x."""
+    return Pair(e.axial - t.aa * x.axial - t.ar * x.radial, e.radial - t.ra * x.axial - t.rr * x.radial)
+
+
+@jit(PAIR(PAIR, PAIR, TENSOR), inline=True)
+def less_row(e, g, x):
+    """e - g^T X."""
+    return Pair(e.axial - g.axial * x.aa - g.radial * x.ra, e.radial - g.axial * x.ar - g.radial * x.rr)
+
+
+@jit(void(TENSOR, MATRIX, int64, int64), inline=True)
+def put_tensor(tensor, work, row, k):
+    """A matrix of ball k into two rows of ``work``, as ``ring_tangent`` reads it."""
+    z = work.shape[1] // 2
+    work[row, k], work[row, z + k] = tensor.aa, tensor.ar
+    work[row + 1, k], work[row + 1, z + k] = tensor.ra, tensor.rr
+
+
+@jit(TENSOR(MATRIX, int64, int64), inline=True)
+def tensor_of(work, row, k):
+    """The matrix of ball k that ``put_tensor`` put into two rows of ``work``."""
+    z = work.shape[1] // 2
+    return Tensor(work[row, k], work[row, z + k], work[row + 1, k], work[row + 1, z + k])
