@@ -99,7 +99,7 @@ from .framework.shown import race_words as race_words
 from .framework.shown import tilt_words as tilt_words
 from .framework.sources import blamed as blamed
 from .answers.answer import Part as Part
-from .answers.damping import dry_damping_words as dry_damping_words
+from .answers.quantities import dry_damping_words as dry_damping_words
 from .answers.page import Cell as Cell
 from .answers.page import Page as Page
 from .answers.page import data_uri as data_uri
@@ -216,7 +216,7 @@ from .scene.changes import with_number as with_number
 from .scene.changes import with_numbers as with_numbers
 from .scene.changes import with_value as with_value
 from .scene.changes import without as without
-from .scene.clearance import clearance_range as clearance_range
+from .scene.designation import clearance_range as clearance_range
 from .scene.scene import Change as Change
 from .scene.scene import Given as Given
 from .scene.scene import SceneSource as SceneSource

@@ -12,7 +12,7 @@ import pytest
 from raceway import SceneError, run, scene_from_dict
 from raceway.extend import Bearing, clearance_range, found_by, resolve
 from raceway.scene.catalogue import catalogue, preset, preset_of, single_presets
-from raceway.scene.clearance import CLASSES
+from raceway.scene.designation import CLASSES
 from raceway.scene.sets import RATINGS
 
 POUND = 4.4482216152605

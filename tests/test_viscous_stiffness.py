@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from raceway.answers.damping import RULE_OF_THUMB_S, dry_damping_note
+from raceway.answers.quantities import RULE_OF_THUMB_S, dry_damping_note
 from raceway.core.ring.kernels.layout import DAMPING, LEVER, SIDE, TILT_ARM, TIME_CONSTANT
 from raceway.extend import dry_damping_words
 from raceway.testing import settled

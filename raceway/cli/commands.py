@@ -163,7 +163,7 @@ DEVELOPERS = (
         folder=None,
     ),
     Later("schema", "raceway.cli.plugins:schema", "JSON schema of a scene."),
-    Later("cache", "raceway.cli.cache:cache", "List or clear the caches."),
+    Later("cache", "raceway.cli.plugins:cache", "List or clear the caches."),
     Later("plugins", "raceway.cli.plugins:plugins", "List installed plug-ins and their options."),
     Later("new-scene", "raceway.cli.new_scene:new_scene", "Write a scene to start from."),
 )

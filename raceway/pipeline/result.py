@@ -14,8 +14,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Part
-from raceway.answers.damping import DRY
-from raceway.answers.quantities import C_ERROR, IDENTIFIED, KXX, KYY, KYY_TILTS_FOLLOW, C, K, X, Z, nested
+from raceway.answers.quantities import C_ERROR, DRY, IDENTIFIED, KXX, KYY, KYY_TILTS_FOLLOW, C, K, X, Z, nested
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.signals import Identification, Line
 from raceway.errors import PluginError, RacewayError

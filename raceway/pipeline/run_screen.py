@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from raceway.answers.answer import Part
-from raceway.answers.damping import DRY, dry_damping_note
 from raceway.answers.quantities import (
+    DRY,
     FORCE_AMPLITUDE,
     KXX,
     KYY,
@@ -19,6 +19,7 @@ from raceway.answers.quantities import (
     C,
     K,
     Z,
+    dry_damping_note,
 )
 from raceway.answers.table import Row, micro, sections, tilt_words
 from raceway.answers.wrapping import Words

@@ -16,53 +16,18 @@ from raceway.scene.changes import with_columns
 from raceway.scene.scene import Scene
 
 #: Continuous keys whose numbers may be columns; beside them those of the excitation.
-_KEYS = frozenset(
-    [
-        "load.axial",
-        "load.radial[0]",
-        "load.radial[1]",
-        "load.moment[0]",
-        "load.moment[1]",
-        "kinematics.spin_speed_rpm",
-        "kinematics.radial_expansion",
-        "supports.tilt",
-        "rotor.mass",
-        "rotor.damping",
-        "rotor.transverse_inertia",
-        "rotor.polar_inertia",
-        "contact.damping",
-        "contact.time_constant",
-        "contact.loss_factor",
-        "bearing.bore",
-        "bearing.outer_diameter",
-        "bearing.width",
-        "bearing.dynamic_rating",
-        "bearing.static_rating",
-        "bearing.first_ball_azimuth_deg",
-        "bearing.rings.thermal_expansion",
-        "bearing.balls.thermal_expansion",
-        "bearing.ball_diameter",
-        "bearing.pitch_diameter",
-        "bearing.conformity_inner",
-        "bearing.conformity_outer",
-        "bearing.contact_angle_deg",
-        "bearing.radial_clearance",
-        "bearing.preload",
-        "bearing.second_preload",
-        "bearing.rings.young",
-        "bearing.rings.poisson",
-        "bearing.rings.density",
-        "bearing.balls.young",
-        "bearing.balls.poisson",
-        "bearing.balls.density",
-        "mounting.inner_temperature",
-        "mounting.outer_temperature",
-        "mounting.ball_temperature",
-        "mounting.shaft_bore",
-        "mounting.shaft_interference",
-        "mounting.housing_interference",
-    ]
-)
+_KEYS = frozenset([
+    "load.axial", "load.radial[0]", "load.radial[1]", "load.moment[0]", "load.moment[1]", "kinematics.spin_speed_rpm",
+    "kinematics.radial_expansion", "supports.tilt", "rotor.mass", "rotor.damping", "rotor.transverse_inertia",
+    "rotor.polar_inertia", "contact.damping", "contact.time_constant", "contact.loss_factor", "bearing.bore",
+    "bearing.outer_diameter", "bearing.width", "bearing.dynamic_rating", "bearing.static_rating",
+    "bearing.first_ball_azimuth_deg", "bearing.rings.thermal_expansion", "bearing.balls.thermal_expansion",
+    "bearing.ball_diameter", "bearing.pitch_diameter", "bearing.conformity_inner", "bearing.conformity_outer",
+    "bearing.contact_angle_deg", "bearing.radial_clearance", "bearing.preload", "bearing.second_preload",
+    "bearing.rings.young", "bearing.rings.poisson", "bearing.rings.density", "bearing.balls.young", "bearing.balls.poisson",
+    "bearing.balls.density", "mounting.inner_temperature", "mounting.outer_temperature", "mounting.ball_temperature",
+    "mounting.shaft_bore", "mounting.shaft_interference", "mounting.housing_interference",
+])  # fmt: skip
 
 
 def why_not(scene: Scene, moving: bool) -> str:

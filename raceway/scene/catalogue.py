@@ -25,8 +25,7 @@ import attrs
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.bearing import Material
-from raceway.scene.clearance import clearance_range
-from raceway.scene.designation import Designation, read_designation, unlisted
+from raceway.scene.designation import Designation, clearance_range, read_designation, unlisted
 from raceway.scene.sets import RATINGS
 from raceway.storage.tables import ReadTables, Tables
 

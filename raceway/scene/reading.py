@@ -183,13 +183,8 @@ def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
 
 #: Stands in for a preset that does not exist, so that the other keys of the table are still checked.
 _PLACEHOLDER = {
-    "ball_diameter": 0.01,
-    "pitch_diameter": 0.05,
-    "width": 0.015,
-    "ball_count": 8,
-    "conformity_inner": 0.52,
-    "conformity_outer": 0.52,
-}
+    "ball_diameter": 0.01, "pitch_diameter": 0.05, "width": 0.015, "ball_count": 8, "conformity_inner": 0.52, "conformity_outer": 0.52,
+}  # fmt: skip
 
 
 def read_tables(tables: ReadTables, registry: Registry) -> tuple[str, Tables, SceneTables]:
