@@ -15,7 +15,7 @@ from raceway.core.fem.elastic.ring import from_orbit
 from raceway.extend import steady_orbit
 from raceway.pipeline.run import Allowance
 from raceway.scene.unused import unused
-from raceway.storage.memory import allowed_bytes
+from raceway.storage.files import allowed_bytes
 from raceway.testing import run, solve_equilibrium
 
 #: Three balls on some two thousand hexahedra: every path, no accuracy.

@@ -9,7 +9,7 @@ import pytest
 
 import raceway as rw
 from checks.validation.command_line import invoke
-from raceway.cli.new_scene import scene_text
+from raceway.cli.plugins import scene_text
 from raceway.extend import default_registry
 from raceway.scene.catalogue import single_presets
 

@@ -165,7 +165,7 @@ DEVELOPERS = (
     Later("schema", "raceway.cli.plugins:schema", "JSON schema of a scene."),
     Later("cache", "raceway.cli.plugins:cache", "List or clear the caches."),
     Later("plugins", "raceway.cli.plugins:plugins", "List installed plug-ins and their options."),
-    Later("new-scene", "raceway.cli.new_scene:new_scene", "Write a scene to start from."),
+    Later("new-scene", "raceway.cli.plugins:new_scene", "Write a scene to start from."),
 )
 #: Heading in --help -> its commands.
 SECTIONS: dict[str, tuple[Command | Later, ...]] = {

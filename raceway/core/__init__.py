@@ -1,6 +1,6 @@
 """Numerics only: arrays in, arrays out.
 
-jit            the one decorator for compiled kernels;  wheel_kernels: those that a wheel brings;  deferred: those beside light classes
+jit            the one decorator for compiled kernels;  compiler: what numba does otherwise for them;  wheel_kernels: those that a wheel brings;  deferred: those beside light classes
 columns        numbers that may be columns, one of each operating point
 elementary     exponential and logarithm that loops over them are vectorised with
 signatures     types of the kernels that are passed as function pointers
@@ -11,7 +11,7 @@ ratings        load ratings of ISO 281 and ISO 76, and the contact loads that th
 rolling_friction  losses of balls in contacts and mixture: inlet, hysteresis, slip, drag
 life           reference life of ISO/TS 16281 and modified life of ISO 281 from contact loads
 excitations    the compiled force of nothing
-record         duties of a system that is stepped from Python; schedule, start and record of a time integration
+record         duties of a system that is stepped from Python; schedule, start and record of a time integration;  recorder: takes steps into it
 ring           the compiled bearing: five coordinates of the inner ring, balls condensed out
 time           one-step, explicit and static methods: compiled loops and loops in Python
 periodic       steady motions by collocation and continuation, with their Floquet multipliers

@@ -13,6 +13,7 @@ from types import CodeType, FunctionType
 from typing import Any
 
 import numba
+from numba.core import untyped_passes
 from numba.core.bytecode import FunctionIdentity
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
@@ -22,16 +23,6 @@ from numba.core.targetconfig import ConfigStack
 from numba.core.typed_passes import DumpParforDiagnostics, NopythonRewrites
 from numba.core.types.functions import BaseFunction
 from numba.core.typing.templates import Signature, _OverloadFunctionTemplate
-from numba.core.untyped_passes import (
-    FindLiterallyCalls,
-    InlineClosureLikes,
-    InlineInlinables,
-    LiteralPropagationSubPipelinePass,
-    LiteralUnroll,
-    MakeFunctionToJitFunction,
-    RewriteDynamicRaises,
-    WithLifting,
-)
 
 from raceway.storage.kernel_cache import SHARED
 
@@ -142,8 +133,9 @@ def numbered_from(base: str) -> Iterator[None]:
 #: For closures, ``with``, ``literal_unroll``, functions that are written into their callers, parallel loops, and one loop for several
 #: operators of arrays: kernels have none of them.
 _NEEDLESS = {
-    DumpParforDiagnostics, FindLiterallyCalls, InlineClosureLikes, InlineInlinables, LiteralPropagationSubPipelinePass, LiteralUnroll,
-    MakeFunctionToJitFunction, NopythonRewrites, RewriteDynamicRaises, WithLifting,
+    DumpParforDiagnostics, NopythonRewrites, untyped_passes.FindLiterallyCalls, untyped_passes.InlineClosureLikes,
+    untyped_passes.InlineInlinables, untyped_passes.LiteralPropagationSubPipelinePass, untyped_passes.LiteralUnroll,
+    untyped_passes.MakeFunctionToJitFunction, untyped_passes.RewriteDynamicRaises, untyped_passes.WithLifting,
 }  # fmt: skip
 
 

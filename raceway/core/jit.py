@@ -27,19 +27,8 @@ from numba.core.compiler import CompileResult
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.typing.templates import Signature
 
-from raceway.core import wheel_kernels
-from raceway.core.compiler import (
-    CORE_MODULES,
-    Compiler,
-    Dispatcher,
-    Inlined,
-    Numba,
-    collector_off,
-    marks,
-    numba_cache_in,
-    numbered_from,
-    resolved_once,
-)
+from raceway.core import compiler, wheel_kernels
+from raceway.core.compiler import Dispatcher, Numba
 from raceway.core.signatures import Pointer, signature_words
 from raceway.errors import PluginError, RacewayError
 from raceway.storage.kernel_cache import FilesOfKernel, OpenFolder, current_folder, opened
@@ -112,8 +101,8 @@ class Kernel(Dispatcher):
     """
 
     def __init__(self, function: Callable[..., Any], signature: Signature, options: dict[str, Any]) -> None:
-        if function.__module__.startswith(CORE_MODULES):
-            super().__init__(function, targetoptions=options, pipeline_class=Compiler)
+        if function.__module__.startswith(compiler.CORE_MODULES):
+            super().__init__(function, targetoptions=options, pipeline_class=compiler.Compiler)
         else:
             super().__init__(function, targetoptions=options)
         self.signature = signature
@@ -130,7 +119,7 @@ class Kernel(Dispatcher):
         """The machine code's entry point, for ``signature`` whatever is asked for; numba's own calls come here, too."""
         with global_compiler_lock:  # numba's, not one of our own: kernels of others may call this one
             if self._can_compile:
-                with collector_off(), resolved_once():
+                with compiler.collector_off(), compiler.resolved_once():
                     self._make()
         return self.overloads[tuple(self.signature.args)].entry_point
 
@@ -215,12 +204,12 @@ class Kernel(Dispatcher):
     @cached_property
     def _digest(self) -> str:
         """Of all that decides the machine code beside signature and processor."""
-        return hashlib.sha256(repr(marks(self.py_func, [])).encode()).hexdigest()
+        return hashlib.sha256(repr(compiler.marks(self.py_func, [])).encode()).hexdigest()
 
     def _from_wheel(self) -> bool:
         """Take the machine code that came with the package, if it has this kernel's."""
         name = f"{self.py_func.__module__}.{self.py_func.__qualname__}"
-        if not name.startswith(CORE_MODULES) or (wheel_kernels.folder() is None and not wheel_kernels.writing):
+        if not name.startswith(compiler.CORE_MODULES) or (wheel_kernels.folder() is None and not wheel_kernels.writing):
             return False
         marks = str(self.signature), self._digest
         if wheel_kernels.writing:
@@ -246,10 +235,10 @@ class Kernel(Dispatcher):
         for attempt in (1, 2):
             files: FilesOfKernel | None = None
             try:
-                with numba_cache_in(folder.path):
+                with compiler.numba_cache_in(folder.path):
                     files = self._open_cache()
                     files.discard_damaged()
-                    with numbered_from(files.base):
+                    with compiler.numbered_from(files.base):
                         super().compile(self.signature)
                 if not self.stats.cache_hits:
                     files.note_digests()
@@ -300,7 +289,7 @@ class Kernel(Dispatcher):
         return next((line for line in lines if not line.startswith("Failed in")), "unknown reason")
 
 
-class _Part(Inlined, Kernel):
+class _Part(compiler.Inlined, Kernel):
     """A kernel as a part of those that call it, without files of its own."""
 
     get_call_template, get_overload = Dispatcher.get_call_template, Dispatcher.get_overload
@@ -313,10 +302,10 @@ class _Part(Inlined, Kernel):
         if folder is None:
             Dispatcher.compile(self, self.signature)
             return
-        with numba_cache_in(folder.path):
+        with compiler.numba_cache_in(folder.path):
             base = self._open_cache().base
         self._cache = NullCache()
-        with numbered_from(f"{base}.part"):
+        with compiler.numbered_from(f"{base}.part"):
             Dispatcher.compile(self, self.signature)
 
 

@@ -33,6 +33,7 @@ from raceway.framework.shown import Fact, number_within, percents
 from raceway.pipeline.equilibrium import pressures, solve_equilibrium
 from raceway.pipeline.quantities import plugins_stating, solved_point, stated_numbers
 from raceway.planning.resolve import Problem
+from raceway.plugins.formats import RunResult
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
     from raceway.pipeline.error import Errors
     from raceway.pipeline.plausible import Spread
     from raceway.pipeline.quantities import StatedQuantities
-    from raceway.pipeline.simulate import Simulation
 
 #: How parts combine.
 RULE = (
@@ -57,15 +57,9 @@ _TOLD, _SHOWN, _SIDE = 0.1, 0.1, 0.02
 Range = tuple[float, float]
 
 
-class Computed(Protocol):
+class Computed(RunResult, Protocol):
     """What the intervals of a ``Result`` rest on."""
 
-    @property
-    def model(self) -> Model: ...
-    @property
-    def equilibrium(self) -> Equilibrium: ...
-    @property
-    def simulation(self) -> Simulation | None: ...
     @property
     def errors(self) -> Errors: ...
     @property

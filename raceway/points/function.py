@@ -31,11 +31,10 @@ from raceway.planning.columns import column_problem, law_keys, why_no_column, wh
 from raceway.planning.plan import ScenePlan, make_plan
 from raceway.planning.resolve import Problem, resolve
 from raceway.plugins.formats.labelled import labelled_dataset
-from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Computed, of_result
-from raceway.points.derivatives import Columns, jacobian
+from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Columns, Computed, jacobian, of_result
 from raceway.scene.changes import key_of, with_columns, with_numbers
 from raceway.scene.scene import Scene, SceneSource, as_scene, scene_from_dict
-from raceway.storage.memory import available_bytes
+from raceway.storage.files import available_bytes
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

@@ -26,9 +26,8 @@ from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import duration
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
-from raceway.points.column_quantities import MOVING, QUANTITIES, stated_columns
+from raceway.points.column_quantities import MOVING, QUANTITIES, Columns, stated_columns
 from raceway.points.dataset import DOF, SweepStore, all_failed, block_edges, dataset, open_store, values_of
-from raceway.points.derivatives import Columns
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
 from raceway.points.function import BLOCK, Function, PointStatus, refuse_bytes
 from raceway.points.store import Row, Store, exists, written

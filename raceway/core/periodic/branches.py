@@ -10,23 +10,12 @@ from itertools import islice, pairwise
 import attrs
 import numpy as np
 
+from raceway.core.periodic import search
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Path, Problem, Solved, solve
 from raceway.core.periodic.intervals import Eliminated, forces
 from raceway.core.periodic.refinement import Refined, displacements, refine, states
-from raceway.core.periodic.search import (
-    MOST,
-    ROUGH,
-    PeriodicMotion,
-    directly,
-    full_steps,
-    guess,
-    highest_order,
-    mesh_of,
-    response,
-    standing,
-    with_multipliers,
-)
+from raceway.core.periodic.search import PeriodicMotion
 from raceway.core.ring.kernels.layout import CAGE, DAMPING, TIME_CONSTANT
 from raceway.errors import ConvergenceError
 
@@ -51,24 +40,24 @@ def _between(first: Path, second: Path, part: float) -> Path:
 
 def _by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float) -> Refined:
     """With the force growing step by step, each begun where the last two lead; twice the mesh of a direct solve."""
-    nodes = mesh_of(problem, highest_order(problem, tangent), 2)
+    nodes = search.mesh_of(problem, search.highest_order(problem, tangent), 2)
 
     def part(share: float) -> Problem:
         return attrs.evolve(problem, share=share * problem.share)
 
     share, step = 0.0, _FIRST_SHARE
-    last, before, gap = standing(problem, q, nodes), None, 1.0
+    last, before, gap = search.standing(problem, q, nodes), None, 1.0
     while share < 1.0:
         problem.watch()
         step = min(step, 1.0 - share)
         here = part(share + step)
-        first = guess(here, q, tangent, nodes) if before is None else _between(before, last, 1.0 + step / gap)
+        first = search.guess(here, q, tangent, nodes) if before is None else _between(before, last, 1.0 + step / gap)
         try:
-            solution = full_steps(here, first, ROUGH)
+            solution = search.full_steps(here, first, search.ROUGH)
         except ConvergenceError:
             step *= 0.5
             # A large mesh makes small steps dear; none leads round a fold anyway.
-            if step < (_LEAST_SHARE if len(nodes) <= MOST else 0.5 * _FIRST_SHARE):
+            if step < (_LEAST_SHARE if len(nodes) <= search.MOST else 0.5 * _FIRST_SHARE):
                 raise
             continue
         share, gap = share + step, step
@@ -141,17 +130,19 @@ def force_continuation(
     small_points : points in a row of next to no force that end it, too: there it has become a free vibration
     ConvergenceError: there is no first point.
     """
-    _, lines = response(problem, tangent)
+    _, lines = search.response(problem, tangent)
     length = max(float(np.abs(lines / problem.weight).max(initial=0.0)), 1e-12)
 
     def slope(at: Problem, path: Path) -> np.ndarray:
         return -problem.share * at.force(at.angles(path.nodes))
 
-    branch = Branch(lambda share: attrs.evolve(problem, share=share * problem.share), 1.0, length, ROUGH, MOST, slope)
+    branch = Branch(
+        lambda share: attrs.evolve(problem, share=share * problem.share), 1.0, length, search.ROUGH, search.MOST, slope
+    )
     still = attrs.evolve(problem, share=0.0)
     n, none = len(problem.free), np.empty((0, 0))
     linear = Eliminated(none, none, np.zeros((2 * n, 2 * n + 2)))
-    equilibrium = Solved(still, standing(still, q, nodes), linear, 0.0, True, 0, 0.0)
+    equilibrium = Solved(still, search.standing(still, q, nodes), linear, 0.0, True, 0, 0.0)
     first, small = branch.start(equilibrium, 0.0), 0
     try:
         for point in islice(branch.follow(first, 0.1, 2.0), POINTS):
@@ -240,10 +231,10 @@ def _from_undamped(
     still = attrs.evolve(problem, system=attrs.evolve(system, damping=skew))
     problem.watch()
     with suppress(ConvergenceError):
-        for motion in _at_full_force(still, _force_branch(still, q, tangent, nodes).crossings, ROUGH):
+        for motion in _at_full_force(still, _force_branch(still, q, tangent, nodes).crossings, search.ROUGH):
             problem.watch()
             with suppress(ConvergenceError):
-                yield refine(full_steps(problem, motion.solved.path, 1e-2 * tolerance), tolerance)
+                yield refine(search.full_steps(problem, motion.solved.path, 1e-2 * tolerance), tolerance)
 
 
 def _at_speed(problem: Problem, ratio: float) -> Problem:
@@ -266,10 +257,10 @@ def _continued_to(
     """
     far, sense = at(ratio), float(np.sign(1.0 - ratio))
     try:
-        begin = directly(far, q, tangent, ROUGH)
+        begin = search.directly(far, q, tangent, search.ROUGH)
     except ConvergenceError:
-        begin = _by_force_steps(far, q, tangent, ROUGH)
-    branch = Branch(at, abs(ratio - 1.0), begin.solved.size, ROUGH, MOST)
+        begin = _by_force_steps(far, q, tangent, search.ROUGH)
+    branch = Branch(at, abs(ratio - 1.0), begin.solved.size, search.ROUGH, search.MOST)
     points = branch.follow(branch.start(begin.solved, ratio, sense), 0.1, 1.0)
     for before, after in pairwise(islice(points, POINTS)):
         if (after.parameter - 1.0) * sense >= 0.0:
@@ -303,16 +294,16 @@ def chosen(
     problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, direct: PeriodicMotion | None
 ) -> PeriodicMotion:
     """The motion that is taken, of all that the branch from rest and Newton's iteration lead to."""
-    highest = highest_order(problem, tangent)
+    highest = search.highest_order(problem, tangent)
     failure, branch = None, _ForceBranch()
     try:
-        branch = _force_branch(problem, q, tangent, mesh_of(problem, highest))
+        branch = _force_branch(problem, q, tangent, search.mesh_of(problem, highest))
     except ConvergenceError as why:
         failure = why
     motions: list[PeriodicMotion] = []
     for candidate in _at_full_force(problem, branch.crossings, tolerance):
         if not any(_alike(candidate, motion.refined) for motion in motions):
-            motions.append(with_multipliers(candidate, highest, "from rest"))
+            motions.append(search.with_multipliers(candidate, highest, "from rest"))
     fold = None if branch.reaches else branch.largest
     if direct is not None:
         # Where both ways lead to motion motion, the shorter motion is told.
@@ -323,14 +314,14 @@ def chosen(
             motions.append(attrs.evolve(direct, fold=fold))
     if not motions:
         try:
-            motions = [with_multipliers(_by_force_steps(problem, q, tangent, tolerance), highest, "from rest")]
+            motions = [search.with_multipliers(_by_force_steps(problem, q, tangent, tolerance), highest, "from rest")]
         except ConvergenceError:
             if failure is not None:
                 raise failure from None
     if all(motion.floquet.verdict == "unstable" for motion in motions):
-        for candidate in _from_undamped(problem, q, tangent, mesh_of(problem, highest), tolerance):
+        for candidate in _from_undamped(problem, q, tangent, search.mesh_of(problem, highest), tolerance):
             if not any(_alike(candidate, other_motion.refined) for other_motion in motions):
-                motions.append(with_multipliers(candidate, highest, "from no damping", fold))
+                motions.append(search.with_multipliers(candidate, highest, "from no damping", fold))
     if (
         fold is not None
         and problem.system.scalars[CAGE] == 0.0
@@ -338,7 +329,7 @@ def chosen(
     ):
         homotopy = _by_homotopy(problem, q, tangent, tolerance, not motions)
         if homotopy is not None and not any(_alike(homotopy[0], other_motion.refined) for other_motion in motions):
-            motions.append(with_multipliers(homotopy[0], highest, homotopy[1], fold))
+            motions.append(search.with_multipliers(homotopy[0], highest, homotopy[1], fold))
     if not motions:
         back = "where its branch turns back (an internal resonance)"
         end = back if branch.folds else "beyond which it could not be followed"

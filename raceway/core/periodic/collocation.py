@@ -8,24 +8,8 @@ from functools import cache
 import attrs
 import numpy as np
 
+from raceway.core.periodic import newton
 from raceway.core.periodic.intervals import Eliminated, Equations, Mesh, Samples, forces
-from raceway.core.periodic.newton import (
-    BALLS_FAILED,
-    CORRECTION,
-    REPORT,
-    ROUNDING,
-    SHORTENED,
-    SINGULAR,
-    SIZE,
-    SOLVED,
-    STALLED,
-    SWEEPS,
-    WORST_IMBALANCE,
-    Closure,
-    Limits,
-    newton,
-    renew_rates,
-)
 from raceway.core.periodic.turn import GaussRule, Symmetry, gauss_rule
 from raceway.core.ring.orbit import States, responses
 from raceway.core.ring.system import System
@@ -182,8 +166,8 @@ def renew(problem: Problem, path: Path, solved: bool) -> None:
     """
     rate_columns = problem.system.rated_columns
     columns = np.array(problem.system.rated_columns)
-    closure, path_rate = Closure(problem.closing, problem.symmetry.order, columns), path.rate.copy()
-    renew_rates(problem.mesh(path.nodes), closure, problem.speed, path.ball, path_rate)
+    closure, path_rate = newton.Closure(problem.closing, problem.symmetry.order, columns), path.rate.copy()
+    newton.renew_rates(problem.mesh(path.nodes), closure, problem.speed, path.ball, path_rate)
     rates = path_rate[:, :, columns]
     if solved:
         old = path.rate[:, :, rate_columns]
@@ -285,7 +269,7 @@ class Solved:
 
         Much of a motion of picometres.
         """
-        displacement = ROUNDING * float(np.abs(self.path.q / self.problem.weight).max())
+        displacement = newton.ROUNDING * float(np.abs(self.path.q / self.problem.weight).max())
         return max(displacement, self.correction) / max(self.size, 1e-300)
 
 
@@ -335,11 +319,13 @@ def linearised(problem: Problem, path: Path) -> Eliminated:
     """About a path, whose arrays a step of Newton's method moves then."""
     elimination, closure = (
         problem.eliminated(path.nodes),
-        Closure(problem.closing, problem.symmetry.order, np.empty(0, dtype=np.int64)),
+        newton.Closure(problem.closing, problem.symmetry.order, np.empty(0, dtype=np.int64)),
     )
-    samples, once = path.samples(problem.push(path.nodes)), Limits(0.0, 0.0, 1, 0)
-    status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, once, elimination, np.zeros(REPORT))
-    if status == BALLS_FAILED:
+    samples, once = path.samples(problem.push(path.nodes)), newton.Limits(0.0, 0.0, 1, 0)
+    status = newton.newton(
+        problem.equations, closure, problem.mesh(path.nodes), samples, once, elimination, np.zeros(newton.REPORT)
+    )
+    if status == newton.BALLS_FAILED:
         raise ConvergenceError("the balls have no equilibrium between the races", {"q": path.q[0].copy()})
     return elimination
 
@@ -348,28 +334,28 @@ def newton_iteration(
     problem: Problem, path: Path, tolerance: float, patience: int, limit: int, rate_columns: np.ndarray
 ) -> Solved:
     """The compiled iteration; ``rate_columns``: columns of the balls whose rates are put in after every sweep."""
-    elimination, report = problem.eliminated(path.nodes), np.zeros(REPORT)
+    elimination, report = problem.eliminated(path.nodes), np.zeros(newton.REPORT)
     q, v, a, ball, rate = path.q.copy(), path.v.copy(), path.a.copy(), path.ball.copy(), path.rate.copy()
     solution = attrs.evolve(path, q=q, v=v, a=a, ball=ball, rate=rate)
-    closure = Closure(problem.closing, problem.symmetry.order, rate_columns)
-    limits = Limits(tolerance, problem.system.force_rounding(path.q[0]), limit, patience)
+    closure = newton.Closure(problem.closing, problem.symmetry.order, rate_columns)
+    limits = newton.Limits(tolerance, problem.system.force_rounding(path.q[0]), limit, patience)
     samples = solution.samples(problem.push(path.nodes))
-    status = newton(problem.equations, closure, problem.mesh(path.nodes), samples, limits, elimination, report)
-    if status != SOLVED:
-        why = {STALLED: "the iteration stalls", SINGULAR: "the motion is singular"}.get(
+    status = newton.newton(problem.equations, closure, problem.mesh(path.nodes), samples, limits, elimination, report)
+    if status != newton.SOLVED:
+        why = {newton.STALLED: "the iteration stalls", newton.SINGULAR: "the motion is singular"}.get(
             status, "the balls have no equilibrium between the races"
         )
         raise ConvergenceError(
-            f"no periodic motion found near the first guess: {why} after {int(report[SWEEPS])} iterations, imbalance "
-            f"{report[WORST_IMBALANCE]:.2g} N",
+            f"no periodic motion found near the first guess: {why} after {int(report[newton.SWEEPS])} iterations, imbalance "
+            f"{report[newton.WORST_IMBALANCE]:.2g} N",
             {"q": q[0] if np.isfinite(q[0]).all() else path.q[0].copy()},
         )
     return Solved(
         problem,
         solution,
         elimination,
-        float(report[SIZE]),
-        report[SHORTENED] == 0.0,
-        int(report[SWEEPS]),
-        float(report[CORRECTION]),
+        float(report[newton.SIZE]),
+        report[newton.SHORTENED] == 0.0,
+        int(report[newton.SWEEPS]),
+        float(report[newton.CORRECTION]),
     )

@@ -8,21 +8,7 @@ import numpy as np
 from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
-from raceway.core.periodic.intervals import (
-    CHANGE,
-    ELIMINATED,
-    EQUATIONS,
-    FORCE,
-    IMBALANCE,
-    INDICES,
-    MESH,
-    SAMPLES,
-    Change,
-    condense_interval,
-    differentiate,
-    local_arrays,
-    spread,
-)
+from raceway.core.periodic import intervals
 from raceway.core.ring.elimination import copy_cube, eliminate
 from raceway.core.signatures import CUBE, MATRIX, VECTOR, record
 
@@ -62,13 +48,13 @@ class Limits(NamedTuple):
     patience: int
 
 
-CLOSURE = record(Closure, MATRIX, INDICES, INDICES)
+CLOSURE = record(Closure, MATRIX, intervals.INDICES, intervals.INDICES)
 
 
 LIMITS = record(Limits, float64, float64, int64, int64)
 
 
-@jit(void(SAMPLES, CHANGE, float64))
+@jit(void(intervals.SAMPLES, intervals.CHANGE, float64))
 def _move(samples, change, factor):
     """Add a part of a change to a path."""
     for k in range(samples.q.shape[0]):
@@ -80,7 +66,7 @@ def _move(samples, change, factor):
             samples.a[k, c] += factor * change.a[k, c]
 
 
-@jit(boolean(EQUATIONS, MATRIX, MATRIX, SAMPLES, MATRIX, VECTOR))
+@jit(boolean(intervals.EQUATIONS, MATRIX, MATRIX, intervals.SAMPLES, MATRIX, VECTOR))
 def _first_state(equations, rotation, span_transfer, samples, close, first):
     """first (2 n,): correction of the state at the start with which the span closes; False where it has none."""
     free = equations.free
@@ -98,7 +84,7 @@ def _first_state(equations, rotation, span_transfer, samples, close, first):
     return True
 
 
-@jit(types.UniTuple(float64, 3)(VECTOR, SAMPLES, CHANGE))
+@jit(types.UniTuple(float64, 3)(VECTOR, intervals.SAMPLES, intervals.CHANGE))
 def _sizes(weight, samples, change):
     """Largest correction of a displacement, derivative by the angle, and displacement [m]; tilts as lengths."""
     correction, size, displacement = 0.0, 0.0, 0.0
@@ -110,7 +96,7 @@ def _sizes(weight, samples, change):
     return correction, size, displacement
 
 
-@jit(void(MESH, CLOSURE, float64, CUBE, CUBE), allocates=True)
+@jit(void(intervals.MESH, CLOSURE, float64, CUBE, CUBE), allocates=True)
 def renew_rates(mesh, closure, speed, ball, rate):
     """rate (m s, Z, c) [m/s] of the columns of ball (m s, Z, c) that have one: two samples of the next span follow at each end."""
     nodes, rate_columns, order = mesh.nodes, closure.rated, closure.order
@@ -128,26 +114,33 @@ def renew_rates(mesh, closure, speed, ball, rate):
                 # Ball b stands one span later where ball order[b] stood.
                 more[m * s + 2 + k, b, c] = ball[k, order[b], rate_columns[c]]
                 more[k, order[b], c] = ball[m * s - 2 + k, b, rate_columns[c]]
-    differentiate(longer, mesh.rule[2 * s + 2], speed, more, most)
+    intervals.differentiate(longer, mesh.rule[2 * s + 2], speed, more, most)
     for k in range(m * s):
         for b in range(z):
             for c in range(rate_columns.size):
                 rate[k, b, rate_columns[c]] = most[k + 2, b, c]
 
 
-@jit(int64(EQUATIONS, CLOSURE, MESH, SAMPLES, LIMITS, ELIMINATED, VECTOR), allocates=True)
+@jit(
+    int64(intervals.EQUATIONS, CLOSURE, intervals.MESH, intervals.SAMPLES, LIMITS, intervals.ELIMINATED, VECTOR),
+    allocates=True,
+)
 def newton(equations, closure, mesh, samples, limits, elimination, report):
     """Move the samples, but push and slope, onto the periodic motion."""
     m, n = mesh.nodes.size - 1, equations.free.size
     scratch, safe = np.zeros(3), samples.ball.copy()
-    change = Change(np.zeros_like(samples.q), np.zeros_like(samples.v), np.zeros_like(samples.a))
-    close, first, local = np.empty((2 * n, 2 * n + 1)), np.empty(2 * n), local_arrays(equations, mesh)
+    change = intervals.Change(np.zeros_like(samples.q), np.zeros_like(samples.v), np.zeros_like(samples.a))
+    close, first, local = np.empty((2 * n, 2 * n + 1)), np.empty(2 * n), intervals.local_arrays(equations, mesh)
     factor, worst, halvings, fine = 1.0, np.inf, 0, 0
     for sweep in range(1, limits.sweeps + 1):
         report[SWEEPS] = sweep
-        success = condense_interval(equations, mesh, samples, elimination, scratch, local)
+        success = intervals.condense_interval(equations, mesh, samples, elimination, scratch, local)
         # The accelerations of a first guess are rough: its imbalance tells nothing.
-        if success < m or (sweep > 2 and scratch[IMBALANCE] > 2.0 * worst and scratch[IMBALANCE] > 1e-9 * scratch[FORCE]):
+        if success < m or (
+            sweep > 2
+            and scratch[intervals.IMBALANCE] > 2.0 * worst
+            and scratch[intervals.IMBALANCE] > 1e-9 * scratch[intervals.FORCE]
+        ):
             report[SHORTENED] = 1.0
             halvings += 1
             if sweep == 1 or halvings > limits.patience:
@@ -156,11 +149,11 @@ def newton(equations, closure, mesh, samples, limits, elimination, report):
             _move(samples, change, -factor)
             copy_cube(safe, samples.ball)
             continue
-        worst, halvings = scratch[IMBALANCE], 0
+        worst, halvings = scratch[intervals.IMBALANCE], 0
         report[WORST_IMBALANCE] = worst
         if not _first_state(equations, closure.rotation, elimination.span_transfer, samples, close, first):
             return SINGULAR
-        spread(equations.free, elimination, first, 0.0, change)
+        intervals.spread(equations.free, elimination, first, 0.0, change)
         if sweep > 1:
             factor = min(1.0, 2.0 * factor)
         _move(samples, change, factor)

@@ -25,28 +25,8 @@ import numpy as np
 from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
+from raceway.core.periodic import fourier
 from raceway.core.periodic.extremes import force_extremes
-from raceway.core.periodic.fourier import (
-    LEVEL,
-    NOT_SOLVED,
-    NUMBERS,
-    SOLVED,
-    TURNING,
-    UNRESOLVED,
-    Level,
-    Numbers,
-    at_twice_the_angles,
-    ball_rates,
-    circulants,
-    first_guess,
-    force_line,
-    harmonic_lines,
-    line_difference,
-    orbit_imbalances,
-    orbit_jacobian,
-    stiffness_change,
-    turn_vector,
-)
 from raceway.core.periodic.monodromy import span_transfer
 from raceway.core.ring.elimination import copy_matrix, solve
 from raceway.core.ring.equilibria import KERNELS, POINTS, STATES
@@ -89,13 +69,16 @@ ORBITS = record(
 )
 
 
-@jit(types.Tuple((int64, float64, LEVEL))(KERNELS, LINEAR, TURNING, NUMBERS, MATRIX, MATRIX, MATRIX), allocates=True)
+@jit(
+    types.Tuple((int64, float64, fourier.LEVEL))(KERNELS, LINEAR, fourier.TURNING, fourier.NUMBERS, MATRIX, MATRIX, MATRIX),
+    allocates=True,
+)
 def _orbit(kernels, linear, turning, numbers, K, ball, work):
     """Status, change of the 1x line by the last doubling, and samples of the orbit about an equilibrium with the tangent K."""
     spans, dofs = int(np.round(2.0 * np.pi / turning.span)), np.flatnonzero(linear.free > 0.0)
     d = dofs.size
     push, line, before, mean, error = np.empty((2, 5)), np.empty(10), np.zeros(10), np.empty(5), np.inf
-    force_line(turning, numbers, push, mean)
+    fourier.force_line(turning, numbers, push, mean)
     # The 1x line of M q'' + C q' + (K + S) q = F
     A, speed = np.zeros((10, 11)), numbers.speed
     for i in range(5):
@@ -114,38 +97,43 @@ def _orbit(kernels, linear, turning, numbers, K, ball, work):
     for i in range(10):
         line[i] = A[i, 10]
     n, u = turning.least, np.empty((turning.least, 5))
-    first_guess(numbers.centre, line, turning, u)
+    fourier.first_guess(numbers.centre, line, turning, u)
     while True:
         start, dense = u.copy(), n * d <= _DENSE
         level = _level(u, ball, spans, turning.span, dense, d)
         status, step, _ = _solve_orbit(kernels, turning, numbers, level, work, dofs)
-        if status != SOLVED and not dense and n * d <= 4 * _DENSE:
+        if status != fourier.SOLVED and not dense and n * d <= 4 * _DENSE:
             copy_matrix(start, u)
             level = _level(u, ball, spans, turning.span, True, d)
             status, step, _ = _solve_orbit(kernels, turning, numbers, level, work, dofs)
-        if status != SOLVED:
+        if status != fourier.SOLVED:
             break
-        harmonic_lines(level.u, turning.sense, mean, line)
-        error = max(line_difference(line, before), step)
+        fourier.harmonic_lines(level.u, turning.sense, mean, line)
+        error = max(fourier.line_difference(line, before), step)
         if error <= turning.tolerance:
             break
         before[:] = line
-        if 2 * n > turning.most or stiffness_change(level.A0) > _WILD:
-            status = UNRESOLVED
+        if 2 * n > turning.most or fourier.stiffness_change(level.A0) > _WILD:
+            status = fourier.UNRESOLVED
             break
         u = np.empty((2 * n, 5))
-        at_twice_the_angles(level.u, u)
+        fourier.at_twice_the_angles(level.u, u)
         n *= 2
     return status, error, level
 
 
-@jit(void(TURNING, NUMBERS, LEVEL, int64, float64, int64, ORBITS), allocates=True)
+@jit(void(fourier.TURNING, fourier.NUMBERS, fourier.LEVEL, int64, float64, int64, ORBITS), allocates=True)
 def _report(turning, numbers, level, status, error, p, out):
     """One point's answer."""
     push, force = np.empty((2, 5)), np.empty(5)
-    force_line(turning, numbers, push, force)
-    harmonic_lines(level.u, turning.sense, out.mean[p], out.line[p])
-    out.status[p], out.error[p], out.samples[p], out.change[p] = status, error, level.u.shape[0], stiffness_change(level.A0)
+    fourier.force_line(turning, numbers, push, force)
+    fourier.harmonic_lines(level.u, turning.sense, out.mean[p], out.line[p])
+    out.status[p], out.error[p], out.samples[p], out.change[p] = (
+        status,
+        error,
+        level.u.shape[0],
+        fourier.stiffness_change(level.A0),
+    )
     out.span[p] = turning.span
     # Rms of what is neither mean nor 1x, over that of 1x, radially
     mean = out.mean[p]
@@ -166,7 +154,7 @@ def _report(turning, numbers, level, status, error, p, out):
         out.force[p, i], out.force[p, 5 + i] = push[0, i], push[1, i]
 
 
-@jit(void(KERNELS, LINEAR, POINTS, STATES, TURNING, ORBITS), allocates=True, releases=True)
+@jit(void(KERNELS, LINEAR, POINTS, STATES, fourier.TURNING, ORBITS), allocates=True, releases=True)
 def orbits(kernels, linear, points, states, turning, out):
     """The steady orbit of every point whose equilibrium in ``states`` has the status 0."""
     z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
@@ -178,20 +166,23 @@ def orbits(kernels, linear, points, states, turning, out):
         numbers = _orbit_numbers(linear, points, states, turning, p, weight)
         status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[p], states.ball[p], work)
         _report(turning, numbers, level, status, error, p, out)
-        if status == SOLVED and out.transfer.shape[1] > 0:
+        if status == fourier.SOLVED and out.transfer.shape[1] > 0:
             mass = numbers.speed**2 * numbers.mass
             if not span_transfer(level.A0, level.A1, mass, dofs, turning.span, out.transfer[p]):
-                out.status[p] = NOT_SOLVED
+                out.status[p] = fourier.NOT_SOLVED
 
 
-@jit(types.Tuple((int64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, MATRIX, int64[::1]), allocates=True)
+@jit(
+    types.Tuple((int64, float64))(KERNELS, fourier.TURNING, fourier.NUMBERS, fourier.LEVEL, MATRIX, MATRIX, int64[::1]),
+    allocates=True,
+)
 def _by_chords(kernels, turning, numbers, level, inverse, work, dofs):
     """Status and last step over the motion, from a neighbour's motion in a level with the inverse of its derivatives."""
     n, d, before = level.u.shape[0], dofs.size, 0.0
     right = np.empty(n * d)
     for count in range(4 * _STEPS):
-        if not orbit_imbalances(kernels, turning, numbers, level, work):
-            return NOT_SOLVED, np.inf
+        if not fourier.orbit_imbalances(kernels, turning, numbers, level, work):
+            return fourier.NOT_SOLVED, np.inf
         for j in range(n):
             for a in range(d):
                 right[j * d + a] = -level.r[j, dofs[a]]
@@ -204,32 +195,32 @@ def _by_chords(kernels, turning, numbers, level, inverse, work, dofs):
             level.r[row // d, dofs[row % d]] = total
         step, size = _apply_step(level, turning, numbers)
         if not step < 1e-2:
-            return NOT_SOLVED, np.inf
+            return fourier.NOT_SOLVED, np.inf
         if numbers.damped:
-            ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
+            fourier.ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
         # What is left is the last step times the rate at which steps fall.
         left = step if count == 0 else min(step, step * step / before)
         converged = left <= _LEFT * size or (count > 0 and step <= _ROUNDED * size and step > 0.5 * before)
         if converged and (count > 2 or not numbers.damped):
-            return SOLVED, step / max(size, 1e-300)
+            return fourier.SOLVED, step / max(size, 1e-300)
         before = step
-    return NOT_SOLVED, np.inf
+    return fourier.NOT_SOLVED, np.inf
 
 
-@jit(void(KERNELS, LINEAR, POINTS, STATES, TURNING, ORBITS), allocates=True, releases=True)
+@jit(void(KERNELS, LINEAR, POINTS, STATES, fourier.TURNING, ORBITS), allocates=True, releases=True)
 def neighbours(kernels, linear, points, states, turning, out):
     """The same of points next to the first one: its samples, and steps by the derivatives of its imbalance."""
     z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
     work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
-    out.status[:] = NOT_SOLVED
+    out.status[:] = fourier.NOT_SOLVED
     numbers = _orbit_numbers(linear, points, states, turning, 0, weight)
     status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[0], states.ball[0], work)
     n, d = level.u.shape[0], dofs.size
-    if status != SOLVED or n * d > 4 * _DENSE:
+    if status != fourier.SOLVED or n * d > 4 * _DENSE:
         return
     _report(turning, numbers, level, status, error, 0, out)
     inverse, J = np.empty((n * d, n * d)), np.zeros((n * d, 2 * n * d))
-    orbit_jacobian(level, numbers.mass, numbers.speed, dofs, J)
+    fourier.orbit_jacobian(level, numbers.mass, numbers.speed, dofs, J)
     for row in range(n * d):
         J[row, n * d + row] = 1.0
     if not solve(J):
@@ -243,7 +234,7 @@ def neighbours(kernels, linear, points, states, turning, out):
         for i in range(5):
             shift[i] = states.q[p, i] - states.q[0, i]
         for j in range(n):  # along with the equilibrium
-            turn_vector(-turning.sense * turning.span * j / n, shift, answer)
+            fourier.turn_vector(-turning.sense * turning.span * j / n, shift, answer)
             for i in range(5):
                 level.u[j, i] = u[j, i] + answer[i]
         level.ball[:], level.ball_rate[:] = ball, rate
@@ -251,11 +242,11 @@ def neighbours(kernels, linear, points, states, turning, out):
         _report(turning, numbers, level, status, error, p, out)
 
 
-@jit(boolean(LEVEL, VECTOR, float64, int64[::1]))
+@jit(boolean(fourier.LEVEL, VECTOR, float64, int64[::1]))
 def _orbit_step(level, mass, speed, dofs):
     """u of all samples by Newton's method; False where the matrix is singular."""
     n, d, J = level.u.shape[0], dofs.size, level.J
-    orbit_jacobian(level, mass, speed, dofs, J)
+    fourier.orbit_jacobian(level, mass, speed, dofs, J)
     for j in range(n):
         for a in range(d):
             J[j * d + a, n * d] = -level.r[j, dofs[a]]
@@ -269,7 +260,7 @@ def _orbit_step(level, mass, speed, dofs):
     return True
 
 
-@jit(boolean(LEVEL, VECTOR, float64, float64, int64[::1]), allocates=True)
+@jit(boolean(fourier.LEVEL, VECTOR, float64, float64, int64[::1]), allocates=True)
 def _harmonic_step(level, mass, speed, wave, dofs):
     """The same with the mean of A0 and A1 over the samples: each harmonic by itself.  ``wave`` : 2 pi over the span."""
     n, d = level.u.shape[0], dofs.size
@@ -305,24 +296,24 @@ def _harmonic_step(level, mass, speed, wave, dofs):
     return True
 
 
-@jit(LEVEL(MATRIX, MATRIX, int64, float64, boolean, int64), allocates=True)
+@jit(fourier.LEVEL(MATRIX, MATRIX, int64, float64, boolean, int64), allocates=True)
 def _level(u, ball, spans, span, dense, d):
     """Arrays for the samples u (n, 5), balls beginning at their places (Z, b) of the equilibrium."""
     n, (z, columns) = u.shape[0], ball.shape
-    level = Level(
+    level = fourier.Level(
         u, np.empty((n, 5)), np.empty((n, 5)), np.empty((n, 5)), np.empty((n, 5, 5)), np.empty((n, 5, 5)),
         np.empty((n, z, columns)), np.zeros((n, z, columns)), np.empty((n, 2 * z)), np.empty(n), np.empty(n), np.empty(2 * n * spans),
         np.zeros((n * d, n * d + 1) if dense else (1, 2)),
     )  # fmt: skip
-    circulants(n, span, level.d1, level.d2)
-    circulants(n * spans, 2.0 * np.pi, level.turn[: n * spans], np.empty(n * spans))
+    fourier.circulants(n, span, level.d1, level.d2)
+    fourier.circulants(n * spans, 2.0 * np.pi, level.turn[: n * spans], np.empty(n * spans))
     level.turn[n * spans :] = level.turn[: n * spans]
     for j in range(n):
         copy_matrix(ball, level.ball[j])
     return level
 
 
-@jit(types.UniTuple(float64, 2)(LEVEL, TURNING, NUMBERS))
+@jit(types.UniTuple(float64, 2)(fourier.LEVEL, fourier.TURNING, fourier.NUMBERS))
 def _apply_step(level, turning, numbers):
     """Add the step in r to u; size of the step, and of the motion about the equilibrium."""
     centre, weight = numbers.centre, numbers.weight
@@ -339,38 +330,41 @@ def _apply_step(level, turning, numbers):
     return step, size
 
 
-@jit(types.Tuple((int64, float64, float64))(KERNELS, TURNING, NUMBERS, LEVEL, MATRIX, int64[::1]), allocates=True)
+@jit(
+    types.Tuple((int64, float64, float64))(KERNELS, fourier.TURNING, fourier.NUMBERS, fourier.LEVEL, MATRIX, int64[::1]),
+    allocates=True,
+)
 def _solve_orbit(kernels, turning, numbers, level, work, dofs):
     """Status, last step over the motion, and the motion's size [m], of the orbit with a level's samples."""
     dense, before, size = level.J.shape[0] > 1, np.inf, 0.0
     wave = 2.0 * np.pi / turning.span
     for count in range(_STEPS if dense else 4 * _STEPS):
-        if not orbit_imbalances(kernels, turning, numbers, level, work):
-            return NOT_SOLVED, np.inf, size
+        if not fourier.orbit_imbalances(kernels, turning, numbers, level, work):
+            return fourier.NOT_SOLVED, np.inf, size
         if dense:
             fine = _orbit_step(level, numbers.mass, numbers.speed, dofs)
         else:
             fine = _harmonic_step(level, numbers.mass, numbers.speed, wave, dofs)
         step, size = _apply_step(level, turning, numbers)
         if not fine or not step < 1e-2 or not size < 1e-2:
-            return NOT_SOLVED, np.inf, size
+            return fourier.NOT_SOLVED, np.inf, size
         if numbers.damped:
-            ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
+            fourier.ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
         converged = step <= _CONVERGED * size or (step <= _ROUNDED * size and step > 0.5 * before)
         if converged and (count > 2 or not numbers.damped):
-            return SOLVED, step / max(size, 1e-300), size
+            return fourier.SOLVED, step / max(size, 1e-300), size
         before = step
-    return NOT_SOLVED, np.inf, size
+    return fourier.NOT_SOLVED, np.inf, size
 
 
-@jit(NUMBERS(LINEAR, POINTS, STATES, TURNING, int64, VECTOR), allocates=True)
+@jit(fourier.NUMBERS(LINEAR, POINTS, STATES, fourier.TURNING, int64, VECTOR), allocates=True)
 def _orbit_numbers(linear, points, states, turning, p, weight):
     """Of one point; ``weight`` is filled in."""
     constants = Constants(points.scalars[p], points.table[p])
     weight[:3] = 1.0
     weight[3] = weight[4] = constants.scalars[TILT_ARM]
     damping = constants.scalars[DAMPING] != 0.0 or constants.scalars[TIME_CONSTANT] != 0.0
-    return Numbers(
+    return fourier.Numbers(
         constants, points.params[p], points.load[p], turning.mass[p], turning.damping[p], points.shaft[p], turning.speed[p],
         turning.params[p], damping, states.q[p], weight,
     )  # fmt: skip

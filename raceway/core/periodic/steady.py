@@ -7,23 +7,12 @@ from collections.abc import Callable, Sequence
 import attrs
 import numpy as np
 
+from raceway.core.periodic import search
 from raceway.core.periodic.collocation import Problem, Solved, solve
 from raceway.core.periodic.floquet import Floquet
 from raceway.core.periodic.intervals import forces
 from raceway.core.periodic.refinement import displacements, record, refine, states
-from raceway.core.periodic.search import (
-    HIGHEST,
-    Neighbour,
-    PeriodicMotion,
-    Recorded,
-    can_continue,
-    directly,
-    full_steps,
-    highest_order,
-    mesh_of,
-    problem_of,
-    with_multipliers,
-)
+from raceway.core.periodic.search import Neighbour, PeriodicMotion, Recorded
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
 from raceway.core.ring.orbit import Orbit, States, responses, steady_orbit
@@ -127,7 +116,7 @@ def steady(
     system = surrogate(ring)
     speed = 2.0 * np.pi / (schedule.dt * schedule.steps_per_turn)
     q, tangent = static_equilibrium(system.without(CAGE), start)
-    problem = problem_of(system, speed, q, symmetric)
+    problem = search.problem_of(system, speed, q, symmetric)
     if system.scalars[CAGE] != 0.0 and not problem.symmetry.pitch:
         why = (
             "the ball-pass frequency of orbiting balls differs from that of the force, so that no motion repeats every turn; only a "
@@ -236,24 +225,24 @@ def starting_orbit(
     on any motion.
     """
     tangent = system.evaluate(q).stiffness
-    problem = problem_of(system, 2.0 * np.pi / period, q)
-    if not can_continue(problem, q, tangent):
+    problem = search.problem_of(system, 2.0 * np.pi / period, q)
+    if not search.can_continue(problem, q, tangent):
         return None
     if watch is not None:
         problem = attrs.evolve(problem, watch=watch)
     try:
         motion = find(problem, q, tangent, _TOLERANCE)
     except ConvergenceError:
-        orbit, highest = steady_orbit(system, period, q, _SAMPLES), highest_order(problem, tangent)
+        orbit, highest = steady_orbit(system, period, q, _SAMPLES), search.highest_order(problem, tangent)
         try:
             # The motion of Fourier collocation, solved for once more on a mesh.
             record = Recorded(orbit.period, orbit.displacement, orbit.velocity, orbit.acceleration)
-            path = record.first_guess(problem, np.zeros(5), np.zeros((5, 5)), mesh_of(problem, highest))
-            motion = with_multipliers(
+            path = record.first_guess(problem, np.zeros(5), np.zeros((5, 5)), search.mesh_of(problem, highest))
+            motion = search.with_multipliers(
                 refine(solve(problem, path, 1e-2 * _TOLERANCE), _TOLERANCE), highest, "by Fourier collocation"
             )
         except ConvergenceError:
-            if highest <= HIGHEST:
+            if highest <= search.HIGHEST:
                 raise
             return _StartingOrbit(orbit)  # so slow that no mesh holds the vibrations that it has none of
     warnings = _coexistence(motion.all)
@@ -312,7 +301,7 @@ def find(
     ConvergenceError
         No periodic motion found, with what was tried.
     """
-    highest = highest_order(problem, tangent)
+    highest = search.highest_order(problem, tangent)
     if near is not None and (stay or near.near_linear):
         followed = _continued(problem, q, tangent, tolerance, highest, near)
         # Far from the linear response there may be other motions: then the search without a neighbour decides.
@@ -320,7 +309,7 @@ def find(
             return followed
     direct = None
     try:
-        direct = with_multipliers(directly(problem, q, tangent, tolerance), highest, "directly")
+        direct = search.with_multipliers(search.directly(problem, q, tangent, tolerance), highest, "directly")
     except ConvergenceError:
         pass
     else:
@@ -328,11 +317,13 @@ def find(
             return direct
     from raceway.core.periodic.branches import chosen, grown_from_rest  # few motions need them
 
-    if not can_continue(problem, q, tangent):
+    if not search.can_continue(problem, q, tangent):
         # Each point would take seconds.
         if direct is None and stay:
             raise ConvergenceError("no motion with the period of the force was found directly", {"q": q.copy()})
-        return direct or with_multipliers(grown_from_rest(problem, q, tangent, tolerance, highest), highest, "from rest")
+        return direct or search.with_multipliers(
+            grown_from_rest(problem, q, tangent, tolerance, highest), highest, "from rest"
+        )
     return chosen(problem, q, tangent, tolerance, direct)
 
 
@@ -340,14 +331,14 @@ def _continued(
     problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, near: Neighbour | Recorded
 ) -> PeriodicMotion | None:
     """The motion that continues a neighbour, if it is close to it and not unstable."""
-    first = near.first_guess(problem, q, tangent, mesh_of(problem, highest))
+    first = near.first_guess(problem, q, tangent, search.mesh_of(problem, highest))
     if first is None:
         return None
     try:
-        solved = full_steps(problem, first, 1e-2 * tolerance)
+        solved = search.full_steps(problem, first, 1e-2 * tolerance)
         if np.abs((solved.path.q - first.q) / problem.weight).max() > _STAYS * solved.size:
             return None
-        motion = with_multipliers(refine(solved, tolerance), highest, "directly")
+        motion = search.with_multipliers(refine(solved, tolerance), highest, "directly")
     except ConvergenceError:
         return None
     return None if motion.floquet.verdict == "unstable" else motion

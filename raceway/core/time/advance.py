@@ -11,17 +11,7 @@ from raceway.core.record import Motion, OnChunk, Record, Schedule, check_start
 from raceway.core.recorder import unbounded
 from raceway.core.ring.system import System
 from raceway.core.signatures import Outer, Recording, State, Steps
-from raceway.core.time.compiled import (
-    BALLS,
-    CONTACT_FORCE,
-    COUNTERS,
-    EVALUATIONS,
-    PENETRATION,
-    REASON,
-    RESIDUAL,
-    ROWS,
-    UNBOUNDED,
-)
+from raceway.core.time import compiled
 from raceway.errors import ConvergenceError, RacewayError
 
 #: Steps after which progress is reported.
@@ -52,7 +42,7 @@ def advance(
     z = system.ball_count
     rows = np.zeros((schedule.steps // schedule.stride, 16))
     probes = np.zeros((len(rows), 2 + system.ball_columns // 2, 2 * z))
-    counters = np.zeros(COUNTERS)
+    counters = np.zeros(compiled.COUNTERS)
     motion = np.zeros((4, 5))
     motion[0], motion[1], motion[2] = start.q, start.v, start.a
     motion[3] = -system.mass @ start.a if start.net_force is None else start.net_force
@@ -83,7 +73,7 @@ def advance(
 
 def _record(recording: Recording, schedule: Schedule, final: Motion) -> Record:
     counters = recording.counters
-    count = int(counters[ROWS])
+    count = int(counters[compiled.ROWS])
     rows, probes = recording.rows[:count], recording.probes[:count]
     pairs = [part.reshape(count, -1, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)]  # positions and, with friction, slips
     return Record(
@@ -98,9 +88,9 @@ def _record(recording: Recording, schedule: Schedule, final: Motion) -> Record:
         schedule=schedule,
         counts={
             "steps": schedule.steps,
-            "evaluations": int(counters[EVALUATIONS]),
-            "max_penetration_m": float(counters[PENETRATION]),
-            "peak_contact_force_n": float(counters[CONTACT_FORCE]),
+            "evaluations": int(counters[compiled.EVALUATIONS]),
+            "max_penetration_m": float(counters[compiled.PENETRATION]),
+            "peak_contact_force_n": float(counters[compiled.CONTACT_FORCE]),
         },
     )
 
@@ -115,15 +105,15 @@ def _failure(
     system: System, schedule: Schedule, step: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray
 ) -> ConvergenceError:
     when, state = schedule.when(step - schedule.first), _state(schedule, step, motion, ball)
-    if counters[REASON] == UNBOUNDED:
+    if counters[compiled.REASON] == compiled.UNBOUNDED:
         limit = 0.0
         if np.isfinite(motion).all():
             now = system.evaluate(motion[0])
             limit = system.damped_time_step(now.stiffness, now.damping)
         return unbounded(schedule, when, limit, state)
-    if counters[REASON] == BALLS:
+    if counters[compiled.REASON] == compiled.BALLS:
         return ConvergenceError(f"the balls have no equilibrium between the races {when}", state)
-    residual = counters[RESIDUAL]
+    residual = counters[compiled.RESIDUAL]
     remainder = f"residual {residual:.3g} N" if np.isfinite(residual) else "forces beyond all numbers"
     return ConvergenceError(
         f"the iteration of a step did not converge {when}, {remainder}. Use more `integrator.steps_per_turn`.", state

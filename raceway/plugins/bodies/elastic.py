@@ -17,7 +17,7 @@ from raceway.planning.parts import Balls, Decisions, PlannedMotion
 from raceway.planning.resolve import Problem
 from raceway.plugins.bodies.condensed import section_cost
 from raceway.plugins.bodies.mesh import mesh_faults, predicted_mesh, refined, unrefined
-from raceway.storage.memory import allowed_bytes
+from raceway.storage.files import allowed_bytes
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

@@ -4,26 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from raceway.answers.quantities import (
-    AZIMUTH,
-    BALL_LOAD,
-    C_ERROR,
-    CONTACT_ANGLE,
-    CONTACT_FORCE,
-    DISPLACEMENT,
-    ENDS,
-    FORCE,
-    K_ERROR,
-    MOTION,
-    SPEED,
-    STIFFNESS,
-    TIME,
-    Z_IMAG,
-    Z_REAL,
-    C,
-    K,
-    Quantity,
-)  # fmt: skip
+from raceway.answers import quantities
+from raceway.answers.quantities import Quantity
 from raceway.errors import RacewayError, extra
 from raceway.storage.tables import Tables
 
@@ -61,27 +43,46 @@ def labelled(result: RunResult) -> Any:
     state, z, names = result.equilibrium, result.model.system.ball_count, list(COORDINATES)
     angles = np.degrees([state.angle_inner, state.angle_outer])
     arrays: list[tuple[Quantity, object]] = [
-        (DISPLACEMENT, state.displacement),
-        (STIFFNESS, state.stiffness),
-        (BALL_LOAD, state.contact_force.reshape(2, z)),
-        (CONTACT_ANGLE, angles),
+        (quantities.DISPLACEMENT, state.displacement),
+        (quantities.STIFFNESS, state.stiffness),
+        (quantities.BALL_LOAD, state.contact_force.reshape(2, z)),
+        (quantities.CONTACT_ANGLE, angles),
     ]
     coordinates: dict[str, object] = {
         "dof": names,
         "dof2": names,
         "race": ["inner", "outer"],
         "ball": np.arange(z),
-        AZIMUTH.name: (AZIMUTH.dims, np.degrees(result.model.azimuth) % 360.0, AZIMUTH.labels),
+        quantities.AZIMUTH.name: (
+            quantities.AZIMUTH.dims,
+            np.degrees(result.model.azimuth) % 360.0,
+            quantities.AZIMUTH.labels,
+        ),
     }
     if result.simulation is not None:
         record = result.simulation.record
-        coordinates[TIME.name] = (TIME.dims, record.time, TIME.labels)
+        coordinates[quantities.TIME.name] = (quantities.TIME.dims, record.time, quantities.TIME.labels)
         loads = record.contact_force.reshape(len(record.time), 2, z)
-        arrays += [(MOTION, record.displacement), (FORCE, record.force), (CONTACT_FORCE, loads)]
+        arrays += [
+            (quantities.MOTION, record.displacement),
+            (quantities.FORCE, record.force),
+            (quantities.CONTACT_FORCE, loads),
+        ]
     if result.identification is not None:
-        numbers = ((quantity, quantity.of(result)) for quantity in (Z_REAL, Z_IMAG, SPEED, K, K_ERROR, C, C_ERROR))
+        numbers = (
+            (quantity, quantity.of(result))
+            for quantity in (
+                quantities.Z_REAL,
+                quantities.Z_IMAG,
+                quantities.SPEED,
+                quantities.K,
+                quantities.K_ERROR,
+                quantities.C,
+                quantities.C_ERROR,
+            )
+        )
         arrays += [(quantity, np.nan if value is None else value) for quantity, value in numbers]
-    ends = {quantity: quantity.of(result) for quantity in ENDS.values()}
+    ends = {quantity: quantity.of(result) for quantity in quantities.ENDS.values()}
     arrays += [(quantity, value) for quantity, value in ends.items() if value is not None]
     variables = {quantity.name: (quantity.dims, values, quantity.labels) for quantity, values in arrays}
     attributes = {"title": result.title, "warnings": "\n".join(result.warnings)}

@@ -21,10 +21,10 @@ outer loads are linear and belong to ``raceway.core.ring.system``.  Z counts the
 
 rigid_weightless   balls without mass: the two races in series
 rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential
-tangential         the same with gyroscopic moments or friction: no potential
+tangential         the same with gyroscopic moments or friction: no potential;  rolling: these at one ball
 structural         each of these on elastic rings and balls: contacts and structural compliances in series
 between            balls that act on each other through elastic rings
-layout             constants of a model, columns of ``ball``, rows of ``work``; vectors of a ball's meridian plane, its seat on the ring
+layout             constants of a model, columns of ``ball``, rows of ``work``; a ball's seat on the ring;  tensors: vectors of its meridian plane
 rollers            cylindrical rollers: line contacts cut into laminae
 impact             one mass against one contact, for the published impacts and the integrators' tests
 """

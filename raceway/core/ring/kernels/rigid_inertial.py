@@ -14,19 +14,8 @@ from numba import boolean, float64, int64, void
 from raceway.core.jit import jit
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.kernels import tensors
 from raceway.core.ring.kernels.layout import move_centres, normal_forces, offsets_of, place, ring_force, ring_tangent
-from raceway.core.ring.kernels.tensors import (
-    NOTHING,
-    TENSOR,
-    Pair,
-    Tensor,
-    less,
-    less_column,
-    less_row,
-    put_tensor,
-    row_times_adjugate,
-    times_adjugate,
-)
 from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
 
 _ITERATIONS = 200
@@ -85,10 +74,10 @@ def _approach(k, scalars, table, ball, ball_gain, ball_history, work):
     work[rows.GAP_RATE, k], work[rows.GAP_RATE, z + k] = rate_i, rate_o
 
 
-@jit(TENSOR(TENSOR, float64, float64, float64, float64), inline=True)
+@jit(tensors.TENSOR(tensors.TENSOR, float64, float64, float64, float64), inline=True)
 def _plus(t, na, nr, k, w):
     """T plus the stiffness of a contact: k along its direction n, its force over its length w across."""
-    return Tensor(
+    return tensors.Tensor(
         t.aa + (k - w) * na * na + w, t.ar + (k - w) * na * nr, t.ra + (k - w) * na * nr, t.rr + (k - w) * nr * nr + w
     )
 
@@ -116,7 +105,7 @@ def _settles(k, lo, table, ball, ball_gain, work):
     ko = -work[rows.FORCE_BY_GAP, z + k] - ball_gain * work[rows.FORCE_BY_RATE, z + k]
     by_si = 1.0 / work[LENGTH, k] if work[LENGTH, k] > 0.0 else 0.0
     wi, wo = fi * by_si, fo / work[LENGTH, z + k]
-    haa, har, _, hrr = _plus(_plus(Tensor(0.0, 0.0, 0.0, 0.0), ia, ir, ki, wi), oa, orr, ko, wo)
+    haa, har, _, hrr = _plus(_plus(tensors.Tensor(0.0, 0.0, 0.0, 0.0), ia, ir, ki, wi), oa, orr, ko, wo)
     det = haa * hrr - har * har
     if not det > 1e-14 * (haa + hrr) * (haa + hrr):
         shift = 1e-7 * (haa + hrr) + 1.0
@@ -163,37 +152,39 @@ def _condense(k, ball_gain, work):
     ki = elastic + ball_gain * viscous
     ko = -work[KEPT_BY_GAP, z + k] - ball_gain * work[KEPT_BY_RATE, z + k]
     # E by the ring's motion (elastic part), P by the ball's motion, H = P + the outer contact's.
-    wi, wo, none = fi / work[LENGTH, k], fo / work[LENGTH, z + k], Tensor(0.0, 0.0, 0.0, 0.0)
+    wi, wo, none = fi / work[LENGTH, k], fo / work[LENGTH, z + k], tensors.Tensor(0.0, 0.0, 0.0, 0.0)
     e, p, m = _plus(none, na, nr, elastic, wi), _plus(none, na, nr, ki, wi), _plus(none, na, nr, viscous, 0.0)
     h = _plus(p, oa, orr, ko, wo)
     det = h.aa * h.rr - h.ar * h.ar
     if not det > 0.0:
         return False
     inverse = 1.0 / det
-    t = times_adjugate(p, h)
-    t = Tensor(t.aa * inverse, t.ar * inverse, t.ra * inverse, t.rr * inverse)
-    stiffness, damping = less(e, t, e), less(m, t, m)
-    put_tensor(stiffness, work, STIFF, k)
-    put_tensor(damping, work, VISCOUS, k)
+    t = tensors.times_adjugate(p, h)
+    t = tensors.Tensor(t.aa * inverse, t.ar * inverse, t.ra * inverse, t.rr * inverse)
+    stiffness, damping = tensors.less(e, t, e), tensors.less(m, t, m)
+    tensors.put_tensor(stiffness, work, STIFF, k)
+    tensors.put_tensor(damping, work, VISCOUS, k)
     if work.shape[0] == rows.WORK_ROWS:
         return True
-    put_tensor(stiffness, work, rows.FORCE_BY_CENTRE, k)
-    put_tensor(damping, work, rows.FORCE_BY_SPEED, k)
+    tensors.put_tensor(stiffness, work, rows.FORCE_BY_CENTRE, k)
+    tensors.put_tensor(damping, work, rows.FORCE_BY_SPEED, k)
     # dp = -H^-1 (ki ni dw_i - ko no dw_o) + H^-1 E de;  rows g of dQ = g (...): ki ni^T H^-1 and -ko no^T H^-1.
-    gi, go = row_times_adjugate(Pair(na, nr), h), row_times_adjugate(Pair(oa, orr), h)
-    gi = Pair(ki * gi.axial * inverse, ki * gi.radial * inverse)
-    go = Pair(-ko * go.axial * inverse, -ko * go.radial * inverse)
-    work[rows.BY_AXIAL, k], work[rows.BY_RADIAL, k] = less_row(Pair(elastic * na, elastic * nr), gi, e)
-    work[rows.BY_AXIAL, z + k], work[rows.BY_RADIAL, z + k] = less_row(NOTHING, go, e)
-    work[rows.BY_AXIAL_SPEED, k], work[rows.BY_RADIAL_SPEED, k] = less_row(Pair(viscous * na, viscous * nr), gi, m)
-    work[rows.BY_AXIAL_SPEED, z + k], work[rows.BY_RADIAL_SPEED, z + k] = less_row(NOTHING, go, m)
-    ri, ro = Pair(-ki * na, -ki * nr), Pair(ko * oa, ko * orr)
+    gi, go = tensors.row_times_adjugate(tensors.Pair(na, nr), h), tensors.row_times_adjugate(tensors.Pair(oa, orr), h)
+    gi = tensors.Pair(ki * gi.axial * inverse, ki * gi.radial * inverse)
+    go = tensors.Pair(-ko * go.axial * inverse, -ko * go.radial * inverse)
+    work[rows.BY_AXIAL, k], work[rows.BY_RADIAL, k] = tensors.less_row(tensors.Pair(elastic * na, elastic * nr), gi, e)
+    work[rows.BY_AXIAL, z + k], work[rows.BY_RADIAL, z + k] = tensors.less_row(tensors.NOTHING, go, e)
+    work[rows.BY_AXIAL_SPEED, k], work[rows.BY_RADIAL_SPEED, k] = tensors.less_row(
+        tensors.Pair(viscous * na, viscous * nr), gi, m
+    )
+    work[rows.BY_AXIAL_SPEED, z + k], work[rows.BY_RADIAL_SPEED, z + k] = tensors.less_row(tensors.NOTHING, go, m)
+    ri, ro = tensors.Pair(-ki * na, -ki * nr), tensors.Pair(ko * oa, ko * orr)
     work[rows.BY_OWN, k] = -ki - gi.axial * ri.axial - gi.radial * ri.radial
     work[rows.BY_OTHER, k] = -gi.axial * ro.axial - gi.radial * ro.radial
     work[rows.BY_OTHER, z + k] = -go.axial * ri.axial - go.radial * ri.radial
     work[rows.BY_OWN, z + k] = -ko - go.axial * ro.axial - go.radial * ro.radial
-    work[rows.AXIAL_BY_SHIFT, k], work[rows.RADIAL_BY_SHIFT, k] = less_column(ri, t, ri)
-    work[rows.AXIAL_BY_SHIFT, z + k], work[rows.RADIAL_BY_SHIFT, z + k] = less_column(NOTHING, t, ro)
+    work[rows.AXIAL_BY_SHIFT, k], work[rows.RADIAL_BY_SHIFT, k] = tensors.less_column(ri, t, ri)
+    work[rows.AXIAL_BY_SHIFT, z + k], work[rows.RADIAL_BY_SHIFT, z + k] = tensors.less_column(tensors.NOTHING, t, ro)
     return True
 
 

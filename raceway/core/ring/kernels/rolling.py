@@ -120,7 +120,7 @@ def traction_within(demand, normal, limit):
 
 
 @jit(void(int64, CONTACTS, VECTOR, MATRIX), inline=True)
-def _add_gyroscopic(k, contacts, scalars, work):
+def add_gyroscopic(k, contacts, scalars, work):
     """Add what ball k's moment does to its tangential forces and to the couple on the ring's section.
 
     T = share * M / D with M = J w_R w_c sin(beta), tan(beta) = sin(a_o) / (cos(a_o) + D/d_m); the ball's spin w_R follows
@@ -268,7 +268,7 @@ BALANCE = types.NamedTuple((*(TENSOR,) * 5, PAIR), _Balance)
 
 
 @jit(BALANCE(int64, CONTACTS, MATRIX), inline=True)
-def _linear_balance(k, contacts, work):
+def linear_balance(k, contacts, work):
     """Ball k at its balance."""
     z = work.shape[1] // 2
     inner, outer = contacts
