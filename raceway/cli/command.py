@@ -16,8 +16,23 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import attrs
 import click
 
-from raceway.cli import frame
 from raceway.cli.completion import OF_KEYS, scene_keys
+from raceway.cli.frame import (
+    FILE,
+    RESULTS,
+    attempt,
+    changed_tables,
+    common,
+    has_matplotlib,
+    keeping,
+    load,
+    out_option,
+    plugin_files,
+    set_keys,
+    show,
+    show_progress,
+    tell_faults,
+)
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
 from raceway.framework.packages import named
 
@@ -27,7 +42,7 @@ if TYPE_CHECKING:
 
 Value = Any
 #: Types of options by annotation; of others, texts.
-_TYPES: dict[str, click.ParamType | type] = {"int": int, "float": float, "str": str, "str | Path": frame.FILE}
+_TYPES: dict[str, click.ParamType | type] = {"int": int, "float": float, "str": str, "str | Path": FILE}
 #: Arguments that no option stands for.
 _SHARED = ("scene", "changes", "plugins", "progress", "kept", "out", "registry", "pictures")
 
@@ -107,9 +122,9 @@ class Command(NamedTuple):
             return _perform(self, front, values)
 
         help_text = f"{_summary(front)}\n\n\b\nExample:\n" + "\n".join(f"  {line}" for line in self.example.splitlines())
-        command: Callable[..., Value] = frame.common(call)
+        command: Callable[..., Value] = common(call)
         if "plugins" in signature.parameters:
-            command = frame.plugin_files(command)
+            command = plugin_files(command)
         if self.pictures is not None:
             names, words_of_it = ("--pictures/--no-pictures", " (default)") if self.pictures else ("--pictures", "")
             command = click.option(names, is_flag=True, default=self.pictures, help=f"Draw pictures as PNG{words_of_it}.")(
@@ -117,28 +132,24 @@ class Command(NamedTuple):
             )
         if self.pictures is not None or self.folder is not None:
             title = self.named_by.upper() or "TITLE"
-            default = (
-                f"{frame.RESULTS}/{title}{self.folder}"
-                if "scene" in signature.parameters
-                else f"{frame.RESULTS}/{self.name}"
-            )
-            command = frame.out_option("nothing is written" if self.folder is None else default)(command)
+            default = f"{RESULTS}/{title}{self.folder}" if "scene" in signature.parameters else f"{RESULTS}/{self.name}"
+            command = out_option("nothing is written" if self.folder is None else default)(command)
         for parameter in reversed(params):
             text = str(parameter.annotation).removesuffix(" | None")
             kind = str(inspect.unwrap(front).__globals__.get(text, text))  # what an alias of the front's module stands for
             command = self._option(parameter, kind, words.get(parameter.name, ""))(command)
         if "scene" in signature.parameters:
             is_required = signature.parameters["scene"].default is inspect.Parameter.empty
-            scene_input = click.argument("scene", type=frame.FILE, required=is_required)
+            scene_input = click.argument("scene", type=FILE, required=is_required)
             if "scene" in self.options:
-                scene_input = click.option("--scene", type=frame.FILE, metavar="SCENE", help=_option_help(words["scene"]))
-            command = frame.set_keys(scene_input(command))
+                scene_input = click.option("--scene", type=FILE, metavar="SCENE", help=_option_help(words["scene"]))
+            command = set_keys(scene_input(command))
         for parameter in reversed(params):
             if self._about(parameter).positional:
                 empty, file = parameter.default is inspect.Parameter.empty, "Path" in str(parameter.annotation)
                 facts: dict[str, Any] = {"required": empty, "metavar": self._about(parameter).metavar}
                 facts |= {} if empty else {"default": parameter.default}
-                command = click.argument(parameter.name, type=frame.FILE if file else None, **facts)(command)
+                command = click.argument(parameter.name, type=FILE if file else None, **facts)(command)
         return click.command(self.name, short_help=self.summary, help=help_text)(command)
 
     def _about(self, parameter: inspect.Parameter) -> Option:
@@ -204,7 +215,7 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     if arguments.get("scene") is not None and not changed_by_front:
         arguments["scene"], title = _scene(about, arguments["scene"], changes, registry)
     elif changed_by_front:
-        title = str(frame.changed_tables(scene, changes, registry)[0]["title"]) if (scene := arguments.get("scene")) else ""
+        title = str(changed_tables(scene, changes, registry)[0]["title"]) if (scene := arguments.get("scene")) else ""
         arguments["changes"] = changes
     elif changes:
         raise SceneError.at("--set", changes[0], "changes a scene, but no scene is given: name one, or omit the option")
@@ -212,18 +223,18 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
         title = Path(arguments[about.named_by]).stem + "".join(title.partition("\n")[1:])
     folder = out
     if out is None and about.folder is not None:
-        folder = frame.RESULTS / (f"{slug(title)}{about.folder}" if title else about.name)
+        folder = RESULTS / (f"{slug(title)}{about.folder}" if title else about.name)
     state_folder = folder if "kept" in parameters else None
     folder = None if arguments.get("plan") else folder
-    pictures = folder is not None and pictures and frame.has_matplotlib(by_default=bool(about.pictures))
+    pictures = folder is not None and pictures and has_matplotlib(by_default=bool(about.pictures))
     if folder is not None:
         writable(folder)
-    frame.tell_faults(registry)
+    tell_faults(registry)
     further = {"plugins": plugins, "kept": state_folder, "registry": registry, "pictures": folder if pictures else None}
     arguments |= {name: value for name, value in further.items() if name in parameters}
     interruption = None
-    with frame.keeping(state_folder):
-        with frame.show_progress(about.remaining) as progress:
+    with keeping(state_folder):
+        with show_progress(about.remaining) as progress:
             if "progress" in parameters:
                 arguments["progress"] = progress
             try:
@@ -243,11 +254,9 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
                     raise
                 answer, interruption = stop.partial, stop  # what is finished is written and shown first
         files: list[str] = []
-        fault = (
-            None if folder is None else frame.attempt(lambda: answer.save(folder, pictures and interruption is None), files)
-        )
+        fault = None if folder is None else attempt(lambda: answer.save(folder, pictures and interruption is None), files)
         fault = fault or _by_flags(about, answer.failure())
-        frame.show(answer.to_dict() if as_json else {}, as_json, fault, lambda: answer.screen(files))
+        show(answer.to_dict() if as_json else {}, as_json, fault, lambda: answer.screen(files))
         if interruption is not None:
             raise interruption
     return 0 if answer.passed else 1
@@ -256,9 +265,9 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
 def _scene(about: Command, path: Path, changes: tuple[str, ...], registry: Registry) -> tuple[Value, str]:
     """The scene, or its tables where the front changes them before they make one; its title."""
     if not about.unchecked:
-        scene = frame.load(path, changes, registry)
+        scene = load(path, changes, registry)
         return scene, scene.title
-    tables, mistakes = frame.changed_tables(path, changes, registry)
+    tables, mistakes = changed_tables(path, changes, registry)
     if mistakes:
         raise SceneError(mistakes)
     return tables, str(tables["title"])

@@ -1,4 +1,4 @@
-"""The commands about plug-ins.  Part of ``raceway.cli.main``."""
+"""The commands for developers: plug-ins, caches, a first scene.  Part of ``raceway.cli.main``."""
 
 from __future__ import annotations
 

@@ -118,9 +118,11 @@ def turn_samples(plugin: Quantities, problem: Problem) -> int:
 
 def quantities_at(plugin: Quantities, points: SolvedPoints) -> dict[str, np.ndarray]:
     """Numbers (n, ...) of a plug-in by their names, or ``PluginError``."""
+    import numpy as np
+
     title, n = f"quantity '{plugin.name}'", len(points.load)
     values = {
-        name: _array(title, "compute", partial(_as_is, value))
+        name: _answer(title, "compute", partial(np.ascontiguousarray, value, dtype=float), np.ndarray)
         for name, value in _answer(title, "compute", lambda: plugin.compute(points), Mapping).items()
     }
     names = [number.name for number in plugin.numbers]
@@ -228,10 +230,6 @@ def force_params(excitation: Excitation) -> np.ndarray:
     if params.ndim != 1:
         raise PluginError(f"excitation '{excitation.name}': parameters() returned shape {params.shape}; it must be (k,)")
     return params
-
-
-def _as_is(value: T) -> T:
-    return value
 
 
 def _array(plugin: str, duty: str, call: Callable[[], object]) -> np.ndarray:

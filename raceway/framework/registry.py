@@ -392,7 +392,7 @@ class Registry:
                     self.faults.append(Fault(label, f"`{hook_name}` {reason}"))
                 elif isinstance(given, Mapping):
                     for name, place in given.items():
-                        if _is_place(name, place):
+                        if isinstance(name, str) and isinstance(place, str) and all(place.partition(":")):
                             self._enter(Entry(kind, name, place, distribution, version, source))
                         else:
                             reason = f'maps {_shown(name)} to {_shown(place)}: a name, then "module:Class"'
@@ -416,10 +416,6 @@ class Registry:
 
 def _label(source: str, distribution: str) -> str:
     return source if source == distribution else f"{source} ({distribution})"
-
-
-def _is_place(name: object, place: object) -> bool:
-    return isinstance(name, str) and isinstance(place, str) and all(place.partition(":"))
 
 
 def _fault_of(kind: str, plugin: Any) -> str:

@@ -1,4 +1,4 @@
-"""The force of a bearing with rigid rings and balls: numbers of the rings' kernels, for C.
+"""The force of a bearing with rigid rings and balls: numbers of the rings' kernels, for C, and the unit.
 
 Notes
 -----

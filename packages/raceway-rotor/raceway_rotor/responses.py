@@ -139,7 +139,9 @@ class _Balance:
             rows[-1][:, bearing.dofs] = frame
         selection = np.vstack(rows)
         force = np.zeros(rotor.ndof, dtype=complex)
-        for node, magnitude, phase in zip(*(np.atleast_1d(_plain_force(value)) for value in unbalance), strict=True):
+        # Forces of pint as numbers of their base units.
+        plain = (v.to_base_units().magnitude if hasattr(v, "to_base_units") else v for v in unbalance)
+        for node, magnitude, phase in zip(*map(np.atleast_1d, plain), strict=True):
             turning = magnitude * w**2 * np.exp(1j * phase)
             force[rotor.number_dof * int(node) : rotor.number_dof * int(node) + 2] += turning, -1j * turning
         answers = np.linalg.solve(dynamic, np.column_stack([force, selection.T]))
@@ -180,10 +182,6 @@ class _Balance:
             units = bearing.units(self.speed)
             size[block] = np.abs(motion[block] * units).max() / units
         return size
-
-
-def _plain_force(value: ArrayLike | Quantity) -> ArrayLike:
-    return value.to_base_units().magnitude if hasattr(value, "to_base_units") else value
 
 
 def run_time_response(

@@ -339,15 +339,10 @@ def chosen(
             "the motion of the ring.",
             {"q": q.copy()},
         )
-    first, *coexisting = _attractor_first(motions)
-    return attrs.evolve(first, coexisting=tuple(coexisting))
-
-
-def _attractor_first(motions: list[PeriodicMotion]) -> list[PeriodicMotion]:
-    """The same motions, that one first which is taken: the first that is not unstable, else the one that is left slowest."""
+    # Taken is the first that is not unstable, else the one that is left slowest.
     slowest = min(motions, key=lambda motion: motion.floquet.largest)
     first = next((motion for motion in motions if motion.floquet.verdict != "unstable"), slowest)
-    return [first, *(motion for motion in motions if motion is not first)]
+    return attrs.evolve(first, coexisting=tuple(motion for motion in motions if motion is not first))
 
 
 def _alike(first: Refined, second: Refined) -> bool:

@@ -1,4 +1,4 @@
-"""The periodic motions of a system: directly, from a neighbour, and along branches where these may not be all."""
+"""The periodic motions of a system near a first guess: the linear response, or a neighbour."""
 
 from __future__ import annotations
 

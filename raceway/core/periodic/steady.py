@@ -1,4 +1,4 @@
-"""From a system and an equilibrium to the record of its periodic motion."""
+"""From a system and an equilibrium to the record of its periodic motion: found directly, from a neighbour, or along branches."""
 
 from __future__ import annotations
 

@@ -16,11 +16,19 @@ from raceway.bodies.model import BuiltBearing, Told, calibration_error, untold
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.core.contact.hertz import ball_compliance
-from raceway.core.fem import structural
 from raceway.core.fem.calibration import calibrated
 from raceway.core.fem.mesh.ring_mesh import ring_shape
 from raceway.core.fem.patches.patch import RingBody, Solid
-from raceway.core.fem.structural import ElasticBodies
+from raceway.core.fem.structural import (
+    SURFACE,
+    ElasticBodies,
+    elastic_scalars,
+    elastic_system,
+    first_frequency,
+    reach,
+    ring_compliance,
+    ring_section,
+)
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.structural import condensed
 from raceway.core.ring.system import System, surrogate
@@ -66,7 +74,7 @@ def inertia_table(model: Model, equilibrium: Equilibrium) -> Tables:
         shape = ring_shape(b, inner)
         for name, seat in (("supported", seat_of(problem, inner)), ("free", "free")):
             steel = (b.rings.young, b.rings.poisson, b.rings.density)
-            tell(f"{word}_{name}", structural.first_frequency(shape, b.ball_diameter, *steel, seat))
+            tell(f"{word}_{name}", first_frequency(shape, b.ball_diameter, *steel, seat))
     z, geometry = model.system.ball_count, model.geometry
     force = equilibrium.contact_force
     held = force[:z] / geometry.offset_inner + force[z:] / geometry.offset_outer
@@ -142,7 +150,7 @@ def _elastic_bodies(problem: Problem, basis: Basis, coarser: float) -> ElasticBo
         half = float((basis.inner if inner else basis.outer).semi_axes(typical)[0])
         bulk, fine = _element_sizes(problem, shape, half)
         rings.append(
-            structural.ring_compliance(
+            ring_compliance(
                 shape,
                 b.ball_diameter,
                 b.ball_count,
@@ -155,7 +163,7 @@ def _elastic_bodies(problem: Problem, basis: Basis, coarser: float) -> ElasticBo
                 coarser * min(2.0 * fine, bulk),
             )  # fmt: skip
         )
-        size = _CALIBRATED_BULK * structural.reach(shape, b.ball_diameter)
+        size = _CALIBRATED_BULK * reach(shape, b.ball_diameter)
         steel, balls = (Solid(material.young, material.poisson, bulk=size) for material in (b.rings, b.balls))
         body = RingBody(shape, steel, seat_of(problem, inner), (0.0, 0.0))
         both = basis.inner, basis.outer
@@ -172,9 +180,9 @@ def _typical_load(basis: Basis) -> float:
 
 def _element_sizes(problem: Problem, shape: RingShape, half: float) -> tuple[float, float]:
     """Sizes of a ring's elements far from the groove and on it [m]; ``half``: semi-major axis of a typical contact."""
-    length = structural.reach(shape, problem.bearing.ball_diameter)
+    length = reach(shape, problem.bearing.ball_diameter)
     if problem.mesh is None:
-        return 0.62 * length, structural.SURFACE * length
+        return 0.62 * length, SURFACE * length
     return min(problem.mesh.element_size, 0.62 * length), half / problem.mesh.nodes_per_semi_axis
 
 
@@ -191,7 +199,7 @@ def build(problem: Problem, plan: ScenePlan) -> _CondensedBearing:
     _refuse_stiff_law(problem, stiff, bodies)
     _refuse_dashpots(problem, plan, stiff, bodies)
     angles = _contact_angles(problem, stiff) if plan.keeps(BETWEEN_BALLS) else None
-    system = structural.elastic_system(surrogate(stiff.system), bodies, angles)
+    system = elastic_system(surrogate(stiff.system), bodies, angles)
     guess = place_ring(problem, stiff.basis, system)
     return _CondensedBearing(stiff.basis, system, guess, stiff, bodies, angles)
 
@@ -245,7 +253,7 @@ class _CondensedBearing(BuiltBearing):
         """Relative change of the diagonal stiffness when rings are meshed twice as coarse: an upper bound of the error."""
         problem = model.problem
         coarse = elastic_bodies(problem, self.rigid.basis, _COARSER)
-        system = structural.elastic_system(surrogate(self.rigid.system), coarse, self.angles)
+        system = elastic_system(surrogate(self.rigid.system), coarse, self.angles)
         system.table[:, ring.SHIFT] = model.system.table[:, ring.SHIFT]
         try:
             q, ball, _ = attrs.evolve(system, load=model.system.load).solve_equilibrium(equilibrium.displacement)
@@ -267,7 +275,7 @@ class _CondensedBearing(BuiltBearing):
         basis, shape = self.rigid.basis, ring_shape(model.problem.bearing, inner)
         half = float((basis.inner if inner else basis.outer).semi_axes(_typical_load(basis))[0])
         bulk, fine = _element_sizes(model.problem, shape, half)
-        return structural.ring_section(shape, model.problem.bearing.ball_diameter, bulk, min(fine, bulk))
+        return ring_section(shape, model.problem.bearing.ball_diameter, bulk, min(fine, bulk))
 
 
 def _contact_angles(problem: Problem, stiff: RigidBearing) -> np.ndarray:
@@ -324,7 +332,7 @@ def elastic_parts(problem: Problem, basis: Basis, parts: Tables) -> tuple[Tables
     compliance = min(bodies.at(problem.bearing.contact_angle))
     too_stiff = _law_stiffness(problem, basis, parts["law"], parts["law_params"]) * -compliance >= 1.0
     kernels = {name: condensed(parts[name]) for name in ("kernel", "base_kernel")}
-    return {**parts, **kernels, "scalars": structural.elastic_scalars(parts["scalars"], bodies)}, too_stiff
+    return {**parts, **kernels, "scalars": elastic_scalars(parts["scalars"], bodies)}, too_stiff
 
 
 def _refuse_dashpots(problem: Problem, plan: ScenePlan, stiff: RigidBearing, bodies: ElasticBodies) -> None:

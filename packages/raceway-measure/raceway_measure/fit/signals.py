@@ -1,4 +1,4 @@
-"""Measured data, in SI: tables and records in CSV files, mappings of arrays, data frames or labelled data sets.
+"""Measured data, in SI: tables and records in CSV and .tdms files, mappings of arrays, data frames or labelled data sets.
 
 ``Signals`` are any record over time, ``Recording`` is that of a rig's two displacement sensors, from which a bearing can be identified.
 """

@@ -58,7 +58,7 @@ class Gyroscopic:
 
     Notes
     -----
-    ``raceway.core.ring.kernels.tangential`` (``_add_gyroscopic``) has the equations: T = share M / D at both contacts along the grooves, M a
+    ``raceway.core.ring.kernels.rolling`` (``add_gyroscopic``) has the equations: T = share M / D at both contacts along the grooves, M a
     function of both contact angles; the inner race takes no more than its normal force, the outer one the rest, or both what
     ``traction_within`` leaves.
     """
