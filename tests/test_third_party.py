@@ -5,7 +5,6 @@ import os
 import subprocess
 import sys
 import tomllib
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -141,14 +140,6 @@ def test_a_new_package_has_every_part(tmp_path, kind):
     project = tomllib.loads((folder / "pyproject.toml").read_text())["project"]
     assert project["entry-points"]["raceway"] == {"raceway-my-new-one": "raceway_my_new_one"}
     assert all("${" not in p.read_text() for p in folder.rglob("*") if p.is_file())
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_each_module_of_a_new_package_imports(tmp_path, monkeypatch, kind):
-    folder = new_plugin(kind, f"importable_{kind}", tmp_path)
-    monkeypatch.syspath_prepend(folder)
-    for path in folder.glob("raceway_importable_*/*.py"):
-        import_module(f"{path.parent.name}.{path.stem}")
 
 
 @pytest.mark.slow

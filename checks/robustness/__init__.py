@@ -6,7 +6,6 @@ signals               commands that are asked to end
 dask                  workers that are killed
 types                 what editors and type checkers see of the package
 words                 length of the documents, terms that the field does not know
-pages                 pages in a real browser
 unchanged             numbers of results, compared with another commit: --base COMMIT
 fmu                   map of an exported FMU against runs, time of a step
 points                time of a point of ``raceway.function``, and equality with runs

@@ -8,19 +8,14 @@ from __future__ import annotations
 import json
 import time
 from functools import cache
-from importlib.util import module_from_spec, spec_from_file_location
-from types import SimpleNamespace
 
-import attrs
-import numba
-import numpy as np
 import pytest
 
 import raceway as rw
-from checks.validation import fused_loop, plan_time
+from checks.validation import plan_time
 from checks.validation.command_line import ARTICLE, MINIMAL, python, raceway
-from raceway import build_model, load_scene, precision
-from raceway.extend import Schedule, from_orbit, integrate, read_toml, solve_equilibrium, steady_orbit
+from raceway import load_scene, precision
+from raceway.extend import read_toml
 from raceway.planning.plan import column_time
 from raceway.points.precision import EXACT
 from tests.checks.test_leave_out import ELASTIC
@@ -67,103 +62,6 @@ def test_time_for_an_error(claim, error, limit):
         "a study of a hundred points in some seconds, or two minutes",
     )
     claim(quantity, fastest, at_most=limit, unit="ms", basis="regression", source=source)
-
-
-def with_penalty():
-    """The fused loops with the penalty law written into them: kernels are compiled for one law."""
-    spec = spec_from_file_location("fused_loop_of_a_penalty", fused_loop.__file__)
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-
-    @numba.njit
-    def penalty(factor, damping, approach, rate):
-        if approach <= 0.0:
-            return 0.0, 0.0, 0.0
-        force = factor * approach * approach + damping * rate
-        if force <= 0.0:
-            return 0.0, 0.0, 0.0
-        return force, 2.0 * factor * approach, damping
-
-    module.hertz = penalty
-    return module
-
-
-@cache
-def compared(law: str, integrator: str, inertia: bool, repeats: int) -> SimpleNamespace:
-    """Composed over fused time of a step, and the largest difference of a displacement over the largest displacement."""
-    turns, steps = 20, 360
-    changes = (
-        f"contact.kind={law}", f"integrator.kind={integrator}", f"integrator.turns={turns}", f"integrator.steps_per_turn={steps}",
-        f"kinematics.ball_inertia={str(inertia).lower()}",
-    )  # fmt: skip
-    scene = load_scene(ARTICLE, changes)
-    model = build_model(scene)
-    s, z, period, method = model.system, model.geometry.ball_count, model.excitation.period_s, scene.integrator.method
-    schedule = Schedule(period / steps, steps, turns)
-    start = from_orbit(s, steady_orbit(s, period, solve_equilibrium(model).displacement), schedule.dt)
-    numbers = (method.beta, method.gamma, method.tolerance) if method.implicit else (0.25, 0.5, 0.0)
-    loop = (with_penalty() if law == "penalty" else fused_loop).fused_loop(inertia, bool(method.implicit))
-
-    def fused(schedule):
-        rows, probes = np.zeros((schedule.steps, 16)), np.zeros((schedule.steps, 3, 2 * z))
-        state = (start.q.copy(), start.v.copy(), start.a.copy(), start.ball.copy(), start.ball_before.copy())
-        iterations = loop(
-            s.scalars, s.table, s.law_params[[0, z], 0], s.force_params, s.mass, s.damping, s.stiffness, s.free, s.load, *numbers,
-            schedule.dt, schedule.steps, *state, rows, probes,
-        )  # fmt: skip
-        return rows, iterations
-
-    fused(attrs.evolve(schedule, turns=1))  # compiles
-    spent = []
-    for _ in range(repeats):  # by turns, so that a slow moment of the machine meets both
-        begin = time.process_time()
-        record = integrate(method, s, start, schedule, None)
-        middle = time.process_time()
-        rows, iterations = fused(schedule)
-        spent.append((middle - begin, time.process_time() - middle))
-    assert iterations == record.counts["evaluations"]
-    own = record.displacement
-    ratio = min(one for one, _ in spent) / min(other for _, other in spent)
-    return SimpleNamespace(ratio=ratio, deviation=float(np.abs(rows[:, 1:6] - own).max() / np.abs(own).max()))
-
-
-LOOPS = [
-    (law, kind, inertia)
-    for law in ("hertz", "penalty")
-    for kind in ("newmark", "central_difference")
-    for inertia in (True, False)
-]
-REPEATS = {"hertz": 60, "penalty": 5}
-
-
-@pytest.mark.parametrize(
-    ("words", "chosen", "limit", "misses"),
-    [
-        ("Hertz, balls with centrifugal force", [one for one in LOOPS if one[0] == "hertz" and one[2]], 1.15, ""),
-        (
-            "Hertz, weightless balls",
-            [one for one in LOOPS if one[0] == "hertz" and not one[2]],
-            1.3,
-            "an explicit step is short: {}",
-        ),
-        ("penalty law", [one for one in LOOPS if one[0] == "penalty"], 1.05, "{}"),
-    ],
-)
-def test_composed_over_hand_fused_loop(claim, words, chosen, limit, misses):
-    ratio = max(compared(*one, REPEATS[one[0]]).ratio for one in chosen)
-    quantity = (
-        f"composed over hand-fused time loop, {words}, newmark and central_difference: larger ratio of processor times"
-    )
-    source = "what one may pay for any law with any integrator"
-    why = misses.format("kernels are called by address, where the fused loop has them inlined")
-    claim(quantity, ratio, at_most=limit, basis="own other method", source=source, misses=why, machine=True)
-
-
-def test_composed_and_hand_fused_loop_compute_the_same(claim):
-    largest = max(compared(*one, REPEATS[one[0]]).deviation for one in LOOPS)
-    quantity = "the same eight loops: largest difference of a displacement over the largest"
-    source = "the same physics solved to 1e-9 of the largest force, and refined: rounding"
-    claim(quantity, largest, at_most=1e-12, basis="own other method", source=source)
 
 
 def test_a_run_with_warm_caches(claim, tmp_path):

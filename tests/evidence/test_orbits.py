@@ -7,7 +7,6 @@ import time
 import attrs
 import numpy as np
 import pytest
-from scipy.linalg import expm
 
 import raceway as rw
 from checks.validation import followed, several
@@ -26,7 +25,6 @@ from raceway.core.signals import stiffness
 from raceway.extend import Motion, Schedule, integrate
 from raceway.scene.growth import ring_inertia
 from raceway.testing import model_of, run, simulate, solve_equilibrium
-from raceway.testing.systems import SPEED, linear_system, motion
 
 Newmark = built_in("integrator", "newmark")
 Periodic = built_in("integrator", "periodic")
@@ -122,20 +120,6 @@ def monodromy(tables, result):
 
 
 def test_multipliers(claim):
-    system = linear_system()
-    chosen = np.ix_(system.free > 0.0, system.free > 0.0)
-    turn = 2.0 * np.pi / SPEED
-    record = integrate(
-        Periodic(tolerance=1e-9), system, motion(system, np.zeros(5), np.zeros(5)), Schedule(turn / 36, 36, 1)
-    )
-    inverse = np.linalg.inv(system.mass[chosen])
-    n = len(inverse)
-    flow = np.block(
-        [[np.zeros((n, n)), np.eye(n)], [-inverse @ system.stiffness[chosen], -inverse @ system.damping[chosen]]]
-    )
-    error = farthest(record.counts["floquet"], np.linalg.eigvals(expm(flow * turn)))
-    quantity = "Floquet multipliers of springs, dashpots and a gyroscopic term: largest distance"
-    claim(quantity, error, at_most=1e-8, basis="closed form", source="matrix exponential; tolerance 1e-9")
     errors, undamped = [], {"damping": 0.0}
     for tables in (
         scene(400.0, contact=undamped), scene(400.0, excitation=ONE_WAY, contact=undamped), scene(tilt="free", contact=undamped)
@@ -202,24 +186,6 @@ def test_motion_that_is_taken(claim):
     claim(quantity, max(growth), at_most=1.0 + 1e-5, basis="own other method", source=f"{source}: a motion that lasts")
     quantity = f"{where}: error of `newmark` over the stated one, largest"
     claim(quantity, max(error), at_most=FACTOR, basis="own other method", source="direct solution, which the turn confirms")
-
-
-def test_motions_that_are_told(claim):
-    for kind in ("periodic", "newmark"):
-        orbits = run(rw.scene_from_dict(several.heavy(80.0, kind=kind))).simulation.orbits
-        quantity = f"stable motions of 80 kg with 5000 N s/m that `{kind}` reports"
-        source = "a softening resonance has two stable motions and an unstable one between its folds"
-        claim(quantity, sum(one["stable"] for one in orbits), near=2.0, within=0.0, basis="closed form", source=source)
-    result = run(rw.scene_from_dict(several.article(500.0)))
-    first = result.simulation.orbits[0]
-    assert not first["stable"] and any("unstable" in text for text in result.warnings)
-    quantity = "multiplier of `newmark`'s unstable starting orbit, the article's ring under 500 N"
-    claim(quantity, first["multiplier"], at_least=1.0, basis="closed form", source="unstable: above 1")
-    closed = run(rw.scene_from_dict(several.article(800.0, kind="periodic", tolerance=1e-9)))
-    gap = several.by_integration(closed, 0.0)[2]
-    quantity = "motion on a closed branch, the article's ring under 800 N: closure error over the amplitude"
-    source = "DOP853 on the reference's own equations, from the motion that is taken; tolerance 1e-9"
-    claim(quantity, gap, at_most=1e-10, basis="own other method", source=source)
 
 
 def test_random_scenes_by_two_integrators(claim):

@@ -76,10 +76,6 @@ def test_the_file_holds_every_number_under_the_names_of_ross(tmp_path, ending, g
         assert words in text
 
 
-def test_axes_are_renamed_in_rotation():
-    assert [NAMES[name] for name in ("kyy", "kyz", "kzy", "kzz", "kxx")] == ["kxx", "kxy", "kyx", "kyy", "kzz"]
-
-
 def whole(at):
     """A full symmetric tangent that differs from point to point."""
     base = np.array(
