@@ -141,13 +141,6 @@ def test_a_series_states_source_and_scatter_of_every_number():
         assert (fact.scatter is not None) is (fact.inferred and "." not in fact.key)
 
 
-def test_an_unknown_designation_names_the_nearest_five():
-    with pytest.raises(SceneError) as caught:
-        preset("7014B")
-    offered = str(caught.value).partition("nearest: ")[2].partition(" (")[0].split(", ")
-    assert len(offered) == 5 and set(offered) > {"7014C", "7014A", "7014A5"}
-
-
 def test_bearings_without_balls_in_the_catalogue_are_answered_with_what_is_needed():
     for name in ("R168", "R4-2RS", "SR188ZZ", "KA040CP0", "618/950", "16005", "MR105", "nonsense"):
         with pytest.raises(

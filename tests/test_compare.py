@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from raceway import Comparison, ConvergenceError, SceneError, compare, scene_from_dict
-from raceway.answers.answer import Interrupted
 from raceway.extend import points, tables_at
 from raceway.points import compare as study
 from raceway.points.axes import MOST_POINTS, parse_axes
@@ -197,17 +196,6 @@ def test_a_refused_combination_is_kept_with_its_reason():
     assert found.held == {"bearing.ball_diameter": 8e-3}
 
 
-def test_interruption_keeps_the_finished_rows():
-    def stop(_what, done, _total):
-        if done == 2:
-            raise KeyboardInterrupt
-
-    with pytest.raises(Interrupted) as caught:
-        compare(SCENE, ["excitation.speed_rpm=12000:13000:3"], progress=stop)
-    partial = caught.value.partial
-    assert len(partial.rows) == 2 and partial.table() and partial.words
-
-
 def test_static_scenes_are_compared_by_tangents_and_displacement(tmp_path):
     static = {name: table for name, table in SCENE.items() if name != "excitation"}
     found = compare(static, ["load.axial=400,800,1200", "contact.kind=hertz,penalty"])
@@ -389,13 +377,6 @@ def test_a_small_effect_within_the_errors_is_not_told_as_one():
     )
     assert "K: no interaction is resolved from the runs' errors (the largest would be +0.91 %)" in text
     assert "with free by" not in text and "no axis moves it" not in text
-
-
-def test_the_error_of_k_is_that_of_z_over_its_own_size():
-    row = _synthetic(lambda point: 1.1e8).rows[0]
-    z, k = row.value("dynamic_stiffness"), row.value("equivalent_stiffness")
-    assert row.error_of("dynamic_stiffness") == 1e-6
-    assert row.error_of("equivalent_stiffness") == pytest.approx(1e-6 * z / k)
 
 
 def test_finished_runs_are_kept_and_used_again(tmp_path, monkeypatch):

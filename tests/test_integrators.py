@@ -78,14 +78,6 @@ def test_same_answer_twice():
     assert (simulate(model, now).whole.displacement == simulate(model, now).whole.displacement).all()
 
 
-def test_step_above_the_stable_limit_is_refused():
-    tables = rotating(1000.0, "locked", 12000.0, False, "central_difference")
-    tables["integrator"]["steps_per_turn"] = 12
-    model = model_of(tables)
-    with pytest.raises(StabilityError, match="above the stable limit"):
-        simulate(model, solve_equilibrium(model))
-
-
 def test_stable_limit_is_where_central_differences_blow_up():
     """On the linear oscillator: bounded just below 2 / w0, without bound just above."""
     system, w0, _ = orders.oscillator(0.0)

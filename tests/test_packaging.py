@@ -131,22 +131,6 @@ def test_folders_import_one_way(folders):
     assert [(str(path.relative_to(ROOT)), word) for path in files for word in imported(path) if word in forbidden] == []
 
 
-PACKAGES = [*sorted((ROOT / "raceway").rglob("__init__.py")), *sorted(ROOT.glob("packages/*/raceway_*/**/__init__.py"))]
-
-
-@pytest.mark.parametrize("path", PACKAGES, ids=lambda path: path.parent.relative_to(ROOT).as_posix())
-def test_a_package_says_what_is_in_it(path):
-    listed: set[str] = set()
-    for line in (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").splitlines():
-        # `name, name  words;  name: words`
-        heads = re.findall(r"^\s*((?:\w+, )*\w+),?(?=  |$)|;  ((?:\w+, )*\w+):", line)
-        listed |= {name for head in heads for name in "".join(head).split(", ")}
-    modules = {entry.stem for entry in path.parent.glob("*.py")}
-    folders = {entry.name for entry in path.parent.iterdir() if entry.is_dir() and any(entry.rglob("*.*"))}
-    entries = {name for name in modules | folders if not name.startswith("_")}
-    assert entries - listed == set(), "one line each in the docstring"
-
-
 def test_an_ability_comes_from_a_package_alone(tmp_path):
     """Its command, public name, table of the scene, quantity and picture, by ``raceway_commands``, ``raceway_names``, ``raceway_tables``."""
     install(tmp_path, "weighing", (ROOT / "examples" / "plugins" / "weighing.py").read_text(encoding="utf-8"))

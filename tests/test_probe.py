@@ -105,15 +105,6 @@ def test_wrong_parameters_are_refused(params, found):
         _probe(Hertz().kernel(), params=params)
 
 
-def test_a_sound_law_passes():
-    probe_law(Hertz(), Hertz().kernel(), np.tile([1e10, 0.0], (N, 1)), np.zeros((N, 0)))
-
-
-def test_the_distribution_is_looked_up():
-    with pytest.raises(PluginError, match="contact law 'hertz' of raceway: "):
-        probe_law(Hertz(), broken_laws.plain_python, np.full((N, 1), 1e10), np.zeros((N, 0)))
-
-
 @jit(FORCE)
 def half(t, params, out):
     out[0] = 1.0

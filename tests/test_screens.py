@@ -169,11 +169,6 @@ def test_a_pair_is_called_one_and_its_balls_have_rows(tmp_path):
     assert f"preload {result['equilibrium']['preload']['running_n']:.5g} N" in text
 
 
-def test_a_dry_bearings_damping_is_told_with_the_remedy(tmp_path):
-    text = " ".join(invoke("run", MINIMAL, "--out", tmp_path).stdout.split())
-    assert "rule of thumb of rotor programs" in text and "2.9e+03 N s/m" in text and "contact.damping" in text
-
-
 def test_a_table_says_once_what_is_the_same_in_all_rows():
     rows = [{"axial": "400", "speed_rpm": f"{speed}", "K N/µm": 153.2} for speed in (12000, 15000)]
     text = lines(rows_table(rows))

@@ -6,7 +6,6 @@
 2. A rigid rotor on two of them: its critical speed against w = sqrt(2 K(w) / M).
 3. The stiffness depends on the force, the force on the rotor, the rotor on the stiffness: iterated step by step, and by
    ``raceway.ross``; its time response against both.
-4. The test rig's rotor by our own beam.
 """
 
 from __future__ import annotations
@@ -203,14 +202,6 @@ def in_time(ross: Any, axial: float = 400.0, steps: int = 128, turns: int = 40) 
         name: float(abs(value))
         for name, value in (("time", found), ("harmonic", np.asarray(response)[0, 0]), ("linear", np.asarray(linear)[0, 0]))
     }
-
-
-def beam(ross: Any) -> list[float]:
-    """Our beam against ROSS's on the test rig's rotor: largest relative difference of frequencies, of responses."""
-    from checks.validation.rotor_in_ross import compared
-
-    found = compared()
-    return [found.difference(found.frequencies), found.difference(found.responses)]
 
 
 def table(ross: Any) -> dict[str, Any]:

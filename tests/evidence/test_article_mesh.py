@@ -19,7 +19,6 @@ from checks.validation.command_line import EXAMPLES
 from raceway import build_model, load_scene, make_plan
 from raceway.core.fem.elastic.assembly import Assembly
 from raceway.core.fem.elastic.bearing import ElasticSystem
-from raceway.core.fem.elastic.ring import ElasticRing
 from raceway.extend import mesh_bodies, resolve, solve_equilibrium
 from raceway.plugins.bodies.elastic import elastic_cost
 from raceway.storage.kernel_cache import cache_root
@@ -53,11 +52,6 @@ SIZES = {
     "elements of 1.0 mm": {"mesh.element_size": "1.0e-3"},
     "the article's mesh": {},
 }
-#: Three balls, for the solvers' difference.
-TINY = {
-    "bearing.ball_count": "3", "load.axial": "240", "load.radial": "[100.0, 50.0]", "mesh.element_size": "3.2e-3",
-    "mesh.azimuth_cells": "24", "mesh.nodes_per_semi_axis": "1", "mesh.ball_load": "300",
-}  # fmt: skip
 #: One operating point in motion: 12 000 r/min, the rig's unbalance, friction; both excitations.
 MOTION = {
     "rotor.mass": "2.0", "excitation.speed_rpm": "12000", "excitation.unbalance": "6.39e-4", "excitation.load_share": "0.5",
@@ -179,17 +173,6 @@ def test_ball_loads_displacement_and_stiffness_of_condensed_bodies(claim):
     for case, apart in stiffness.items():
         claim(f"{case}: kyy, relative difference", apart, at_most=0.01, **OWN, source=CONDENSED_LIMIT,
               misses=MISSES.get(("kyy", case), ""))  # fmt: skip
-
-
-def test_reduced_and_unreduced_solver(claim):
-    """Every unknown of both, of one discretisation."""
-    scene = load_scene(SCENE, [f"{key}={value}" for key, value in TINY.items()])
-    ring = build_model(scene).system
-    assert isinstance(ring, ElasticRing)
-    system, start = ring.bodies.system, ring._undeformed(ring.surrogate, np.zeros(5))
-    reduced, full = (one.solve_equilibrium(start, 1e-10).y for one in (system, iterative(system)))
-    claim(f"small mesh, {system.size} unknowns: superelements against the iterative solver, over the largest",
-          float(np.abs(reduced - full).max() / np.abs(full).max()), at_most=1e-8, **OWN, source="both solve to 1e-10")  # fmt: skip
 
 
 def iterative(system):

@@ -6,7 +6,6 @@ spreadsheets are read back by the fields of their formats: neither program is th
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from checks.validation.ross_rotor import in_ross
@@ -53,17 +52,3 @@ def test_motion_in_time(claim):
         "amplitude at the bearing after 40 turns in time, 400 N axial: relative difference from the unbalance response"
     )
     claim(quantity, off, at_most=0.01, basis="own other method", source="128 steps a turn, a damper at the disc")
-
-
-def test_beam(claim):
-    found = np.max(in_ross("beam"), axis=0)
-    for what, off in zip(
-        ("first three frequencies of forward whirl", "unbalance response at bearing and sensor"), found, strict=True
-    ):
-        claim(
-            f"study rig's rotor by our beam: {what}: largest relative difference",
-            off,
-            at_most=1e-3,
-            basis="other program",
-            source="ROSS",
-        )

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from checks.validation.scenes import rotating
-from raceway import StabilityError
 from raceway.core.ring.orbit import static_orbit
 from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.time.schemes import Drivers
@@ -89,10 +88,3 @@ def test_two_halves_are_the_whole(kind):  # tolerance: a share of the largest fo
         ]:
             a, b = np.concatenate([getattr(first, name), getattr(second, name)]), getattr(whole, name)
             assert np.abs(a - b).max() <= (1e-8 if method.implicit else 0.0) * np.abs(b).max(), name
-
-
-def test_step_above_the_stable_limit_is_refused_with_the_limit():
-    method, system, start, schedule = case("central_difference")
-    limit = system.critical_time_step(system.evaluate(start.q, ball=start.ball).stiffness)
-    with pytest.raises(StabilityError, match=f"{limit:.4g} s"):
-        integrate(method, SteppedBearing(system), start, attrs.evolve(schedule, dt=1.01 * limit))
