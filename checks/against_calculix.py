@@ -1,4 +1,4 @@
-"""One problem, two programs: ``python -m checks.against_calculix [--load N] [--nodes N] [--json] [--deck FILE] [--scene FILE]``.
+"""One problem, two programs: ``python -m checks.against_calculix [--load N] [--nodes N] [--deck FILE] [--scene FILE]``.
 
 The groove case of ``checks.validation.groove``, about 10 000 elements: Raceway under the load, CalculiX on the same mesh and the same
 penalty, its middle plane pressed by the approach that Raceway found.  CalculiX knows facets only; Raceway takes the gap from
@@ -35,7 +35,6 @@ def main(words: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m checks.against_calculix", description=__doc__.splitlines()[0])
     parser.add_argument("--load", type=_positive, default=300.0, help="of the ball [N], default 300")
     parser.add_argument("--nodes", type=_positive, default=4.0, help="elements per semi-axis, default 4")
-    parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("--deck", type=Path, help="write CalculiX's input here and run nothing")
     parser.add_argument("--scene", type=Path, help="with --deck: the bearing of this scene in place of the groove")
     asked = parser.parse_args(words)
@@ -69,8 +68,7 @@ def _answer(asked: argparse.Namespace) -> int:
             f"ccx is not installed, so there is nothing to compare with: apt-get install {calculix.PACKAGE}", file=sys.stderr
         )
         return 2
-    found = compare(asked.load, asked.nodes)
-    print(json.dumps(found, indent=1) if asked.json else table(found))
+    print(json.dumps(compare(asked.load, asked.nodes), indent=1))
     return 0
 
 
@@ -124,22 +122,6 @@ def scene_deck(path: Path) -> str:
     penalty = float(penalty_stiffness(modulus, minor / mesher.nodes_per_semi_axis))
     radial = (float(scene.load.radial[0]), float(scene.load.radial[1]))
     return calculix.bearing_deck(mesh_bodies(resolve(scene)), rings.young, rings.poisson, penalty, scene.load.axial, radial)
-
-
-def table(found: dict[str, Any]) -> str:
-    """The same as text."""
-    out = [
-        f"{found['case']}, {found['load_n']:g} N, {found['elements']} elements, {found['elements_per_semi_axis']:g} per semi-axis",
-        f"{'':14s} {'CPU s':>8s} {'memory MiB':>11s} {'iterations':>11s} {'p0 against Hertz':>17s} {'reaction':>9s}",
-    ]
-    for row in found["rows"]:
-        off = row["pressure_deviation"]
-        pressure = "none" if off is None else f"{100 * off:+.1f} %"
-        out.append(
-            f"{row['program']:14s} {row['cpu_s']:8.1f} {row['memory_bytes'] / 2**20:11.0f} {row['iterations']:11d} "
-            f"{pressure:>17s} {100 * row['reaction_deviation']:+8.1f}%  {row.get('failure', '')}"
-        )
-    return "\n".join([*out, f"CalculiX's quickest takes {found['cpu_ratio']:.1f} times the CPU time"])
 
 
 def _row(program: str, cpu: float, memory: int, iterations: int, reaction: float, pressure: float) -> dict[str, Any]:

@@ -49,15 +49,6 @@ def test_where_everything_is_tested_a_missing_library_is_a_failure(tmp_path, var
     assert install_line() in done.stdout and "NOT TESTED" not in done.stdout
 
 
-def test_programs_that_are_there_are_used(tmp_path):
-    programs = hide(tmp_path)["PATH"]
-    for name in ("chromium", "chromedriver", "ccx"):
-        (Path(programs) / name).write_text("#!/bin/sh\n")
-        (Path(programs) / name).chmod(0o755)
-    done = collected(tmp_path, **hide(tmp_path))
-    assert "2 passed, 2 skipped" in done.stdout and "NOT TESTED: 2 tests" in done.stdout
-
-
 @pytest.mark.needs("gmsh", "pyvista", "browser", "ccx")
 @pytest.mark.slow
 def test_with_all_libraries_nothing_is_skipped(tmp_path):

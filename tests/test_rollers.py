@@ -58,17 +58,6 @@ def load_integral(eps, n=N):
     return quad(lambda psi: max(1.0 - (1.0 - np.cos(psi)) / (2.0 * eps), 0.0) ** n * np.cos(psi), 0.0, edge)[0] / np.pi
 
 
-def test_the_constant_is_harris_own():
-    # Q = 8.06e4 L^(8/9) delta^(10/9) in mm and N, to its three digits.
-    assert pytest.approx(8.06e4, rel=1e-3) == (1.0 / 3.84e-5) ** N
-
-
-def test_the_load_integral_is_the_tabulated_one():
-    # Harris' table for line contact at eps = 0.5 has four digits, and is that of n = 1.1.
-    assert load_integral(0.5, 1.1) == pytest.approx(0.2453, abs=5e-5)
-    assert load_integral(0.5) == pytest.approx(0.2453, rel=2.5e-3)
-
-
 @pytest.mark.parametrize(("clearance", "growth"), [(0.0, 0.0), (20e-6, 0.0), (60e-6, 0.0), (0.0, 5e-6), (0.0, 15e-6)])
 def test_loads_of_the_rollers_are_the_discrete_sum(clearance, growth):
     model, equilibrium = found(clearance, growth)
@@ -92,12 +81,6 @@ def test_the_load_zone_is_sjovalls(clearance, growth):
     assert np.abs(inner / inner.max() - zone).max() < 1e-9
     # A sum over a period with a kink of power n at the zone's edge: (2 pi / Z)^(n + 1) = 3e-3.
     assert 100 * inner.max() * load_integral(eps) == pytest.approx(FORCE, rel=3e-3)
-
-
-def test_with_zero_clearance_the_most_loaded_roller_carries_four_times_the_mean():
-    # Harris: Q_max = 4.08 F_r / Z at eps = 0.5.
-    _, equilibrium = found(bearing=MANY)
-    assert 100 * equilibrium.contact_force.max() / FORCE == pytest.approx(4.08, rel=5e-3)
 
 
 @pytest.mark.parametrize("clearance", [0.0, 20e-6])

@@ -27,9 +27,6 @@ _PAIR = {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distanc
 _SET = _STATIC | {"bearing": _PAIR}
 
 
-Times = tuple[float, float]
-
-
 def _turning(kind: str, damping: float = 0.0) -> dict[str, Any]:
     force = {"kind": kind, "speed_rpm": 9000.0, "unbalance": 1e-5}
     return _STATIC | {
@@ -42,7 +39,7 @@ def _on_top(output: str) -> float:
     """Processor time of a plug-in's number over that of 1e5 equilibria with an oil, per cent; least of five of each, in turns."""
     scene = _STATIC | {"lubricant": {"oil": "VG 32", "temperature_c": 60.0}}
     ranges = {"load.axial": (300.0, 2000.0), "load.radial[0]": (0.0, 200.0), "kinematics.spin_speed_rpm": (1000.0, 24_000.0)}
-    pairs = [[_time(scene, ["stiffness", *more], ranges, 10**5)[0] for more in ([], [output])] for _ in range(5)]
+    pairs = [[_time(scene, ["stiffness", *more], ranges, 10**5) for more in ([], [output])] for _ in range(5)]
     alone, both = np.min(pairs, axis=0)
     return float(100.0 * (both / alone - 1.0))
 
@@ -53,34 +50,21 @@ def _warm_over_cold() -> float:
     warm = pair | {"heat": {"oil_inlet_c": 40.0, "oil_flow": 8e-6}}
     cold = pair | {"lubricant": {"oil": "VG 32", "temperature_c": 60.0}, "mounting": {"inner_temperature": 30.0}}
     ranges = {"kinematics.spin_speed_rpm": (1000.0, 14_000.0)}
-    pairs = [[_time(scene, ["kyy"], ranges, 2 * 10**4)[0] for scene in (warm, cold)] for _ in range(3)]
+    pairs = [[_time(scene, ["kyy"], ranges, 2 * 10**4) for scene in (warm, cold)] for _ in range(3)]
     heated, alone = np.min(pairs, axis=0)
     return float(heated / alone)
 
 
-def _time(
-    scene: dict[str, Any], outputs: list[str], ranges: dict[str, tuple[float, float]], n: int, threads: int = 1
-) -> Times:
-    """Processor and wall time [s] of n random points, kernels compiled."""
-    rng, f = np.random.default_rng(1), rw.function(scene, ranges, outputs, threads=threads)
+def _time(scene: dict[str, Any], outputs: list[str], ranges: dict[str, tuple[float, float]], n: int) -> float:
+    """Processor time [s] of n random points, kernels compiled."""
+    rng, f = np.random.default_rng(1), rw.function(scene, ranges, outputs, threads=1)
     columns = [rng.uniform(*ends, size=n) for ends in ranges.values()]
     f(*(column[:20] for column in columns))
-    wall, cpu = time.perf_counter(), time.process_time()
+    begun = time.process_time()
     answer = f(*columns)
-    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    spent = time.process_time() - begun
     assert (answer["status"] == rw.PointStatus.COMPUTED).mean() > 0.99, "the loop computes the points"
-    return cpu, wall
-
-
-def _run_time(scene: dict[str, Any]) -> float:
-    """Processor time [s] of a run of one point, kernels compiled."""
-
-    def once() -> float:
-        start = time.process_time()
-        rw.run(scene)
-        return time.process_time() - start
-
-    return min(once() for _ in range(9))
+    return spent
 
 
 def _by_dask(point: float) -> list[Row]:
@@ -119,38 +103,19 @@ def rows() -> list[Row]:
     }  # fmt: skip
     motion = {"load.axial": (600.0, 2000.0), "excitation.speed_rpm": (3000.0, 15_000.0)}
     out = [_equality()]
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    one = _time(_STATIC, ["displacement", "stiffness"], loads, 10**6)
-    memory = 1024.0 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
-    two = _time(_STATIC, ["displacement", "stiffness"], loads, 10**6, threads=2)
     cases: list[tuple[str, Callable[[], float], float]] = [
-        ("1e6 equilibria with 5 x 5 over load and speed [CPU-s]", lambda: one[0], 25.0),
-        ("memory they take beyond the program's [GB]", lambda: 1e-9 * memory, 1.0),
-        ("1e5 equilibria of a DB pair over its geometry and preload [CPU-s]", lambda: _time(_SET, ["stiffness"], geometry, 10**5)[0], 10.0),
-        ("1e5 steady orbits, rotating force [CPU-s]", lambda: _time(_turning("bidirectional"), ["K", "C"], motion, 10**5)[0], 25.0),
-        ("the same with dashpots at the contacts [CPU-s]", lambda: _time(_turning("bidirectional", 1e-3), ["K", "C"], motion, 10**5)[0], 25.0),
-        ("an orbit under a one-directional force, tilt free [CPU-ms]", lambda: _time(_turning("unidirectional"), ["K"], motion, 10**4)[0] / 10, 1.0),
+        ("1e6 equilibria with 5 x 5 over load and speed [CPU-s]", lambda: _time(_STATIC, ["displacement", "stiffness"], loads, 10**6), 25.0),
+        ("1e5 equilibria of a DB pair over its geometry and preload [CPU-s]", lambda: _time(_SET, ["stiffness"], geometry, 10**5), 10.0),
+        ("1e5 steady orbits, rotating force [CPU-s]", lambda: _time(_turning("bidirectional"), ["K", "C"], motion, 10**5), 25.0),
+        ("the same with dashpots at the contacts [CPU-s]", lambda: _time(_turning("bidirectional", 1e-3), ["K", "C"], motion, 10**5), 25.0),
+        ("an orbit under a one-directional force, tilt free [CPU-ms]", lambda: _time(_turning("unidirectional"), ["K"], motion, 10**4) / 10, 1.0),
         ("life of 1e5 points on top of their equilibria [%]", lambda: _on_top("l10r_hours"), 20.0),
         ("friction torque of 1e5 points on top of their equilibria [%]", lambda: _on_top("torque_nm"), 20.0),
         ("a warm point over a cold one in a batch", _warm_over_cold, 8.0),
     ]  # fmt: skip
     out += [below(quantity, round(measure(), 3), bound, COMMAND) for quantity, measure, bound in cases]
-    ratio = one[1] / two[1]
     two_columns = {key: loads[key] for key in ("load.axial", "kinematics.spin_speed_rpm")}
-    out += _by_dask(_time(_STATIC, ["kyy"], two_columns, 10**6)[0] / 10**6)
-    out.append(Row("two threads over one, 1e6 points", round(ratio, 2), "at least 1.8", ratio >= 1.8, COMMAND, "wall time"))
-    point = _run_time(_STATIC | {"load": {"axial": 800.0}}) / (1e-6 * one[0])
-    out.append(
-        Row(
-            "a run of one point over a point of a million",
-            round(point),
-            "told",
-            True,
-            COMMAND,
-            "processor time, same machine",
-        )
-    )
-    return out
+    return out + _by_dask(_time(_STATIC, ["kyy"], two_columns, 10**6) / 10**6)
 
 
 def _equality() -> Row:

@@ -4,8 +4,8 @@
 
 1. Raceway sweeps a B7206C under 1 kN over speed, writes the coefficients, and ROSS reads them.
 2. A rigid rotor on two of them: its critical speed against w = sqrt(2 K(w) / M).
-3. The stiffness depends on the force, the force on the rotor, the rotor on the stiffness: iterated step by step, and by
-   ``raceway.ross``; its time response against both.
+3. The stiffness depends on the force, the force on the rotor, the rotor on the stiffness: solved by ``raceway.ross``; its time
+   response against that.
 """
 
 from __future__ import annotations
@@ -125,40 +125,6 @@ def respond(rotor: Any, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         found = rotor.run_unbalance_response(3, UNBALANCE, 0.0, list(speeds)).forced_resp
     dofs = rotor.number_dof
     return np.asarray(found)[3 * dofs : 3 * dofs + 2], np.asarray(found)[:2]
-
-
-def force_on(rotor: Any, motion: np.ndarray, speed: float) -> float:
-    """Amplitude of the force on the first bearing [N], larger of both directions."""
-    element = rotor.bearing_elements[0]
-    dynamic = np.asarray(element.K(speed))[:2, :2] + 1j * speed * np.asarray(element.C(speed))[:2, :2]
-    return float(np.max(np.abs(dynamic @ motion)))
-
-
-def fixed_point(ross: Any, axial: float, most: int = 60, tolerance: float = 1e-9) -> list[dict[str, float]]:
-    """Force on the bearing -> its stiffness -> response of the rotor -> force on the bearing, until nothing changes.
-
-    Notes
-    -----
-    The bearing is asked quasi-statically: then the force that is given is the one that its contacts carry, which is what the
-    rotor's bearing force is.
-    """
-    speed, force, rows = SPEED_RPM * np.pi / 30.0, FORCE, list[dict[str, float]]()
-    for _ in range(most):
-        excitation = {**bearing()["excitation"], "force": force}
-        scene = bearing(load={"axial": axial}, excitation=excitation, integrator={"kind": "quasi_static"})
-        found = rw.run(scene).identification
-        assert found is not None
-        k, c = found.equivalent_stiffness, found.equivalent_damping
-        rotor = rig_rotor(ross, lambda node, k=k, c=c: ross.BearingElement(n=node, kxx=k, cxx=c, kzz=1e8))
-        disc, seat = respond(rotor, np.array([speed]))
-        new = force_on(rotor, seat[:, 0], speed)
-        rows.append(
-            {"force": force, "k": k, "new_force": new, "change": abs(new - force) / new, "disc": float(abs(disc[0, 0]))}
-        )
-        if rows[-1]["change"] < tolerance:
-            break
-        force = new
-    return rows
 
 
 def rolling(ross: Any, axial: float, damping: float = 0.0) -> Any:

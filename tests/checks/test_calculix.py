@@ -1,7 +1,5 @@
 """Decks for CalculiX: what they hold; nothing is run."""
 
-import json
-
 import numpy as np
 import pytest
 
@@ -87,15 +85,3 @@ def test_without_the_program_the_message_says_what_to_install(monkeypatch, capsy
     monkeypatch.setattr(calculix.shutil, "which", lambda name: None)
     assert against_calculix.main([]) == 2
     assert "apt-get install calculix-ccx" in capsys.readouterr().err
-
-
-def test_table_and_json_tell_the_same():
-    row = {"cpu_s": 2.0, "memory_bytes": 2**20, "iterations": 7, "reaction_n": 300.0, "peak_pressure_pa": 1.5e9}
-    row |= {"pressure_deviation": 0.01, "reaction_deviation": 0.0}
-    found = {"case": "c", "load_n": 300.0, "elements": 10, "elements_per_semi_axis": 4.0, "cpu_ratio": 9.5}
-    found["rows"] = [
-        row | {"program": "raceway"},
-        row | {"program": "calculix", "pressure_deviation": None, "failure": "diverged"},
-    ]
-    text = against_calculix.table(json.loads(json.dumps(found)))
-    assert "+1.0 %" in text and "diverged" in text and "9.5 times" in text

@@ -16,10 +16,8 @@ import numpy as np
 import pytest
 
 from checks.validation.command_line import EXAMPLES
-from raceway import build_model, load_scene, make_plan
-from raceway.core.fem.elastic.assembly import Assembly
-from raceway.core.fem.elastic.bearing import ElasticSystem
-from raceway.extend import mesh_bodies, resolve, solve_equilibrium
+from raceway import load_scene
+from raceway.extend import mesh_bodies, resolve
 from raceway.plugins.bodies.elastic import elastic_cost
 from raceway.storage.kernel_cache import cache_root
 
@@ -27,8 +25,6 @@ from raceway.storage.kernel_cache import cache_root
 pytestmark = [pytest.mark.release, pytest.mark.xdist_group("article mesh")]
 
 SCENE = EXAMPLES / "b7206_article_mesh.toml"
-#: A bearing of 63 120 elements, and the same size in CalculiX, with facets [CPU s], measured before this program existed.
-COARSE, CALCULIX_BEARING = EXAMPLES.parent / "checks" / "b7206_elastic_60k.toml", 334.0
 #: The article's four load cases: changes of the scene.
 CASES = {
     "1000 N": {},
@@ -173,32 +169,6 @@ def test_ball_loads_displacement_and_stiffness_of_condensed_bodies(claim):
     for case, apart in stiffness.items():
         claim(f"{case}: kyy, relative difference", apart, at_most=0.01, **OWN, source=CONDENSED_LIMIT,
               misses=MISSES.get(("kyy", case), ""))  # fmt: skip
-
-
-def iterative(system):
-    """The same bodies and contacts, element by element, with conjugate gradients and multigrid."""
-    old = system.assembly
-    assembly = Assembly(old.bodies)
-    if old.cage is not None:
-        assembly.hold(old.cage)
-    return ElasticSystem(assembly, system.contact, old.bodies[0].operator.moduli[1], system.load)
-
-
-def test_cost_beside_other_solvers(claim):
-    scene = load_scene(COARSE)
-    plan, spent = make_plan(scene), []
-    for reduced in (True, True, False):  # the first compiles
-        begin = time.process_time()
-        model = build_model(scene, plan)
-        if not reduced:
-            model.system.bodies.system = iterative(model.system.bodies.system)
-        solve_equilibrium(model)
-        spent.append(time.process_time() - begin)
-    _, superelements, former = spent
-    claim("63 120 elements: CPU time over the iterative solver's", superelements / former, at_most=0.1, **COST,
-          source="one process, compiled")  # fmt: skip
-    claim("63 120 elements: CPU time over CalculiX's", superelements / CALCULIX_BEARING, at_most=0.1, **COST,
-          source=f"{CALCULIX_BEARING:g} CPU-s, same size, facets")  # fmt: skip
 
 
 def test_one_point_hexahedra(claim):

@@ -51,7 +51,7 @@ OWN, HERTZIAN = {"basis": "own other method"}, {"basis": "closed form", "source"
 
 def rows_of(benchmark):
     """In a process of its own: its peak memory is that of this case."""
-    words = [sys.executable, "-m", f"checks.{benchmark}", "--json"]
+    words = [sys.executable, "-m", f"checks.{benchmark}"]
     return json.loads(subprocess.run(words, cwd=ROOT, stdout=subprocess.PIPE, check=True).stdout)["rows"]
 
 

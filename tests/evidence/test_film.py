@@ -7,12 +7,12 @@ import time
 import numpy as np
 import pytest
 
-from checks.validation.film import OIL, ROLLED, SPINDLE, motion, rolled, scene, skf_reduction  # fmt: skip
+from checks.validation.film import OIL, ROLLED, SPINDLE, rolled, scene, skf_reduction  # fmt: skip
 from checks.validation.ross_rotor import in_ross
 from checks.validation.scenes import built_in
 from raceway import build_model, scene_from_dict
 from raceway.core.contact.film import film, thermal_reduction
-from raceway.extend import TIME_CONSTANTS, run, simulate, solve_equilibrium
+from raceway.extend import run, simulate, solve_equilibrium
 from raceway.scene.lubricant import GRADES, Walther
 
 Film = built_in("contact_law", "film")
@@ -20,7 +20,6 @@ Film = built_in("contact_law", "film")
 pytestmark = pytest.mark.night
 
 HERTZ = {"kind": "hertz"}
-INTEGRATORS = ("newmark", "generalized_alpha", "central_difference")
 
 
 @pytest.mark.parametrize(
@@ -88,32 +87,6 @@ def test_decrement_of_a_rotor(claim):
     misses = "K of 235 N/um, tilt locked, is stiffer: it takes a smaller part of the motion, and damps less at the same tau"
     claim(f"{quantity}: least", min(values), at_least=8e-4, basis="other program", source=source, misses=misses)
     claim(f"{quantity}: largest", max(values), at_most=1.3e-2, basis="other program", source=source)
-
-
-def test_energy(claim):
-    drifts = []
-    for kind in INTEGRATORS:
-        method = {"kind": kind, "steps_per_turn": 2000, "turns": 6}
-        for tau in TIME_CONSTANTS:
-            tables = {"integrator": method, "rotor": {"mass": 2.0}, "excitation": {"force": 200.0}}
-            found = run(scene({**HERTZ, "time_constant": tau}, kinematics={"ball_inertia": False}, **tables))
-            drifts.append(found.stability["energy_drift"])
-    quantity = "drift of the energy balance with c = tau k, three integrators: largest"
-    source = "losses integrated from 2000 samples a turn: quadrature of second order"
-    claim(quantity, max(drifts), at_most=1e-4, basis="closed form", source=source)
-
-
-def test_order(claim):
-    """Over four halvings of the step, against sixteen times finer steps of the same method."""
-    counts, orders = [360, 720, 1440, 2880], []
-    for law, kind in [(law, kind) for law in (HERTZ, OIL) for kind in INTEGRATORS]:
-        contact = {**law, "time_constant": TIME_CONSTANTS[0]}
-        finest = motion(kind, contact, 16 * counts[-1], 90)
-        errors = [np.abs(motion(kind, contact, count, 90) - finest).max() for count in counts]
-        orders.append(-float(np.polyfit(np.log(counts), np.log(errors), 1)[0]))
-    furthest = max(orders, key=lambda order: abs(order - 2.0))
-    quantity = "order with c = tau k, laws hertz and film, three integrators, furthest from 2"
-    claim(quantity, furthest, near=2.0, within=0.05, basis="closed form", source="order 2 of the methods")
 
 
 def test_cost(claim):

@@ -13,7 +13,7 @@ import pytest
 
 from checks.validation.condensed import largest, quantities, tables
 from raceway import scene_from_dict
-from raceway.testing import model_of, run, settled, simulate, solve_equilibrium
+from raceway.testing import run, settled
 
 pytestmark = pytest.mark.night
 
@@ -123,38 +123,3 @@ def test_friction_of_a_bearing(claim, force):
     why = "a resultant has Mindlin's first stiffness until it slides, points give half as much again before they do"
     source = "all contacts slide: the same mu Q over the same way"
     claim(f"{quantity}: damping", damping, within=0.15, **bounds, source=source, misses=why if force == 200.0 else "")
-
-
-def dynamic_stiffness(model):
-    equilibrium = solve_equilibrium(model)
-    motion = simulate(model, equilibrium, lambda what, done, total: None)
-    return float(model.scene.identifier.method.identify([motion.record], equilibrium, model).equivalent_stiffness)
-
-
-@pytest.mark.parametrize(("rpm", "within"), [(12000.0, 2e-5), (50000.0, 2e-3)])
-def test_inertia_of_balls(claim, rpm, within):
-    """Dynamic stiffness with and without the balls' mass against K_ee - K_ep (K_pp - m w^2)^-1 K_pe of the tangents at rest."""
-    given = tables(points=3, load={"axial": 1000.0}, rotor={"mass": 2.0}, kinematics={})
-    given["contact"]["damping"] = 0.0
-    given["excitation"] = {"kind": "bidirectional", "speed_rpm": rpm, "amplitude": "constant", "force": 200.0}
-    given["integrator"] = {"kind": "newmark", "turns": 4, "steps_per_turn": 90}
-    stiffness = []
-    for factor in (1.0, 0.0):
-        model = model_of(given)
-        stiffness.append(
-            dynamic_stiffness(
-                attrs.evolve(model, system=attrs.evolve(model.system, ball_mass=factor * model.system.ball_mass))
-            )
-        )
-    model, rest = settled(given)
-    system = model.system
-    system.evaluate(rest.displacement, ball=rest.ball)
-    row, jacobian = system.pool.row(system.table), system._groove(rest.displacement, np.zeros(5), 0.0)[1]
-    still = row.balls.smoothed_stiffness(row.last, row.centre, row.where)
-    mass = system.ball_mass * (2.0 * np.pi * rpm / 60.0) ** 2 * np.eye(len(still.ball_stiffness))
-    moving = attrs.evolve(still, ball_stiffness=still.ball_stiffness - mass)
-    without, having = ((jacobian.T @ row.balls.tangent(one) @ jacobian)[1, 1] for one in (still, moving))
-    error = abs(stiffness[0] / stiffness[1] - having / without)
-    quantity = f"relative change of the dynamic stiffness by the mass of the balls, {rpm:g} r/min: error"
-    source = f"linear theory with tangents at rest, change {having / without - 1.0:.2g}; points ripple by some percent"
-    claim(quantity, error, at_most=within, **OWN, source=source)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 
-import attrs
 import numpy as np
 import pytest
 
@@ -16,11 +15,8 @@ from checks.validation.reference.shooting import periodic as shooting
 from checks.validation.reference.shooting import rotating as turning
 from checks.validation.reference.shooting import swinging
 from checks.validation.scenes import built_in, rig_force, rotating
-from raceway.core.periodic.branches import force_continuation
 from raceway.core.periodic.refinement import displacements, states
-from raceway.core.periodic.search import highest_order, mesh_of, problem_of
 from raceway.core.periodic.special_points import FOLD, PAIR
-from raceway.core.periodic.turn import one_turn
 from raceway.core.signals import stiffness
 from raceway.extend import Motion, Schedule, integrate
 from raceway.scene.growth import ring_inertia
@@ -138,33 +134,6 @@ def test_multipliers(claim):
     )
     quantity = "decay of disturbances, contacts with 20 N s/m: largest relative difference"
     claim(quantity, error, at_most=0.05, basis="own other method", source=source)
-
-
-def test_no_motion_grows_out_of_rest(claim):
-    """Both branches turn back before the whole force and end, at no force, as a free vibration; the motion there is unstable."""
-    folds, growths = [], []
-    for tables in (
-        scene(600.0, "free", 13500.0, True, excitation=ONE_WAY), scene(400.0, "locked", 15000.0, True, excitation=ONE_WAY)
-    ):  # fmt: skip
-        model = model_of(tables)
-        equilibrium, system = solve_equilibrium(model), model.system
-        speed, q = 2.0 * np.pi / model.excitation.period_s, equilibrium.displacement
-        problem = attrs.evolve(problem_of(system, speed, q, False), symmetry=one_turn(system))
-        mesh = mesh_of(problem, highest_order(problem, equilibrium.stiffness))
-        shares = [point.parameter for point in force_continuation(problem, q, equilibrium.stiffness, mesh)]
-        assert abs(shares[-1]) < 0.02
-        folds.append(max(shares))
-        floquet = solved(tables).stability["floquet"]
-        assert floquet["verdict"] == "unstable"
-        growths.append(floquet["largest"])
-        spread = ramped(tables, 60, 720).identification.spread
-        assert spread is None or spread > 0.1, "single turns of a transient repeat: it has a steady motion"
-    where = "600 N, tilt free, 13 500 r/min and 400 N, tilt locked, 15 000 r/min, force of one direction"
-    source = "a ramped transient of 60 turns repeats no turn"
-    quantity = f"share of the force where the branch from rest ends, {where}: larger one"
-    claim(quantity, max(folds), at_most=1.0, basis="own other method", source=source)
-    quantity = f"growth of disturbances per turn at the full force, {where}: smaller one"
-    claim(quantity, min(growths), at_least=1.0, basis="own other method", source=source)
 
 
 def test_motion_that_is_taken(claim):
