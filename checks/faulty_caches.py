@@ -64,7 +64,6 @@ HARMS: dict[str, harm.Harm] = {
     "zeros to the end": harm.zeroed_tail,
     "page of zeros": harm.zeroed_page,
     "one bit": harm.flipped,
-    "some bytes": harm.scrambled,
     "swapped with another": harm.another,
     "swapped with another, digest and all": _beside(harm.another, ""),
     "foreign": harm.no_such_file,

@@ -316,12 +316,6 @@ def test_no_line_crosses_a_point_that_failed():
     assert len(broken) == 1 and np.isnan(broken[0].get_ydata()[1])
 
 
-def test_the_words_are_not_fixed():
-    text = "\n".join(_synthetic(lambda point: 1e8 * (1.5 if point["excitation.kind"] == "bidirectional" else 1.0)).words)
-    assert "excitation.kind from unidirectional to bidirectional changes it by +50.0 %" in text
-    assert "the axes act independently" in text
-
-
 def with_error(made, error, **point):
     """The same, the rows at these places of the axes with another error."""
     rows = [

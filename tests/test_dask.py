@@ -84,7 +84,6 @@ def test_a_scheduler_that_does_not_answer(tmp_path, listens):
         address = f"tcp://127.0.0.1:{door.getsockname()[1]}"
         if listens:
             door.listen()
-        # That the patience is kept in seconds is a row of ``python -m checks dask``.
         with pytest.raises(PluginError) as told:
             fill_store(prepared(tmp_path / "store"), Dask(scheduler=address, patience=1.0))
     assert f"no dask scheduler answers at `{address}` within 1 s" in str(told.value)

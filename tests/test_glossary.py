@@ -83,8 +83,3 @@ def test_the_codes_name_exists(row, scene_keys, result_keys):
         assert repr(value.strip('"')) in scene_keys[name]
     else:
         assert name in scene_keys or name in result_keys or (name.startswith("raceway.") and can_be_imported(name))
-
-
-def test_the_lists_of_documents_name_it():
-    assert "(glossary.md)" in (DOCS / "index.md").read_text(encoding="utf-8")
-    assert "(docs/glossary.md)" in (DOCS.parent / "README.md").read_text(encoding="utf-8")

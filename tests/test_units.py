@@ -106,11 +106,6 @@ def test_the_scene_holds_numbers_only_and_the_title_says_them():
     )
 
 
-def test_numbers_without_a_unit_are_the_same_bits():
-    tables = b7206c(load={"axial": 0.1 + 0.2})
-    assert rw.Scene.from_dict(tables).load.axial == 0.1 + 0.2
-
-
 @attrs.frozen
 class Units:
     """Units as pint writes them."""

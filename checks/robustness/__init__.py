@@ -3,7 +3,6 @@
 fuzz                  scenes that nobody would write, made from the schema, and calls with wrong arguments
 damage                stores and caches that were damaged
 signals               commands that are asked to end
-dask                  workers that are killed
 types                 what editors and type checkers see of the package
 words                 length of the documents, terms that the field does not know
 unchanged             numbers of results, compared with another commit: --base COMMIT

@@ -66,7 +66,6 @@ _BOTH = "state, reason, content, cost, digest"
 HARMS: dict[str, Callable[[Path, Path, random.Random], None]] = {
     "cut": harm.cut,
     "one bit": harm.flipped,
-    "some bytes": harm.scrambled,
     "page of zeros": harm.zeroed_page,
     "zeros to the end": harm.zeroed_tail,
     "two pages swapped": harm.swapped_pages,

@@ -13,8 +13,7 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 import raceway as rw
-from raceway import Scene, make_plan
-from raceway.testing import simulate, solve_equilibrium
+from raceway import Scene
 
 #: B7206C as the scenes here have it.
 BALLS, DIAMETER, PITCH, CONFORMITY, ANGLE = 12, 9.525e-3, 46e-3, 0.522, pi / 12.0
@@ -174,14 +173,3 @@ def springs(model: rw.Model | Any, equilibrium: Any) -> float:
     length = np.hypot(centre[:, 0], centre[:, 1])
     prestress = force / length * np.sin(angle) ** 2 * np.cos(model.azimuth) ** 2
     return float(equilibrium.stiffness[1, 1] - prestress.sum())
-
-
-def motion(integrator: str, contact: dict[str, Any], steps_per_turn: int, keep: int) -> np.ndarray:
-    """(n, 2) radial motion at ``keep`` samples a turn, two turns after the force was applied suddenly."""
-    excitation = {"force": 200.0}
-    method = {"kind": integrator, "turns": 2, "steps_per_turn": steps_per_turn, "start": "static"}
-    found = scene(contact, excitation=excitation, integrator=method, rotor={"mass": 2.0}, kinematics={"ball_inertia": False})
-    model = rw.build_model(found, make_plan(found))
-    whole = simulate(model, solve_equilibrium(model)).whole
-    every = len(whole.time) // (2 * keep)
-    return np.asarray(whole.displacement[every - 1 :: every, 1:3])

@@ -45,15 +45,6 @@ def flipped(path: Path, other: Path, chance: random.Random) -> None:
     path.write_bytes(bytes(content))
 
 
-def scrambled(path: Path, other: Path, chance: random.Random) -> None:
-    """Up to 64 bytes in a row."""
-    content = bytearray(path.read_bytes())
-    begin = chance.randrange(len(content))
-    end = min(len(content), begin + chance.randint(2, 64))
-    content[begin:end] = chance.randbytes(end - begin)
-    path.write_bytes(bytes(content))
-
-
 def swapped_pages(path: Path, other: Path, chance: random.Random) -> None:
     content = path.read_bytes()
     pages = [content[k : k + PAGE] for k in range(0, len(content), PAGE)]

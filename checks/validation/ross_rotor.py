@@ -17,7 +17,6 @@ import os
 import subprocess
 import sys
 import tempfile
-import warnings
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -118,15 +117,6 @@ def rig_rotor(ross: Any, make: Any) -> Any:
     return ross.Rotor(shaft, [disc], [make(0), make(6)])
 
 
-def respond(rotor: Any, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Complex amplitudes [m] along ROSS's x and y at the disc and at the first bearing: (2, 2, n)."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        found = rotor.run_unbalance_response(3, UNBALANCE, 0.0, list(speeds)).forced_resp
-    dofs = rotor.number_dof
-    return np.asarray(found)[3 * dofs : 3 * dofs + 2], np.asarray(found)[:2]
-
-
 def rolling(ross: Any, axial: float, damping: float = 0.0) -> Any:
     """The rig's rotor on two ``RollingBearing``, with a damper at the disc [N s/m]."""
     from raceway.ross import RollingBearing
@@ -138,17 +128,12 @@ def rolling(ross: Any, axial: float, damping: float = 0.0) -> Any:
     return ross.Rotor(rotor.shaft_elements, rotor.disk_elements, [*rotor.bearing_elements, damper])
 
 
-def inside(ross: Any, axial: float) -> dict[str, float]:
-    """K [N/m] and force [N] that ``raceway.ross`` finds at the rotor's own amplitude."""
+def inside(ross: Any, axial: float) -> float:
+    """K [N/m] that ``raceway.ross`` finds at the rotor's own amplitude."""
     from raceway.ross import run_unbalance_response
 
     found = run_unbalance_response(rolling(ross, axial), 3, UNBALANCE, 0.0, [SPEED_RPM * np.pi / 30.0])
-    tag = next(iter(found.stiffness))
-    return {
-        "k": float(found.stiffness[tag][0, 0, 0]),
-        "force": float(abs(found.force[tag][0, 0])),
-        "runs": int(found.runs[0]),
-    }
+    return float(next(iter(found.stiffness.values()))[0, 0, 0])
 
 
 def in_time(ross: Any, axial: float = 400.0, steps: int = 128, turns: int = 40) -> dict[str, float]:

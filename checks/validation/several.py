@@ -12,8 +12,6 @@ from raceway import Result
 from raceway.scene.growth import ring_inertia
 
 Tables = dict[str, Any]
-#: Speed of the force in both scenes [rad/s].
-W = 15000.0 * np.pi / 30.0
 
 
 class Damped(Ring):

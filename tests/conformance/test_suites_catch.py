@@ -17,7 +17,6 @@ from raceway.testing.suite import EXPECTED_FAILURES
 from tests import broken_laws
 from tests.broken_bodies import BROKEN
 
-Hertz = built_in("contact_law", "hertz")
 CentralDifference = built_in("integrator", "central_difference")
 GeneralizedAlpha = built_in("integrator", "generalized_alpha")
 Newmark = built_in("integrator", "newmark")

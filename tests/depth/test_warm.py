@@ -7,7 +7,6 @@ from math import radians
 import numpy as np
 import pytest
 
-from checks.validation.fits import ALUMINIUM, fits_by_hand
 from checks.validation.reference.ring import Ring
 from checks.validation.reference.row_set import RowSet, press, warmed
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
@@ -19,7 +18,45 @@ from raceway.testing import run, solve_equilibrium
 
 DISTANCE = 16e-3
 STEEL = 12.5e-6
+ALUMINIUM = {"young": 70e9, "poisson": 0.33, "density": 2700.0, "thermal_expansion": 23e-6}
 TEMPERATURES = {"inner_temperature": 14.0, "outer_temperature": 5.0, "ball_temperature": 11.0}
+
+
+def lame(inside: float, outside: float, pressures: tuple[float, float], radius: float, body) -> float:
+    """Radial displacement [m] of a plane-stress annulus under pressures inside and outside [Pa], at a radius.
+
+    References
+    ----------
+    Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 28.
+    """
+    a, b, (p, q) = inside, outside, pressures
+    first = (p * a**2 - q * b**2) / (b**2 - a**2)
+    second = (p - q) * a**2 * b**2 / (b**2 - a**2)
+    return ((1.0 - body.poisson) * first * radius + (1.0 + body.poisson) * second / radius) / body.young
+
+
+def fits_by_hand(scene) -> tuple[float, float]:
+    """Growth of inner and outer raceway [m]: the pressure at which both surfaces of a fit meet; 0 where they do not.
+
+    Notes
+    -----
+    The axis of a solid shaft is a hole of 1 nm here, a housing without a diameter 1 km wide.
+    """
+    b, warm = scene.bearing, scene.mounting
+    race, bore, rings = 0.5 * (b.pitch_diameter - b.ball_diameter), 0.5 * (b.bore or 0.0), b.rings
+    core, shaft, housing = max(0.5 * warm.shaft_bore, 1e-9), warm.shaft_material or rings, warm.housing_material or rings
+    steel = rings.thermal_expansion or 0.0
+    tight = 0.5 * warm.shaft_interference + bore * warm.inner_temperature * ((shaft.thermal_expansion or 0.0) - steel)
+    unit = lame(bore, race, (1.0, 0.0), bore, rings) - lame(core, bore, (0.0, 1.0), bore, shaft)
+    inner = lame(bore, race, (max(tight, 0.0) / unit, 0.0), race, rings)
+    race, seat, wide = (
+        0.5 * (b.pitch_diameter + b.ball_diameter),
+        0.5 * (b.outer_diameter or 0.0),
+        0.5 * (warm.housing_diameter or 1e3),
+    )
+    tight = 0.5 * warm.housing_interference - seat * warm.outer_temperature * ((housing.thermal_expansion or 0.0) - steel)
+    unit = lame(seat, wide, (1.0, 0.0), seat, housing) - lame(race, seat, (0.0, 1.0), seat, rings)
+    return inner, lame(race, seat, (0.0, max(tight, 0.0) / unit), race, rings)
 
 
 def scene(word="DB", preload=300.0, kinematics=None, bearing=None, **mounting):

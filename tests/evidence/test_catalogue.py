@@ -8,7 +8,6 @@ from collections import defaultdict
 from functools import cache
 
 import numpy as np
-import pytest
 from raceway_catalogue.inferred import STIFFNESS_95
 from raceway_catalogue.printed import printed_by
 from raceway_catalogue.rating_conventions import stiffnesses
@@ -231,10 +230,3 @@ def test_spread_between_makers(claim):
         share = np.mean([low <= change <= high for change in found])
         quantity = f"{len(found)} axial stiffnesses of other makers beside series {series}: share within {100 * low:+.0f} to {100 * high:+.1f} %"
         claim(quantity, share, at_least=0.95, basis="published", source="GMN, NTN-SNR; what a result says of other makers")
-
-
-@pytest.mark.night
-def test_time(claim):
-    spent = sum(one[1] for one in (inferred("nsk", "--conformity", "0.522"), inferred("gmn"), of_scenes("nsk")))
-    quantity = "processor time of both inferences and 384 scenes"
-    claim(quantity, spent, at_most=10.0, unit="s", basis="regression", source="a catalogue is made while one waits")

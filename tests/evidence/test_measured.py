@@ -225,11 +225,6 @@ def test_contact_angle_fitted_to_signals(claim, tmp_path):
     claim(quantity, float(np.mean(covered)), at_least=SHARE, basis="closed form", source="95 %, one of twelve may miss")
 
 
-def furthest(shares) -> float:
-    """From 95 %."""
-    return float(max(shares, key=lambda share: abs(share - 0.95)))
-
-
 def test_contact_angle_fitted_to_stiffness_over_load(claim):
     """Weights by one relative error, which the scatter of half a per cent shows."""
     loads, count, random, inside = (400.0, 600.0, 900.0, 1300.0, 1800.0, 2400.0), 100, np.random.default_rng(5), 0

@@ -23,8 +23,6 @@ from raceway.scene.growth import ring_inertia
 from raceway.testing import model_of, run, simulate, solve_equilibrium
 
 Newmark = built_in("integrator", "newmark")
-Periodic = built_in("integrator", "periodic")
-
 pytestmark = pytest.mark.night
 
 ONE_WAY = {"kind": "unidirectional"}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import radians
-from time import process_time
 
 import numpy as np
 import pytest
@@ -129,41 +128,8 @@ def test_different_and_warm_rows(claim):
     claim(quantity, off, at_most=1e-5, **RING)
 
 
-def test_cost_of_rows(claim):
-    """Runs by turns, so that a slow moment of the machine meets all."""
-    tables = {
-        "excitation": {"kind": "bidirectional", "speed_rpm": 12000, "unbalance": 1e-4},
-        "integrator": {"turns": 24, "steps_per_turn": 1440},
-        "load": {"axial": 800.0},
-        "rotor": {"mass": 2.0},
-    }
-    scenes = {
-        count: scene_of(word, kinematics={"ball_inertia": True}, **tables)
-        for count, word in ((1, "single"), (2, "DT"), (4, "QT"))
-    }
-    spent = {count: [] for count in scenes}
-    for _ in range(9):
-        for count, scene in scenes.items():
-            begin = process_time()
-            run(scene)
-            spent[count].append(process_time() - begin)
-    ratio = max(min(spent[count]) / (count * min(spent[1])) for count in (2, 4))
-    quantity = "processor time of a run of 2 and 4 rows over that of as many runs of one row: larger"
-    claim(
-        quantity,
-        ratio,
-        at_most=1.05,
-        basis="regression",
-        source="work grows with the rows; 5 % is the spread of least times",
-    )
-
-
 def ran(**tables):
     return run(scene_from_dict({"title": "running", "bearing": {"preset": "B7206C"}, **tables}))
-
-
-def pair(**tables):
-    return ran(bearing={"preset": "B7206C", "arrangement": "DB", "preload": 300.0}, **tables)
 
 
 LIGHT = {"load": {"axial": 400.0}, "rotor": {"mass": 2.0}}

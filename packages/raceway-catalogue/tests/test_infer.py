@@ -91,15 +91,6 @@ def test_one_printed_angle_gives_the_same_balls(series):
         assert alone.ball_diameter.value == whole.ball_diameter.value, one.names
 
 
-@pytest.mark.parametrize("step", [12, pytest.param(3, marks=pytest.mark.slow)])
-def test_the_practice_need_not_be_said(series, step):
-    """Measured: of all 249 single lines one is taken for the other practice with another ball count, and says that it is in doubt."""
-    balls = {name: found.ball_count.value for found in series.values() for name in found.printed.names}
-    wrong = [x for x in map(infer_printed, printed_by("nsk")[::step]) if x.ball_count.value != balls[x.printed.names[0]]]
-    assert len(wrong) <= 1
-    assert all(x.share < 0.6 for x in wrong)
-
-
 def test_balls_of_whole_millimetres_are_found_where_no_inch_size_fits():
     """16 balls of 11 mm on 80 mm, 25 deg: ratings by the standards, rounded to three digits as makers print."""
     row = BallRow(16, 11e-3, 80e-3, np.radians(25.0))

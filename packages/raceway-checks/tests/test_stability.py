@@ -141,13 +141,6 @@ def test_the_slope_of_the_stored_energy_is_the_load_that_a_sum_over_balls_misses
     assert along.sum() / 1e5 - 1.0 > 0.02
 
 
-def test_friction_is_judged_where_it_acts():
-    """Equilibria know none: with it they are what they are without it, which no row of theirs could fail."""
-    assert any(one.measure == "scenes:rubbing" and one.arguments["changes"]["contact.friction"] == 1.0 for one in CASES)
-    still = ("scenes:points_at_rest", "elastic:calibrated_at_rest")
-    assert not any("friction" in one.name for one in CASES if one.measure in still)
-
-
 def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():
     (row,) = case_rows(case("answer"), REGISTRY)
     assert row.verdict == FAILED and row.note.startswith("KeyError in stability_cases.py")
