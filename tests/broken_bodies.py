@@ -8,8 +8,7 @@ import numpy as np
 from checks.validation.scenes import built_in
 from raceway import ConvergenceError, Mistake, make_plan
 from raceway.bodies.rigid_bearing import RigidBearing
-from raceway.extend import System
-from raceway.framework.contracts import Cost, Traits
+from raceway.extend import Cost, System, Traits
 
 Rigid = built_in("bodies", "rigid")
 

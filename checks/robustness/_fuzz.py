@@ -24,8 +24,7 @@ import numpy as np
 from checks.robustness._doors import called
 from checks.robustness._scenes import fill, scene
 from raceway import ConvergenceError, RacewayError, Result, Scene, ScenePlan, load_scene, make_plan, scene_from_dict
-from raceway.extend import resolve, run
-from raceway.planning.cost import START_S
+from raceway.extend import START_S, resolve, run
 from raceway.planning.resolve import record_bytes
 from raceway.planning.rules import foreseen, scene_warnings
 

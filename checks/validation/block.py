@@ -10,9 +10,9 @@ import scipy.sparse.linalg as solvers
 
 from checks.validation.reference import elastic
 from raceway.core.fem.elastic.friction import CoulombFriction
-from raceway.core.record import Observation, State
+from raceway.core.record import Observation
 from raceway.core.threads import ThreadPool
-from raceway.extend import HexOperator, Motion
+from raceway.extend import HexOperator, Motion, State
 
 YOUNG, POISSON, DENSITY = 2e9, 0.3, 7810.0
 

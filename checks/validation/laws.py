@@ -9,7 +9,7 @@ import numpy as np
 
 from checks.validation.scenes import built_in
 from raceway import LAW, hookimpl, jit, option, positive
-from raceway.framework.contracts import ContactPairs
+from raceway.extend import ContactPairs
 
 Hertz = built_in("contact_law", "hertz")
 

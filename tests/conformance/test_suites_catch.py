@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from checks.validation.scenes import built_in
-from raceway.core.time.schemes import Drivers
+from raceway.extend import Drivers
 from raceway.testing import BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, suite_of
 from raceway.testing import suite as suites
 from raceway.testing.contact_law import exponents
