@@ -538,7 +538,7 @@ class BodiesKind(attrs.AttrsInstance, Protocol):
     3. ``stable_step(problem)``: rough stable limit of explicit steps [s]; None where nothing is known.
     4. ``decide(problem, parts)``: the bodies' own parts, each included or left out with its reason (``raceway.planning.parts``).
     5. ``cost(problem, balls, motion, parts)``: ``Cost``, by what was decided for the balls and the motion.
-    6. ``build(problem, plan)``: a ``raceway.extend.BuiltBearing``: arrays and kernels, no equilibrium yet.
+    6. ``build(problem, plan)``: a ``BuiltBearing`` of ``raceway.extend``: arrays and kernels, no equilibrium yet.
     7. The fields of the class are the keys of the table [bodies] beside ``kind``.
     8. May be left out: ``unused(tables)``: (key, reason) for each key of a scene's tables that changes nothing with these bodies.
     9. May be left out: ``example_scene()``, a classmethod: the tables of a small scene, less [bodies], that these bodies run,
