@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from raceway.storage import memory
+from raceway.storage import files as memory
 
 _MIB = 2**20
 
