@@ -11,5 +11,5 @@ uncertainty      intervals of headline quantities, from the errors and spreads o
 gradient         derivatives by the keys of the scene;  first_order: of its numbers, and their band over tolerances
 quantities       numbers of plug-ins at one solved point
 warm             steady temperatures of scenes with [heat]
-result           the result: result.json (content: its keys), formats of results;  run_screen, run_parts: its tables on a screen
+result           the result: result.json, formats of results;  content: its keys;  run_screen, run_parts: its tables on a screen
 """

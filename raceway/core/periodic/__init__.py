@@ -3,7 +3,7 @@
 collocation   the boundary-value problem on one mesh;  turn: Gauss points and symmetry of that;  newton: its iteration, compiled
 intervals     compiled: residuals, exact tangents, transfer matrices, rates and contacts, one interval after the other
 refinement    meshes halved where the error is made; the error that is left; equidistant samples
-branch        pseudo-arclength continuation over any parameter: special_points: folds, branch points, period doublings
+branch        pseudo-arclength continuation over any parameter;  special_points: folds, branch points, period doublings
 search        all motions: from a first guess or a neighbour;  branches: under a growing force, from another speed or load
 floquet       Floquet multipliers and stability
 orbits        compiled: steady orbits of many points;  fourier: one of them by Fourier collocation;  extremes: of the contact forces along them

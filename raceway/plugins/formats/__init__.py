@@ -1,4 +1,8 @@
-"""Formats: pictures and labelled arrays of one run; files of meshes and of arrays come from packages."""
+"""Files of one run, and what they see of it.
+
+pictures   orbit, spectrum, ball loads
+labelled   arrays with names, coordinates and units
+"""
 
 from __future__ import annotations
 
