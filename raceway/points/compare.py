@@ -240,6 +240,16 @@ def _item(tables: ReadTables, registry: Registry) -> Item:
     return Item(key, "runs", tables)
 
 
+def _planned_methods(scenes: list[Tables], registry: Registry) -> list[str | None]:
+    """Integrators of the scenes that record a motion; what is refused is so as it is run, too."""
+    methods = list[str | None]()
+    for tables in scenes:
+        with suppress(RacewayError):
+            problem = make_plan(scene_from_dict(tables, registry)).problem
+            methods += [problem.integrator.kind] if problem.recorded else []
+    return methods
+
+
 def _by_one_method(
     methods: Iterable[str | None], scenes: list[Tables], registry: Registry, notes: list[str]
 ) -> list[Tables]:
@@ -324,12 +334,7 @@ def compare(
     axes = axes_of(vary, tables, registry)
     title, places = refuse_mistakes(tables, axes, registry), list(points(axes))
     scenes = [tables_at(tables, point, registry, notes) for point in places]
-    methods = list[str | None]()
-    for scene_tables in scenes:
-        with suppress(RacewayError):  # what is refused is so as it is run, too
-            problem = make_plan(scene_from_dict(scene_tables, registry)).problem
-            methods += [problem.integrator.kind] if problem.recorded else []
-    scenes = _by_one_method(methods, scenes, registry, notes)
+    scenes = _by_one_method(_planned_methods(scenes, registry), scenes, registry, notes)
     items = [_item(scene, registry) for scene in scenes]
 
     def comparison(results: Iterable[Tables]) -> Comparison:

@@ -42,7 +42,7 @@ class Calibration:
 
     angles : (n,) contact angles [rad], ascending
     compliance : (n,) of ring and ball together, beyond Hertz: tangent, d(approach - Hertz's) / dQ [m/N]
-    uncertainty : how well it is known: what was still to come beyond the finer patch, and the scatter of its mean [m/N]
+    uncertainty : how well it is known: what was still to come beyond the finer patch, and the standard deviation of its mean [m/N]
     trend : change of (approach - Hertz's) / Q with the logarithm of the load, which is left out [m/N]
     load : where the compliance holds [N]
     """

@@ -263,7 +263,7 @@ def orbit_jacobian(level, mass, speed, dofs, J):
 
 @jit(void(TURNING, NUMBERS, MATRIX, VECTOR))
 def force_line(turning, numbers, push, force):
-    """1x line of the force, real and imaginary part (2, 5); ``force`` (5,) is scratch."""
+    """Synchronous (1x) component of the force, real and imaginary part (2, 5); ``force`` (5,) is scratch."""
     for i in range(5):
         push[0, i], push[1, i] = 0.0, 0.0
     for k in range(16):
@@ -287,7 +287,7 @@ def first_guess(centre, line, turning, u):
 
 @jit(void(MATRIX, float64, VECTOR, VECTOR))
 def harmonic_lines(u, sense, mean, line):
-    """Mean (5,) and 1x line (10,) of the motion u (n, 5)."""
+    """Mean (5,) and synchronous (1x) component (10,) of the motion u (n, 5)."""
     n = u.shape[0]
     for i in range(5):
         mean[i], line[i], line[5 + i] = 0.0, 0.0, 0.0
@@ -308,7 +308,7 @@ def harmonic_lines(u, sense, mean, line):
 
 @jit(float64(VECTOR, VECTOR))
 def line_difference(line, before):
-    """Of two 1x lines (10,), radial parts, over the first one."""
+    """Of two synchronous (1x) components (10,), radial parts, over the first one."""
     square, size = 0.0, 0.0
     for i in (1, 2, 6, 7):
         square += (line[i] - before[i]) ** 2

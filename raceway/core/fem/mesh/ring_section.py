@@ -177,7 +177,7 @@ class Outline:
 def polygon_outline(
     key: str, polygon: Sequence[Sequence[float]], inner: bool, groove: float, centre_x: float, centre_r: float
 ) -> Outline:
-    """The outline that a polygon of the whole section, groove not yet cut, stands for.
+    """The outline that a polygon of a section, its groove not yet cut, stands for.
 
     key : the scene's key, for messages
     polygon : [x, radius] of the corners in their order around the section [m]
