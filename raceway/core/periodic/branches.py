@@ -199,9 +199,11 @@ def _by_homotopy(
     """
     for ratio in (*(_NEAR if without_motion else ()), *_RATIOS):
         problem.watch()
-        at = partial(_at_speed, problem)
         with suppress(ConvergenceError):
-            candidate = _continued_to(at, q, tangent, tolerance, ratio, without_motion and ratio in _NEAR)
+            candidate = _continued_to(  # the bodies' own speed and the force stay
+                lambda part: attrs.evolve(problem, speed=part * problem.speed, clock=problem.speed),
+                q, tangent, tolerance, ratio, without_motion and ratio in _NEAR,
+            )  # fmt: skip
             return candidate, "from a higher speed" if ratio > 1.0 else "from a lower speed"
     if problem.system.load[0] == 0.0 or problem.system.free[0] == 0.0:
         return None
@@ -235,11 +237,6 @@ def _from_undamped(
             problem.watch()
             with suppress(ConvergenceError):
                 yield refine(search.full_steps(problem, motion.solved.path, 1e-2 * tolerance), tolerance)
-
-
-def _at_speed(problem: Problem, ratio: float) -> Problem:
-    """At another speed of the force, the bodies' own speed and the force itself unchanged."""
-    return attrs.evolve(problem, speed=ratio * problem.speed, clock=problem.speed)
 
 
 def _at_load(problem: Problem, ratio: float) -> Problem:
