@@ -59,11 +59,11 @@ class RacewayError(Exception):
         return Status.FAILED if self.exit_code == 1 else Status.REFUSED
 
 
-def extra(name: str) -> str:
-    """What to type for an extra of this package, or for a package "raceway-...", which are installed from their sources."""
-    source = f"./packages/{name}" if name.startswith("raceway-") else f".[{name}]"
-    source = f"'{source}'" if "[" in source else source
-    return f"pip install {source} in a checkout of Raceway"
+def extra(*names: str) -> str:
+    """What to type for an extra of this package, or for packages "raceway-...", which are installed from their sources."""
+    sources = (f"./packages/{name}" if name.startswith("raceway-") else f".[{name}]" for name in names)
+    words = " ".join(f"'{source}'" if "[" in source else source for source in sources)
+    return f"pip install {words} in a checkout of Raceway"
 
 
 @attrs.frozen

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -26,7 +27,9 @@ def declared() -> dict[Path, str]:
         listed |= {word: "" for several in commands.values() for about in several for word in about.aliases}
         found = ((kind, one) for kind, (hook, _) in KINDS.items() for one in getattr(plugin, hook, list)())
         plugins = [f"{kind}:{getattr(one, 'name', one)}" for kind, one in found]
-        packages[distribution] = {"names": own, "commands": listed, "plugins": sorted(plugins)}
+        project = tomllib.loads((FOLDER.parent / "packages" / distribution / "pyproject.toml").read_text(encoding="utf-8"))
+        needs = [word.partition("==")[0] for word in project["project"]["dependencies"] if word.startswith("raceway-")]
+        packages[distribution] = {"names": own, "commands": listed, "plugins": sorted(plugins), "needs": needs}
         names |= {name: module for name, module in own.items() if "." not in name}
     own_names = (FOLDER / "names.pyi").read_text(encoding="utf-8").partition("\n")[2]
     further = "".join(f"from {module} import {name} as {name}\n" for name, module in sorted(names.items()))

@@ -298,4 +298,4 @@ def dry_damping_words(damping: float | None, stiffness: float, remedy: str = _RE
     if damping is not None and abs(damping) > _NOTHING * rule:
         return None
     state = "is not resolved" if damping is None else "is 0" if damping == 0.0 else f"is {damping:.2g} N s/m"
-    return f"C {state}, dry; the rule of thumb of rotor programs, 1.25e-5 s K, gives {rule:.2g} N s/m: {remedy}"
+    return f"C {state}, nearly dry; the rule of thumb of rotor programs, 1.25e-5 s K, gives {rule:.2g} N s/m: {remedy}"

@@ -6,16 +6,15 @@ Nothing is imported until a name is used, so that ``import raceway`` and ``dir(r
 from __future__ import annotations
 
 from collections.abc import Iterator
-from importlib.util import find_spec
 from typing import Any
 
-from raceway.framework.packages import missing_package, named, packages
+from raceway.framework.packages import available, missing_package, named, packages
 
 
 def listed_commands() -> Iterator[tuple[str, str, str]]:
     """Heading, name and summary of each command that is installed beside ``raceway``'s own; those of third parties alone are imported."""
     for package, has in packages().items():
-        if find_spec(package.replace("-", "_")):
+        if available(package):
             parted = ((name, text.partition(": ")) for name, text in has["commands"].items() if text)
             yield from ((heading, name, summary) for name, (heading, _, summary) in parted)
     from importlib.metadata import entry_points
@@ -30,7 +29,7 @@ def listed_commands() -> Iterator[tuple[str, str, str]]:
 
 def public_names() -> list[str]:
     """Names that installed packages add to ``import raceway``."""
-    there = [has for package, has in packages().items() if find_spec(package.replace("-", "_"))]
+    there = [has for package, has in packages().items() if available(package)]
     return [name for has in there for name in has["names"] if "." not in name]
 
 
@@ -44,7 +43,7 @@ def further_name(name: str) -> Any:
     """
     for package, has in packages().items():
         if name in has["names"]:
-            if find_spec(package.replace("-", "_")) is None:
+            if not available(package):
                 raise AttributeError(f"raceway.{name} is {missing_package(name, 'names')}")
             return named(f"{has['names'][name]}:{name.rpartition('.')[2]}")
     from raceway.framework.registry import installed

@@ -3,26 +3,44 @@
 from __future__ import annotations
 
 import json
+import os
 from functools import cache
 from importlib import import_module
 from importlib.resources import files
+from importlib.util import find_spec
 from typing import Any
 
 
 @cache
-def packages() -> dict[str, dict[str, dict[str, str]]]:
-    """Distribution -> its "names" with their modules, its "commands" with heading and summary, its "plugins" as "kind:name"."""
-    text = files("raceway").joinpath("data/packages.json").read_text(encoding="utf-8")
-    content: dict[str, dict[str, dict[str, str]]] = json.loads(text)
+def packages() -> dict[str, dict[str, Any]]:
+    """Distribution -> its "names" with their modules, "commands" with heading and summary, "plugins" as "kind:name", others it "needs"."""
+    content: dict[str, dict[str, Any]] = json.loads(
+        files("raceway").joinpath("data/packages.json").read_text(encoding="utf-8")
+    )
     return content
 
 
+def names_in(variable: str) -> set[str]:
+    """Names of distributions and entry points that an environment variable lists."""
+    return {name for word in os.environ.get(variable, "").split(",") if (name := word.strip())}
+
+
+def available(package: str) -> bool:
+    """Whether one of the packages is installed and not disabled."""
+    return (
+        not names_in("RACEWAY_DISABLE") & {package, package.removeprefix("raceway-")}
+        and find_spec(package.replace("-", "_")) is not None
+    )
+
+
 def missing_package(word: str, part: str) -> str:
-    """Which of the packages has a word in a part, and how to install it; "" where none has."""
+    """Which of the packages has a word in a part, and how to get it; "" where none has."""
     from raceway.errors import extra
 
     package = next((package for package, has in packages().items() if word in has[part]), "")
-    return package and f"in {package}: {extra(package)}"
+    if package and find_spec(package.replace("-", "_")):
+        return f"in {package}, which RACEWAY_DISABLE leaves out"
+    return package and f"in {package}: {extra(*packages()[package]['needs'], package)}"
 
 
 def named(place: str) -> Any:

@@ -17,7 +17,7 @@ from typing import Any
 
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.options import nearest
-from raceway.framework.packages import packages
+from raceway.framework.packages import names_in, packages
 from raceway.storage.files import size_of
 
 #: Bytes of a plug-in file at most.
@@ -31,12 +31,11 @@ def chosen_entry_points(third_party: bool = True) -> tuple[list[EntryPoint], lis
         points = [p for p in points if owner(p)[0] in packages()]
     missing: list[str] = []
     every = {name for p in points for name in _called(p)}
-    exact = os.environ.get("RACEWAY_PLUGINS")
-    if exact is not None and third_party:
-        names = _names(exact)
+    if "RACEWAY_PLUGINS" in os.environ and third_party:
+        names = names_in("RACEWAY_PLUGINS")
         missing = sorted(names - every)
         points = [p for p in points if owner(p)[0] in packages() or names & _called(p)]
-    blocked = _names(os.environ.get("RACEWAY_DISABLE", ""))
+    blocked = names_in("RACEWAY_DISABLE")
     labels = sorted(every)
     for name in sorted(blocked - set(labels)):
         installed = f"installed: {', '.join(labels)}" if labels else "no plug-in is installed"
@@ -145,7 +144,3 @@ def import_file(path: Path) -> tuple[Any, str]:
         line = next((f", line {f.lineno}" for f in reversed(extract_tb(why.__traceback__)) if f.filename == str(path)), "")
         raise PluginError(f"plug-in file `{path}`{line}: {type(why).__name__}: {why}") from why
     return module, version
-
-
-def _names(text: str) -> set[str]:
-    return {word.strip() for word in text.split(",") if word.strip()}

@@ -287,7 +287,9 @@ class Problem(SceneTables):
         stable = self.stable_step if explicit else None
         if stable is None:
             return STEPS_PER_TURN, f"'auto' ({key})"
-        steps = stable_steps_per_turn(self.period, damped_step_limit(stable, self.time_constant))
+        # ``Ring.damped_time_step`` of one mode with the damping ratio z = tau / limit: limit (sqrt(1 + 4 z^2) - 2 z).
+        ratio = 2.0 * self.time_constant / stable
+        steps = stable_steps_per_turn(self.period, stable * (sqrt(1.0 + ratio**2) - ratio))
         return steps, f"'auto' ({key}): the stable step of '{self.integrator.kind}'"
 
     @cached_property
@@ -454,18 +456,6 @@ def resolve(scene: Scene) -> Problem:
     if why:
         return problem.integrated("newmark", why)
     return problem.integrated("periodic", "the force repeats every turn and contacts have no memory")
-
-
-def damped_step_limit(limit: float, time_constant: float) -> float:
-    """Rough stable limit of explicit steps [s] with dashpots c = tau k at the contacts, from that without them.
-
-    Notes
-    -----
-    ``Ring.damped_time_step`` for one mode: with w = 2 / limit and the damping ratio z = tau w / 2 = tau / limit it is
-    limit (sqrt(1 + 4 z^2) - 2 z).
-    """
-    ratio = 2.0 * time_constant / limit
-    return limit * (sqrt(1.0 + ratio**2) - ratio)
 
 
 def stable_steps_per_turn(period: float, limit: float) -> int:

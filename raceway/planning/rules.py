@@ -94,7 +94,7 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
     ),
     *GROWTH,
     *MOMENTS,
-    Rule("kinematics.orbiting", lambda p: p.kinematics.orbiting and p.spin_speed == 0.0, "needs a spin speed"),
+    Rule("kinematics.orbiting", lambda p: p.kinematics.orbiting and p.spin_speed == 0.0, "needs kinematics.spin_speed_rpm"),
     *(
         Rule(
             key, lambda p, key=key: p.spin_changes and not p.traits.compiled and _slow_key(p) == key,  # type: ignore[misc]

@@ -103,7 +103,9 @@ def read_toml(path: str | Path) -> Tables:
             with suppress(OSError, ValueError):  # no text, no TOML
                 scenes += [file.name] if "bearing" in tomllib.loads(file.read_text(encoding="utf-8")) else []
         hint = f" (did you mean '{stems[close[0]]}'?)" if close else ""
-        hint += f"; scenes there: {', '.join(scenes[:5])}" if scenes else ""
+        hint += (
+            f"; scenes there: {', '.join(scenes[:5])}{f' and {len(scenes) - 5} more' * (len(scenes) > 5)}" if scenes else ""
+        )
         raise SceneError.at(str(path), None, f"no such file{hint}") from None
     except (OSError, UnicodeDecodeError) as why:
         raise SceneError.at(str(path), None, f"cannot be read: {why_unreadable(why)}") from None

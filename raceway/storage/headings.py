@@ -1,7 +1,7 @@
 """Headings of measured files: where the table of numbers begins, and what the text above it says of names, units and times.
 
 The table is where several lines have numbers in the same places.  Above it stand its column headers, a line of units, and what an
-instrument says of itself.  No maker's format is known here; samples and sources of those that are tested: packages/raceway-measure/tests/instrument_files.py.
+instrument says of itself.  No maker's format is known here.
 """
 
 from __future__ import annotations

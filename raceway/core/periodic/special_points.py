@@ -56,7 +56,12 @@ def special_points(branch: Branch, start: Point, end: Point, size: float) -> lis
     Bifurcation Theory (1998), section 10.2.
     """
     specials = []
-    for kind, test in ((FOLD, lambda point: float(point.tangent[-1])), (BRANCH, branch.crossing), (DOUBLING, _doubling)):
+    tests: dict[str, Callable[[Point], float]] = {
+        FOLD: lambda point: float(point.tangent[-1]),
+        BRANCH: branch.crossing,
+        DOUBLING: lambda point: float(np.linalg.det(point.transfer + np.eye(len(point.transfer)))),
+    }
+    for kind, test in tests.items():
         if test(start) * test(end) < 0.0:
             specials.append(_Special(kind, *located(branch, start, end, size, test)))
     before, after = _outside(start), _outside(end)
@@ -83,10 +88,6 @@ def located(branch: Branch, start: Point, end: Point, size: float, test: Test) -
 
     length = brentq(value, 0.0, size, xtol=_CLOSE * size, rtol=1e-12)
     return points[length], length
-
-
-def _doubling(point: Point) -> float:
-    return float(np.linalg.det(point.transfer + np.eye(len(point.transfer))))
 
 
 def _outside(point: Point) -> tuple[int, int]:
