@@ -10,7 +10,7 @@ import pytest
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway import SceneError, make_plan, scene_from_dict
 from raceway.bodies.elastic_change import elastic_change
-from raceway.core.fem import structural as calibration
+from raceway.core.fem import calibration
 from raceway.testing import b7206c, run, settled
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
