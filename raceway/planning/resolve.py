@@ -287,9 +287,7 @@ class Problem(SceneTables):
         stable = self.stable_step if explicit else None
         if stable is None:
             return STEPS_PER_TURN, f"'auto' ({key})"
-        # ``Ring.damped_time_step`` of one mode with the damping ratio z = tau / limit: limit (sqrt(1 + 4 z^2) - 2 z).
-        ratio = 2.0 * self.time_constant / stable
-        steps = stable_steps_per_turn(self.period, stable * (sqrt(1.0 + ratio**2) - ratio))
+        steps = stable_steps_per_turn(self.period, damped_step_limit(stable, self.time_constant))
         return steps, f"'auto' ({key}): the stable step of '{self.integrator.kind}'"
 
     @cached_property
@@ -458,13 +456,14 @@ def resolve(scene: Scene) -> Problem:
     return problem.integrated("periodic", "the force repeats every turn and contacts have no memory")
 
 
-def stable_steps_per_turn(period: float, limit: float) -> int:
-    """Steps of 'auto' for an explicit method: the least multiple of 360 within ``SAFETY`` of the stable limit.
+def damped_step_limit(limit: float, time_constant: float) -> float:
+    """Stable limit of explicit steps [s] with dashpots c = tau k, from that without: ``Ring.damped_time_step`` of one mode."""
+    ratio = 2.0 * time_constant / limit
+    return limit * (sqrt(1.0 + ratio**2) - ratio)
 
-    Parameters
-    ----------
-    period : of a turn [s];  limit : stable step [s]
-    """
+
+def stable_steps_per_turn(period: float, limit: float) -> int:
+    """Steps of 'auto' of an explicit method in a turn [s]: the least multiple of 360 within ``SAFETY`` of the stable step [s]."""
     return STEPS_PER_TURN * max(1, ceil(period / (SAFETY * limit) / STEPS_PER_TURN))
 
 
