@@ -144,4 +144,4 @@ def test_files_for_other_programs_say_it():
         rw.export_coefficients(swept, kind="nastran").notes,
         rw.export_fmu(STATIC, ranges=["load.axial=900:1100"], outputs=["kyy"]).notes,
     ):
-        assert any("kyy of the scene itself" in note and "inferred geometry" in note for note in notes)
+        assert any("kyy of the scene itself" in note and "inferred geometry" in note for note in notes), notes
