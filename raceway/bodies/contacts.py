@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from raceway.bodies.basis import Basis
@@ -15,9 +13,6 @@ from raceway.framework.duties import is_foundation
 from raceway.planning.resolve import Problem
 from raceway.scene.growth import groove_depth, groove_edge, load_at_edge
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    pass
 
 
 def contact_angles(centre: np.ndarray, placed: bool, ball: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

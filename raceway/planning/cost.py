@@ -9,15 +9,11 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from functools import cache
-from typing import TYPE_CHECKING
 
 import attrs
 
 from raceway.planning.parts import Balls, PlannedMotion
 from raceway.planning.resolve import Problem, recorded_per_turn
-
-if TYPE_CHECKING:
-    pass
 
 #: How much less a step of an explicit method takes, whose steps iterate less.
 _EXPLICIT = 0.5

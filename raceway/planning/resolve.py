@@ -376,12 +376,13 @@ _UNSTEADY: tuple[Rule[Problem], ...] = (
 )  # fmt: skip
 
 
+def _asks_for_a_transient(key: str) -> Rule[Problem]:
+    return Rule(key, lambda p: p.says(key), f"`{key}` is set, a key of transients")
+
+
 #: Why integrator.kind = "auto" integrates over time nevertheless.
 _TRANSIENT: tuple[Rule[Problem], ...] = (
-    *(
-        Rule(key, lambda p, key=key: p.says(key), f"`{key}` is set, a key of transients")  # type: ignore[misc]
-        for key in ("integrator.turns", "integrator.steps_per_turn", "integrator.start")
-    ),
+    *map(_asks_for_a_transient, ("integrator.turns", "integrator.steps_per_turn", "integrator.start")),
     Rule("excitation.ramp_turns", lambda p: p.ramped, "the force grows from zero"),
     Rule("bodies.kind", lambda p: not p.traits.compiled, "forces of these bodies and contacts are not compiled"),
 )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import difflib
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +12,7 @@ import attrs
 
 from raceway.errors import Mistake, PluginError, SceneError
 from raceway.framework.options import nearest
-from raceway.framework.packages import named
+from raceway.framework.packages import named, names_in
 from raceway.framework.registry import Registry
 from raceway.scene.catalogue import preset, preset_of, with_material
 from raceway.scene.lubricant import lubricant_mistakes
@@ -96,7 +95,7 @@ def _unmet(
             if key in {canonicalize_name(word.strip("()")) for word in fault.source.split()}:
                 return f"is installed, but could not be loaded: {fault.reason}"
         for variable in ("RACEWAY_DISABLE", "RACEWAY_PLUGINS"):
-            words = {canonicalize_name(w.strip()) for w in os.environ.get(variable, "").split(",") if w.strip()}
+            words = {canonicalize_name(name) for name in names_in(variable)}
             if (variable == "RACEWAY_DISABLE" and key in words) or (
                 variable == "RACEWAY_PLUGINS" and words and key not in words
             ):

@@ -325,13 +325,22 @@ def _ratio(values: np.ndarray) -> float | None:
     return float(ratio) if np.isfinite(ratio) else None
 
 
+def _in_speed(_w: np.ndarray, speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> _Exponent | None:
+    return power_exponent(speeds / speeds[-1], values / values[0], errors * values / values[0], constant=True)
+
+
+def _above_lowest(w: np.ndarray, _speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> _Exponent | None:
+    star = values / values[0]
+    return power_exponent(w[1:], star[1:] - 1.0, (errors * star)[1:], constant=False)
+
+
 def _hardening(curves: Curves, measure: str) -> list[_Row]:
     """Claim 4, "approximately quadratic", in two readings, and in either."""
     claim = "Bidirectional: rises roughly quadratically with speed"
     rows: list[_Row] = []
-    for number, words, law in (
-        ("4a", "in the speed", f"{measure} = a + c w^p"),
-        ("4b", "in the speed above the lowest", "k* − 1 = c w*^p"),
+    for number, words, law, fit in (
+        ("4a", "in the speed", f"{measure} = a + c w^p", _in_speed),
+        ("4b", "in the speed above the lowest", "k* − 1 = c w*^p", _above_lowest),
     ):
         rule = (
             f"rotating force m e w²: {measure} rises at every step of the speed, by at least {LEVEL:.1%}, and by least squares {law} "
@@ -345,12 +354,7 @@ def _hardening(curves: Curves, measure: str) -> list[_Row]:
             for curve in surface.curves:
                 values, errors = curve.values(measure), curve.errors
                 rises = _is("rises", _course(values, errors, curve.failed))
-                star = values / values[0]
-                if number == "4a":
-                    points = speeds / speeds[-1], star, errors * values / values[0]
-                else:
-                    points = w[1:], star[1:] - 1.0, (errors * star)[1:]
-                power = power_exponent(*points, constant=number == "4a") if rises else None
+                power = fit(w, speeds, values, errors) if rises else None
                 quadratic = rises if not rises else None if power is None else power.roughly_quadratic
                 why = "" if quadratic is not None else curve.missing or "too few speeds for an exponent's interval"
                 findings.append(Finding({**model, "load": curve.load}, quadratic, _ratio(values), why))
