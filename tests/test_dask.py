@@ -29,10 +29,8 @@ def plugin(tmp_path_factory):
 def cluster(tmp_path_factory, plugin):
     found = Cluster(tmp_path_factory.mktemp("cluster"), plugin)
     try:
-        found.worker("first")
-        found.worker("second")
         found.bare_worker("without")
-        found.wait_for_workers(3)
+        found.wait_for_workers(1)
         yield found
     finally:
         found.stop()
@@ -41,6 +39,9 @@ def cluster(tmp_path_factory, plugin):
 @pytest.mark.slow
 def test_a_worker_killed_half_way_and_one_without_the_plugin_change_nothing(cluster, tmp_path):
     """Same bits as in one process: every worker runs its points with the same kernels."""
+    cluster.worker("first")
+    cluster.worker("second")
+    cluster.wait_for_workers(3)
     alone = fill_store(prepared(tmp_path / "serial"), Serial())  # first, so that kernels are compiled once
     killed = []
 

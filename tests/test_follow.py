@@ -204,7 +204,7 @@ def test_beyond_a_neimark_sacker_point_the_motion_is_quasi_periodic():
 
 @pytest.fixture(scope="module")
 def curve():
-    return rw.follow(SCENE, OVER)
+    return rw.follow(SCENE, "excitation.speed_rpm=10500:30000")
 
 
 def test_the_article_s_bearing_through_its_folds(curve):

@@ -139,12 +139,11 @@ def test_columns_have_the_derivatives_of_models(name):
     gradients = Gradients(model, still)
     keys = [key for key in continuous_keys(model.scene) if key.value]
     ends = gradients._ends(keys)
-    columns = gradients._by_columns(
-        [key for key in keys if key.path not in ends and not why_no_column(model.scene, key.path)]
-    )
+    keys = [key for key in keys if key.path not in ends and not why_no_column(model.scene, key.path)]
+    columns = gradients._by_columns(keys)
     assert len(columns) > 15
     numbers = {}
-    for key in keys:
+    for key in keys[list(MOVING).index(name) % 2 :: 2]:  # searches are dear: each key in two or three of the motions
         if key.path in columns:
             both = columns[key.path], gradients._by_models(key)
             numbers[key.path] = [

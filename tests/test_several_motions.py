@@ -101,7 +101,7 @@ def test_a_branch_that_closes_leads_to_the_stable_motion():
     assert multiplier == pytest.approx(1.0, abs=1e-6)
 
 
-@pytest.mark.parametrize("damping", [1e-6, 1e-3, 1.0])
+@pytest.mark.parametrize("damping", [1e-6, 1.0])
 def test_the_least_damping_does_not_hide_the_stable_motion(damping):
     """800 N: a crossing of branches that any damping parts; the motion beyond it is continued from the undamped ring."""
     tables = article(800.0, kind="periodic", tolerance=1e-9)

@@ -23,7 +23,7 @@ from checks.validation.scenes import built_in
 from raceway import PluginError, RacewayError, SceneError, __version__, scene_from_dict
 from raceway import sweep as front
 from raceway.extend import open_store, read_toml, tables_at, written
-from raceway.framework.contracts import Lost, Refused
+from raceway.framework.contracts import Refused
 from raceway.points.axes import Design, design_file, grid, listed_points, parse_axes
 from raceway.points.dataset import values_of
 from raceway.points.engine import Work
@@ -426,12 +426,6 @@ def test_a_worker_without_the_plugin_or_of_another_version_refuses(tmp_path):
 def test_processes_give_the_same_rows(tmp_path):
     design = grid(["excitation.speed_rpm=10980:15000:16"])
     assert swept(tmp_path / "a", design) == swept(tmp_path / "b", design, Processes(workers=2))
-
-
-def test_a_process_that_dies_costs_its_batch_only():
-    answers = dict(Processes(workers=2).compute(Deadly(), ((n, [n]) for n in (3, 4))))
-    assert isinstance(answers.pop(3), Lost)
-    assert answers == {4: [40]}
 
 
 GROWN: list[bytes] = []

@@ -43,7 +43,7 @@ def test_whole_bearing(supports, displacement, diagonal):
         assert value is None or 1e-6 * found.stiffness[index, index] == pytest.approx(value, rel=0.01)
 
 
-@pytest.mark.parametrize("tilt", ["locked", "free"])
+@pytest.mark.parametrize("tilt", [pytest.param("locked", marks=pytest.mark.slow), "free"])
 def test_resultants_on_beds_are_near_pressures_at_surface_points(tilt):
     """1 %, of which three points along a semi-axis take a half; displacements along normals only would be 13 % off in kxx."""
     both = {"tilt": tilt, "inner_seat": 1e11, "outer_seat": 1e11}

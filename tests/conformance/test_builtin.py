@@ -6,7 +6,8 @@ from raceway.extend import Registry
 from raceway.testing import check
 
 ENTRIES = list(Registry(third_party=False).all())
-MARKS = {"gmsh": pytest.mark.needs("gmsh"), "dask": pytest.mark.slow, "film": pytest.mark.slow, "elastic": pytest.mark.slow}
+DEAR = ("dask", "processes", "film", "elastic", "condensed", "cylindrical_rollers", "structured")  # own tests are quick
+MARKS = {"gmsh": pytest.mark.needs("gmsh"), **dict.fromkeys(DEAR, pytest.mark.slow)}
 
 
 @pytest.mark.parametrize(

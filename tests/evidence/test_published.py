@@ -12,10 +12,9 @@ from raceway_checks.verify.study import COMPUTED, verify
 
 
 @cache
-def numbers():
-    """Every number of every case."""
-    found = verify().rows
-    assert {row.case for row in found} == set(COMPUTED)
+def numbers(start: str):
+    """Every number of the cases whose names begin so."""
+    found = verify(only=[name for name in COMPUTED if name.startswith(start)]).rows
     assert all(row.computed is not None for row in found), [row.note for row in found if row.computed is None]
     return found
 
@@ -25,7 +24,7 @@ def largest(case: str, words: str | tuple[str, ...], count: int, tolerance: floa
 
     The command must hold each of them against the limit that stands here.
     """
-    chosen = [row for row in numbers() if row.case.startswith(case) and row.quantity.startswith(words)]
+    chosen = [row for row in numbers(case) if row.quantity.startswith(words)]
     assert len(chosen) == count and {row.tolerance for row in chosen} == {tolerance}
     return max(row.error for row in chosen)
 
@@ -95,6 +94,7 @@ def test_force_of_the_rig(claim):
     claim(quantity, error, at_most=1e-5, basis="closed form", source=source)
 
 
+@pytest.mark.night
 def test_peak_pressure_of_finite_elements(claim):
     where = "B7206C, peak pressure of finite elements"
     source = "Lubricants 2026, 14(3), 128, section 3.2: the largest deviation of ABAQUS from MESYS there"

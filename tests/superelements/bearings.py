@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import attrs
 import numpy as np
 
@@ -16,6 +18,9 @@ def built(**tables):
     """A model of three balls, eight cells around the rings for each: none that a contact may touch lies on a cut plane."""
     tables = {"mesh": {"azimuth_cells": 24}, "load": {"radial": [200.0, 100.0]}} | tables
     return model_of(TINY | {name: TINY.get(name, {}) | table for name, table in tables.items()})
+
+
+tiny = cache(built)
 
 
 def with_node_moved(model, bodies, part):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import pytest
 
@@ -12,7 +10,7 @@ from raceway.core.fem.elastic.assembly import BodyForces, CopiedStiffness
 from raceway.core.fem.elastic.superelement import Copies, same_bodies, sectors, turn
 from raceway.core.fem.hexahedron.rows import BlockRows
 from raceway.core.threads import ThreadPool
-from tests.superelements.bearings import built
+from tests.superelements.bearings import built, tiny
 
 Z = 5
 AZIMUTH = 0.3 + 2.0 * np.pi / Z * np.arange(Z)
@@ -46,9 +44,6 @@ def test_a_ball_with_a_node_moved_in_the_tenth_digit_is_a_group_of_its_own():
     bodies[1] = bodies[1][0], np.roll(bodies[1][1], 1, axis=0)
     bodies[3] = bodies[3][0][:-1], bodies[3][1]
     assert [members for _, members in same_bodies(bodies, AZIMUTH, starts)] == [[0, 2, 4], [1], [3]]
-
-
-tiny = cache(built)
 
 
 def ring_parts(index):

@@ -9,7 +9,7 @@ from raceway.core.fem.elastic import superelement_solver as linearised
 from raceway.core.fem.elastic.interface import Motions
 from raceway.core.fem.elastic.superelement import Closed, Loose
 from raceway.core.fem.elastic.superelement_solver import BallTangent, LinearisedContacts
-from tests.superelements.bearings import built, start_of, unreduced, with_node_moved
+from tests.superelements.bearings import built, start_of, tiny, unreduced, with_node_moved
 
 #: Of Newton's residual over the forces that balance; the iterated solver needs some ten iterations to it.
 TIGHT = 1e-11
@@ -125,7 +125,7 @@ ROUNDING = 1e-9
 @pytest.mark.parametrize("held", [(), (3, 4), (1,)])
 def test_forces_balance(way, held, monkeypatch):
     monkeypatch.setattr(linearised, "_FACTORED", 10**6 if way == "factored" else 0)
-    system = built().bearing.bearing.system
+    system = tiny().bearing.bearing.system
     contact, assembly = system.contact, system.assembly
     face = system.condensed.interface(0.0)
     rng = np.random.default_rng(5)
