@@ -7,11 +7,13 @@ from math import acos, cos, pi, radians, sin
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.special import ellipe, ellipkm1
 
 from checks.validation.reference.hertz import contact
 from checks.validation.reference.ring import Ring
 from raceway import RacewayError, scene_from_dict
 from raceway.bodies.contacts import approach_at_load
+from raceway.core.columns import elliptic_integrals
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import ellipticity
 from raceway.extend import contact_modulus, ellipse
@@ -40,6 +42,13 @@ def test_circle_is_the_closed_form():
     assert found.semi_axes(load)[0] == pytest.approx(a, rel=1e-12)
     assert found.approach(load) == pytest.approx(a * a / radius, rel=1e-12)
     assert found.factor == pytest.approx(4.0 / 3.0 * MODULUS * radius**0.5, rel=1e-12)
+
+
+def test_elliptic_integrals_are_those_of_scipy():
+    """To rounding of some units in the last place, from circles to contacts of a million widths."""
+    m1 = np.geomspace(1e-12, 1.0, 60)
+    np.testing.assert_allclose(elliptic_integrals(m1), [ellipkm1(m1), ellipe(1.0 - m1)], rtol=4e-15)
+    np.testing.assert_allclose(elliptic_integrals(0.3), [ellipkm1(0.3), ellipe(0.7)], rtol=4e-15)
 
 
 def test_ellipticity_is_smooth_near_the_circle():

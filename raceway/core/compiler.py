@@ -7,17 +7,20 @@ import hashlib
 import marshal
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from itertools import count
 from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any
 
+import llvmlite.binding as llvm
 import numba
 from numba.core import untyped_passes
 from numba.core.bytecode import FunctionIdentity
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.registry import CPUDispatcher
+from numba.core.runtime import _nrt_python  # type: ignore[attr-defined]
 from numba.core.serialize import dumps
 from numba.core.targetconfig import ConfigStack
 from numba.core.typed_passes import DumpParforDiagnostics, NopythonRewrites
@@ -101,6 +104,13 @@ def resolved_once() -> Iterator[None]:
         yield
     finally:
         _Function.get_call_type, _Overload._get_jit_decorator = before, jitter
+
+
+@cache
+def name_allocator() -> None:
+    """Give machine code that is read its allocator; numba would install all that it can compile, in half a second."""
+    for name, address in _nrt_python.c_helpers.items():
+        llvm.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
 
 
 @contextmanager

@@ -218,7 +218,7 @@ class Kernel(Dispatcher):
             return True
         if (payload := wheel_kernels.read(name, marks)) is None:
             return False
-        self.targetctx.refresh()
+        compiler.name_allocator()
         code: Numba = CompileResult._rebuild(self.targetctx, *payload)
         self.targetctx.insert_user_function(code.entry_point, code.fndesc, [code.library])
         self.add_overload(code)
@@ -270,6 +270,8 @@ class Kernel(Dispatcher):
         """
         self.enable_caching()
         cache_: Numba = self._cache
+        cache_.load_overload = cache_._load_overload
+        compiler.name_allocator()
         machine = self.targetctx.codegen().magic_tuple()
         key = self.signature, machine, self._digest
         cache_._index_key = lambda signature, codegen: key

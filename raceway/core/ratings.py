@@ -23,6 +23,8 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
+from raceway.core.columns import elliptic_integrals
+
 #: Points of the table, and the smallest (b/a)^2 in it.
 _POINTS, _FLATTEST = 4000, 1e-6
 
@@ -176,10 +178,8 @@ class BallRow:
 @cache
 def _ellipse_table() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Curvature difference, (b/a)-scaled product a* b*, and delta* of growing ellipticity."""
-    from scipy.special import ellipe, ellipkm1
-
     m1 = np.logspace(-1e-6, np.log10(_FLATTEST), _POINTS)
-    first, second, chi2 = ellipkm1(m1), ellipe(1.0 - m1), 1.0 / m1
+    (first, second), chi2 = elliptic_integrals(m1), 1.0 / m1
     difference = ((chi2 + 1.0) * second - 2.0 * first) / ((chi2 - 1.0) * second)
     area = (2.0 * chi2 * second / np.pi) ** (2.0 / 3.0) / np.sqrt(chi2)
     return difference, area, 2.0 * first / np.pi * (np.pi / (2.0 * chi2 * second)) ** (1.0 / 3.0)

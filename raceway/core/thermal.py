@@ -24,9 +24,8 @@ from functools import cached_property
 
 import attrs
 import numpy as np
-from scipy.special import ellipkm1
 
-from raceway.core.columns import Number
+from raceway.core.columns import Number, elliptic_integrals
 
 NODES = ("inner", "balls", "outer", "shaft", "housing", "oil")
 #: Nodes whose temperatures are known.
@@ -152,7 +151,7 @@ def rolling_contact(
     contact = semi_minor > 0.0
     a, b = np.where(contact, semi_major, 1.0), np.where(contact, semi_minor, 1.0)
     moving = _CHORDS * a * STEEL_EFFUSIVITY * np.sqrt(2.0 * b * np.abs(speed) / np.pi)
-    at_rest = np.pi * STEEL_CONDUCTIVITY * a / ellipkm1((b / a) ** 2)
+    at_rest = np.pi * STEEL_CONDUCTIVITY * a / elliptic_integrals((b / a) ** 2)[0]
     return np.where(contact, 1.0 / (1.0 / np.hypot(moving, at_rest) + film / (np.pi * a * b * oil_conductivity)), 0.0)
 
 

@@ -20,9 +20,8 @@ from typing import Any
 
 import attrs
 import numpy as np
-from scipy.special import ellipe, ellipkm1, elliprd
 
-from raceway.core.columns import Number, is_column
+from raceway.core.columns import Number, elliptic_integrals, is_column
 from raceway.errors import RacewayError
 
 
@@ -39,7 +38,7 @@ def _difference(log_chi: float) -> float:
     chi2 = np.exp(2.0 * log_chi)
     excess = np.expm1(2.0 * log_chi)
     m1 = 1.0 / chi2
-    first, second = ellipkm1(m1), ellipe(1.0 - m1)
+    first, second = elliptic_integrals(m1)
     if log_chi < 1e-4:  # K/E - 1 = m/2 + 5 m^2/16 + 7 m^3/32 + ... : the difference cancels
         m = excess / chi2
         return float(1.0 - 2.0 / chi2 * (0.5 + 5.0 * m / 16.0 + 7.0 * m * m / 32.0))
@@ -125,9 +124,9 @@ class Ellipse:
         Mindlin, J. Appl. Mech. 16 (1949) 259; Vermeulen, Johnson, J. Appl. Mech. 31 (1964) 338.
         """
         m1 = (self.b_star / self.a_star) ** 2
-        first = float(ellipkm1(m1))
+        first, second = elliptic_integrals(m1)
         # D runs to pi / 4 at a circle, where its formula is 0 / 0.
-        along = 0.25 * np.pi if 1.0 - m1 < 1e-9 else (first - float(ellipe(1.0 - m1))) / (1.0 - m1)
+        along = 0.25 * np.pi if 1.0 - m1 < 1e-9 else (first - second) / (1.0 - m1)
         normal = (1.0 - poisson) * first
         return normal / (normal + poisson * along), normal / (normal + poisson * (first - along))
 
@@ -162,7 +161,7 @@ def ellipse(curvature_sum: Number, curvature_difference: Number, modulus: Number
 def _shape(chi: Number) -> tuple[Number, Number, Number]:
     """chi, a* and delta*."""
     m1 = 1.0 / chi**2
-    first, second = ellipkm1(m1), ellipe(1.0 - m1)
+    first, second = elliptic_integrals(m1)
     a_star = (2.0 * chi**2 * second / np.pi) ** (1.0 / 3.0)
     return chi, a_star, 2.0 * first / np.pi * (np.pi / (2.0 * chi**2 * second)) ** (1.0 / 3.0)
 
@@ -183,7 +182,7 @@ def _ellipses(curvature_difference: np.ndarray) -> tuple[np.ndarray, np.ndarray,
     log_chi = 0.636 * np.log((1.0 + difference) / (1.0 - difference))
     for _ in range(_NEWTON):
         excess, m1 = np.expm1(2.0 * log_chi), np.exp(-2.0 * log_chi)
-        m, first, second = -np.expm1(-2.0 * log_chi), ellipkm1(m1), ellipe(-np.expm1(-2.0 * log_chi))
+        m, (first, second) = -np.expm1(-2.0 * log_chi), elliptic_integrals(m1)
         ratio = first / second
         slope = ((second / m1 - first) * second - first * (second - first)) / (2.0 * m * second**2) * 2.0 * m1
         value = 1.0 - 2.0 / excess * (ratio - 1.0)
@@ -321,6 +320,8 @@ def axis_stresses(depth: np.ndarray, semi_axes: tuple[float, float], peak_pressu
     212 (1930). Johnson, Contact Mechanics (1985), equations 3.19, 3.57 to 3.59 and sections 4.1, 4.2. Harris, Kotzalas,
     Essential Concepts of Bearing Technology, 5th ed., chapter 6.
     """
+    from scipy.special import elliprd
+
     z = np.maximum(np.asarray(depth, dtype=float), 1e-9 * min(semi_axes))
     a2, b2, z2 = semi_axes[0] ** 2 + z * z, semi_axes[1] ** 2 + z * z, z * z
     unit = peak_pressure * semi_axes[0] * semi_axes[1]  # 2 pi is cancelled throughout
