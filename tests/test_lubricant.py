@@ -47,7 +47,7 @@ def test_mistakes_name_the_keys(tables, words):
 
 def test_viscosities_are_columns_where_their_keys_are():
     warm = np.array([20.0, 55.0, 90.0])
-    problem = column_problem(scene(lubricant=OIL), {"lubricant.temperature_c": warm})
+    problem = column_problem(resolve(scene(lubricant=OIL)), {"lubricant.temperature_c": warm})
     for oil in (problem.lubricant, problem.lubricant.at(warm)):
         each = [Oil("VG 32", temperature_c=t) for t in warm.tolist()]
         for name in ("dynamic_viscosity", "kinematic_viscosity", "alpha", "beta"):

@@ -6,6 +6,7 @@ The builders are those of one point (``raceway.bodies.basis``, ``raceway.bodies.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from typing import Any, TypeVar
 
 import attrs
@@ -15,7 +16,7 @@ from raceway.bodies.basis import Basis, contact_pairs, first_guess, gyroscopic, 
 from raceway.bodies.contacts import contact_angles
 from raceway.bodies.rigid_bearing import contact_parts
 from raceway.bodies.running import ITERATIONS, LOAD_TOLERANCE, running_pairs
-from raceway.core.columns import at_rows, distinct, has_columns, per_ball, some
+from raceway.core.columns import at_rows, distinct, has_columns, largest, per_ball, some
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.excitations import no_force
 from raceway.core.periodic.fourier import Turning
@@ -27,15 +28,14 @@ from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import OWN_OFFSET_INNER, OWN_OFFSET_OUTER, elastic_columns
 from raceway.core.ring.system import System
 from raceway.core.signatures import FORCE, Linear
-from raceway.framework.contracts import Excitation, SolvedPoints
+from raceway.framework.contracts import ContactPairs, Excitation, SolvedPoints
 from raceway.framework.duties import force_params, law_params, reach_of, renews
 from raceway.framework.probe import plugin_kernel
+from raceway.planning.columns import column_problem
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.scene.bearing import DIMENSIONS
-from raceway.scene.changes import with_columns
 from raceway.scene.growth import groove_edge
-from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 C = TypeVar("C", bound="ColumnBearing")
@@ -43,25 +43,6 @@ R = TypeVar("R", Points, States, Turning, Orbits)
 #: Samples of a span at most.
 _MOST_SAMPLES = 128
 _AXIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
-
-
-@attrs.frozen(eq=False)
-class Excitations:
-    """The excitations that differ among n points, which of them acts at each (n,), and its speed (n,) [rad/s]."""
-
-    several: Sequence[Excitation]
-    which: np.ndarray
-    speed: np.ndarray
-
-    @classmethod
-    def of(cls, scene: Scene, columns: Mapping[str, np.ndarray]) -> Excitations:
-        """Of a scene with columns of its keys."""
-        excitation = with_columns(scene, {key: columns[key] for key in columns if key.startswith("excitation.")}).excitation
-        several, which = [excitation], np.zeros(len(next(iter(columns.values()))), dtype=int)
-        if has_columns(excitation):
-            several, which = distinct(excitation)
-        speed = np.array([2.0 * np.pi / float(excitation.period_s or np.nan) for excitation in several])[which]
-        return cls(several, which, speed)
 
 
 def impedance(force: np.ndarray, line: np.ndarray) -> np.ndarray:
@@ -78,6 +59,7 @@ class ColumnBearing:
     ----------
     linear : what all points share;  points : numbers of each;  kernels : of balls and law
     faults : (n,) status of the preload's own equilibria, 0 where it is built in
+    unloaded : the same at one point, where nothing but loads differs from it
     """
 
     problem: Problem
@@ -87,10 +69,42 @@ class ColumnBearing:
     points: Points
     kernels: Kernels
     faults: np.ndarray
+    unloaded: ColumnBearing | None = None
+
+    @cached_property
+    def excitations(self) -> tuple[Sequence[Excitation], np.ndarray, np.ndarray]:
+        """The excitations that differ among the points, which of them acts at each (n,), and its speed (n,) [rad/s]."""
+        excitation, all_points = self.problem.excitation, np.zeros(self.problem.points, dtype=int)
+        several, which = distinct(excitation) if has_columns(excitation) else ([excitation], all_points)
+        return several, which, np.array([2.0 * np.pi / float(each.period_s or np.nan) for each in several])[which]
+
+    @cached_property
+    def pairs(self) -> ContactPairs:
+        """Its contacts, mounted and at standstill."""
+        return contact_pairs(self.problem, self.basis)
+
+    def under(self, problem: Problem) -> ColumnBearing | None:
+        """Of the bearing at one point that at n points of a problem in which loads alone differ; None where its preload hangs on them."""
+        n, z, (axial, ball_load) = problem.points[0], len(self.basis.row), problem.axial_approach
+        basis = attrs.evolve(self.basis, axial=axial, ball_load=largest(ball_load, 1.0))
+        reference = np.repeat(np.broadcast_to(basis.ball_load, n), 2 * z)
+        pairs = attrs.evolve(self.pairs.at(np.tile(np.arange(2 * z), n)), reference_load=reference)
+        params, preloaded = law_params(problem.contact.law, pairs).reshape(n, 2 * z, -1), some(problem.bearing.preload)
+        if preloaded and not np.all(params == self.points.params):
+            return None
+        scalars, table = (np.repeat(part, n, axis=0) for part in (self.points.scalars, self.points.table))
+        guess = np.zeros((n, 5)) if preloaded else first_guess(problem, basis)
+        points, faults = Points(scalars, table, params, *_loads(problem), guess), np.repeat(self.faults, n)
+        return attrs.evolve(self, problem=problem, basis=basis, points=points, faults=faults, unloaded=self)
 
     @property
     def conspicuous(self) -> np.ndarray:
         """(n,) whether numbers contradict each other, or leave no bearing: the rules of a scene then say what is wrong."""
+        loaded = np.abs(self.points.load).sum(axis=1) + self.problem.bearing.preload
+        return (self.unloaded or self)._no_bearing | ~(loaded > 0.0)
+
+    @cached_property
+    def _no_bearing(self) -> np.ndarray:
         p, b = self.problem, self.problem.bearing
         wrong = np.zeros(p.points, dtype=bool)
         for rule in DIMENSIONS:
@@ -99,9 +113,7 @@ class ColumnBearing:
         for row in range(len(b.rows)):
             room, radial = p.running.centre_distance(row)
             wrong |= (room <= 0.0) | (radial >= room) & (b.contact_angle > 0.0) | (radial <= np.cos(edge) * room)
-        loads = (p.load.axial, *p.load.radial, *p.load.moment)
-        loaded = sum(np.abs(load) for load in loads) + b.preload
-        return wrong | ~(loaded > 0.0) | (len({side for side, _ in b.rows}) < 2) & (np.asarray(b.preload) > 0.0)
+        return wrong | (len({side for side, _ in b.rows}) < 2) & (np.asarray(b.preload) > 0.0)
 
     def equilibria(self) -> States:
         """The static state of each point."""
@@ -112,42 +124,26 @@ class ColumnBearing:
         return states
 
     def orbits(
-        self,
-        states: States,
-        excitations: Excitations,
-        tolerance: float,
-        loop: Callable[..., None] = orbits,
-        disturbed: bool = False,
-        times: int = 0,
+        self, states: States, tolerance: float, loop: Callable[..., None] = orbits, disturbed: bool = False, times: int = 0
     ) -> Orbits:
-        """The steady orbit of each point about its equilibrium.
+        """The steady orbit of each point about its equilibrium under a periodic force.
 
         Parameters
         ----------
-        excitations : periodic ones;  tolerance : of the 1x component, relative;  loop : ``orbits``, or ``neighbours`` of the first point
+        tolerance : of the 1x component, relative;  loop : ``orbits``, or ``neighbours`` of the first point
         disturbed : whether ``transfer`` is computed, too;  times : of a turn at which contact forces are
         """
         z, n, inertia = self.points.table.shape[1], len(states.status), self.problem.inertia
-        speed = excitations.speed
+        several, which, speed = self.excitations
         disturbances = 2 * int(self.linear.free.sum()) * disturbed
-        lines = np.zeros((n, 10)), np.zeros((n, 10)), np.zeros((n, 5))
-        forces = np.zeros((n, 2 * z)), np.zeros((n, 2 * z)), np.zeros((n, times, 2 * z))
-        counts = np.zeros(n, dtype=np.int64), np.full(n, -1, dtype=np.int64)
-        out = Orbits(
-            *lines,
-            np.full(n, np.nan),
-            np.zeros(n),
-            np.zeros(n),
-            *forces,
-            *counts,
-            np.zeros(n),
-            np.zeros((n, disturbances, disturbances)),
-        )
+        shapes = [(10,), (10,), (5,), *[()] * 3, (2 * z,), (2 * z,), (times, 2 * z), *[()] * 3, 2 * (disturbances,)]
+        out = Orbits(*(np.zeros((n, *shape)) for shape in shapes))
+        out = out._replace(error=np.full(n, np.nan), samples=np.zeros(n, np.int64), status=np.full(n, -1, np.int64))
         rows, moments = (inertia.mass,) * 3 + (inertia.transverse,) * 2, gyroscopic(self.problem)
         mass = np.ascontiguousarray(np.stack([np.broadcast_to(value, n) for value in rows], axis=1), dtype=float)
         moments[:, range(3), range(3)] += np.broadcast_to(self.problem.rotor.damping, n)[:, None]
-        params = np.array([force_params(excitation) for excitation in excitations.several])[excitations.which]
-        force = plugin_kernel(excitations.several[0], "excitation", FORCE, "FORCE")
+        params = np.array([force_params(excitation) for excitation in several])[which]
+        force = plugin_kernel(several[0], "excitation", FORCE, "FORCE")
         turning = Turning(force, params, speed, moments, mass, 0.0, 2.0 * np.pi, np.arange(z), 8, _MOST_SAMPLES, tolerance)
         across = np.any(self.points.load[:, 1:] * self.linear.free[1:] != 0.0, axis=1)
         for chosen in (np.flatnonzero(across), np.flatnonzero(~across & (states.status == 0))):
@@ -238,11 +234,12 @@ class ColumnBearing:
 
     def impossible(self, force: np.ndarray) -> np.ndarray:
         """(n,) whether any contact would be longer than half the ball's circumference."""
-        radius, halves = 0.5 * per_ball(self.basis.geometry.ball_diameter), np.split(force, 2, axis=1)
-        if not self.problem.bearing.equal_rows:
-            radius = self.basis.ball_radius
+        b, halves = self.basis, np.split(force, 2, axis=1)
+        if self.problem.bearing.equal_rows:
+            largest_of_race = (e.semi_axes(half.max(axis=1))[0] for e, half in zip((b.inner, b.outer), halves, strict=True))
+            return np.asarray(np.maximum(*largest_of_race) >= 0.25 * np.pi * b.geometry.ball_diameter)
         pairs = zip(self.ellipses, halves, strict=True)
-        return np.any([(e.semi_axes(half)[0] / radius).max(axis=1) >= 0.5 * np.pi for e, half in pairs], axis=0)
+        return np.any([(e.semi_axes(half)[0] / b.ball_radius).max(axis=1) >= 0.5 * np.pi for e, half in pairs], axis=0)
 
     def contact_ellipse(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Peak pressure [Pa] and semi-axes [m] of contacts under loads (n, 2, Z) [N]."""
@@ -260,10 +257,42 @@ class ColumnBearing:
         return inner, outer
 
 
-@np.errstate(all="ignore")  # of points that contradict themselves
-def build_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
-    """The bearing of ``column_problem``; ``plan`` is that of a scene with the numbers of one point."""
-    return _running(mounted_columns(problem, plan))
+#: Tables of a scene that the bearing is built from, beside its speed and loads.
+_BUILT = ("bearing", "bodies", "contact", "kinematics", "mounting")
+
+
+@attrs.frozen(eq=False, slots=False)
+class Builder:
+    """Bearings at columns of a scene's keys; what loads leave as it is, is built once.
+
+    Attributes
+    ----------
+    plan : of the scene with the numbers of one point
+    """
+
+    plan: ScenePlan
+
+    @np.errstate(all="ignore")  # of points that contradict themselves
+    def at(self, columns: Mapping[str, np.ndarray]) -> ColumnBearing:
+        """The bearing at the points of columns (n,)."""
+        return _running(self.mounted(columns))
+
+    @np.errstate(all="ignore")
+    def mounted(self, columns: Mapping[str, np.ndarray]) -> ColumnBearing:
+        """The same with the contact law as at standstill."""
+        own, problem = self.plan.problem, column_problem(self.plan.problem, columns)
+        bearing = None
+        if own.traits.contacts_alone and all(getattr(problem, name) is getattr(own, name) for name in _BUILT):
+            speeds = ((p.spin_speed, p.time_constant) for p in (own, problem))
+            if problem.excitation is own.excitation or all(np.all(a == b) for a, b in zip(*speeds, strict=True)):
+                bearing = self._unloaded.under(problem)
+        return problem.body_kind.columns(self.plan) if bearing is None else bearing
+
+    @cached_property
+    def _unloaded(self) -> ColumnBearing:
+        one = attrs.evolve(self.plan.problem, points=(1,))
+        bearing: ColumnBearing = one.body_kind.columns(self.plan)
+        return bearing
 
 
 def _running(bearing: ColumnBearing) -> ColumnBearing:
@@ -299,16 +328,10 @@ def _running(bearing: ColumnBearing) -> ColumnBearing:
     return bearing
 
 
-@np.errstate(all="ignore")
-def mounted_columns(problem: Problem, plan: ScenePlan) -> ColumnBearing:
-    """The same with the contact law as at standstill."""
-    return problem.body_kind.columns(plan)
-
-
 def ball_columns(
     problem: Problem, plan: ScenePlan, deformed: Callable[[Problem, Basis, Tables], tuple[Tables, np.ndarray]] | None = None
 ) -> ColumnBearing:
-    """Balls in grooves, for ``mounted_columns``.
+    """Balls in grooves, for ``Builder``.
 
     Parameters
     ----------
@@ -332,14 +355,19 @@ def assembled_columns(cls: type[C], problem: Problem, plan: ScenePlan, basis: Ba
     parts["scalars"][:, ring.CAGE] = 0.0  # at rest; balls of periodic motions stand
     columns = 2 + elastic_columns(parts["scalars"][0])
     kernels = Kernels(parts["kernel"], parts["base_kernel"], columns, parts["law"])
-    loads = (problem.load.axial, *problem.load.radial, *problem.load.moment)
-    load = np.stack([np.broadcast_to(number, n) for number in loads], axis=1).astype(float)
-    tilt = problem.supports.tilt
-    shaft = np.broadcast_to(0.0 if isinstance(tilt, str) else tilt, n).astype(float)
     none = np.zeros((5, 5))
     linear = Linear(none, none, none, np.array(plan.free, dtype=float), np.zeros(5))
-    points = Points(parts["scalars"], parts["table"], parts["law_params"], load, shaft, np.zeros((n, 5)))
+    points = Points(parts["scalars"], parts["table"], parts["law_params"], *_loads(problem), np.zeros((n, 5)))
     return cls(problem, plan, basis, linear, points, kernels, np.zeros(n, dtype=np.int64))
+
+
+def _loads(problem: Problem) -> tuple[np.ndarray, np.ndarray]:
+    """(n, 5) loads [N, N m] and (n,) stiffness of the shaft against tilts [N m/rad]."""
+    load, shaft, tilt = np.empty((*problem.points, 5)), np.zeros(problem.points), problem.supports.tilt
+    for k, number in enumerate((problem.load.axial, *problem.load.radial, *problem.load.moment)):
+        load[:, k] = number
+    shaft += 0.0 if isinstance(tilt, str) else tilt
+    return load, shaft
 
 
 def solved_columns(bearing: ColumnBearing, states: States, turn: Callable[[int], np.ndarray] | None = None) -> SolvedPoints:
@@ -372,11 +400,6 @@ def _rows(record: R, chosen: np.ndarray) -> R:
 
 
 def _empty_states(n: int, z: int, columns: int) -> States:
-    return States(
-        np.empty((n, 5)),
-        np.empty((n, z, columns)),
-        np.empty((n, 5, 5)),
-        np.empty((n, 5, 5)),
-        np.zeros((n, 2 * z)),
-        np.empty(n, dtype=np.int64),
-    )
+    stiffness, damping = np.empty((2, n, 5, 5))
+    force, status = np.zeros((n, 2 * z)), np.empty(n, dtype=np.int64)
+    return States(np.empty((n, 5)), np.empty((n, z, columns)), stiffness, damping, force, status)

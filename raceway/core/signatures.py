@@ -112,6 +112,8 @@ LAW_POINTER = Pointer(LAW)
 
 #: force(t, params, out (5,))
 FORCE = void(float64, VECTOR, VECTOR)
+#: (rows): numbers of one point each, in and out.
+ROWS = void(MATRIX)
 FORCE_POINTER = Pointer(FORCE)
 
 

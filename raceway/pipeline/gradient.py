@@ -21,7 +21,7 @@ from typing import TypeAlias
 import attrs
 import numpy as np
 
-from raceway.bodies.columns import Excitations, build_columns, impedance, solved_columns
+from raceway.bodies.columns import Builder, impedance, solved_columns
 from raceway.bodies.model import Equilibrium, Model, model_of
 from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.orbits import neighbours
@@ -35,7 +35,7 @@ from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, renews
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.quantities import solved_point, stated_numbers
-from raceway.planning.columns import column_problem, why_no_column, why_not
+from raceway.planning.columns import why_no_column, why_not
 from raceway.planning.resolve import Problem, resolve
 from raceway.scene.changes import Key, key_of, with_number, with_numbers
 
@@ -310,16 +310,15 @@ class Gradients:
 
             warmth = warm(scene, columns, self.model.plan)
             columns, runaway = {**columns, **warmth.columns}, warmth.runaway
-        bearing = build_columns(column_problem(scene, columns), self.model.plan)
+        bearing = Builder(self.model.plan).at(columns)
         bearing.points.guess[:] = q
         states = bearing.equilibria()
         values = {"displacement": states.q, "stiffness": states.stiffness, "contact_force": states.force}
         values["damping"], fine = bearing.damping(states), (states.status == 0) & ~runaway
         values["stated"] = self._stated(solved_columns(bearing, states), len(fine))
         if self.orbit is not None:
-            excitations = Excitations.of(scene, columns)
-            orbits = bearing.orbits(states, excitations, _TOLERANCE, neighbours)
-            line, force, w = orbits.line, orbits.force, excitations.speed
+            orbits = bearing.orbits(states, _TOLERANCE, neighbours)
+            line, force, w = orbits.line, orbits.force, bearing.excitations[2]
             line, force = (part[:, :3] + 1j * part[:, 5:8] for part in (line, force))
             z, forward = impedance(force, line), [0.5 * np.abs(line[:, 1] + sign * line[:, 2]) for sign in (1j, -1j)]
             mass = bearing.problem.inertia.mass if self.model.mass_used else 0.0

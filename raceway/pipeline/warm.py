@@ -20,7 +20,7 @@ from itertools import product
 import attrs
 import numpy as np
 
-from raceway.bodies.columns import ColumnBearing, mounted_columns, solved_columns
+from raceway.bodies.columns import Builder, ColumnBearing, solved_columns
 from raceway.bodies.model import model_of
 from raceway.bodies.mounting import preload_table
 from raceway.core.thermal import NODES
@@ -102,7 +102,7 @@ def warm(scene: Scene, columns: Mapping[str, np.ndarray], plan: ScenePlan, facto
     if why_not(scene, False):
         solve: Solve = partial(_one_by_one, scene, plan)
     else:
-        solve = partial(_in_columns, scene, mounted_columns(column_problem(scene, {**columns, **_at(keys, start)}), plan))
+        solve = partial(_in_columns, Builder(plan).mounted({**columns, **_at(keys, start)}))
 
     def image(level: np.ndarray, rows: np.ndarray) -> np.ndarray:
         at = {key: column[rows] for key, column in columns.items()} | _at(keys, level)
@@ -260,10 +260,10 @@ def _simple(scene: Scene) -> Scene:
 
 
 def _in_columns(
-    scene: Scene, cold: ColumnBearing, at: Mapping[str, np.ndarray], rows: np.ndarray, factors: list[np.ndarray]
+    cold: ColumnBearing, at: Mapping[str, np.ndarray], rows: np.ndarray, factors: list[np.ndarray]
 ) -> np.ndarray:
     """(m, 6) temperatures [C] that follow from those at which points (m,) are solved for; nan of what is no bearing in equilibrium."""
-    bearing = cold.warmed(rows, column_problem(scene, at))
+    bearing = cold.warmed(rows, column_problem(cold.plan.problem, at))
     states = bearing.equilibria()
     fine = (states.status == 0) & ~bearing.impossible(states.force)
     cold.points.guess[rows[fine]] = states.q[fine]

@@ -9,10 +9,12 @@ from contextlib import suppress
 import attrs
 import numpy as np
 
+from raceway.core.columns import with_values
 from raceway.framework.contracts import ContactLaw
 from raceway.framework.duties import finds_orbit, is_synchronous
 from raceway.planning.resolve import Problem, resolve
 from raceway.scene.changes import with_columns
+from raceway.scene.lubricant import lubricated
 from raceway.scene.scene import Scene
 
 #: Continuous keys whose numbers may be columns; beside them those of the excitation.
@@ -82,7 +84,10 @@ def _same_kernel(law: ContactLaw, option: str) -> bool:
 
 
 @np.errstate(all="ignore")
-def column_problem(scene: Scene, columns: Mapping[str, np.ndarray]) -> Problem:
-    """What a scene asks for at n points, from the columns (n,) of its keys."""
-    scene = with_columns(scene, columns)
-    return attrs.evolve(resolve(scene), points=(len(next(iter(columns.values()))),))
+def column_problem(problem: Problem, columns: Mapping[str, np.ndarray]) -> Problem:
+    """What a problem asks for at n points, from the columns (n,) of its keys; tables without columns stay the same objects."""
+    changed = with_columns(problem, columns)
+    if any(key.startswith(("contact.", "lubricant.")) for key in columns):
+        oil = None if problem.scene.lubricant is None else changed.lubricant
+        changed = with_values(changed, **dict(zip(("contact", "lubricant"), lubricated(changed.contact, oil), strict=True)))
+    return attrs.evolve(changed, points=(len(next(iter(columns.values()))),))

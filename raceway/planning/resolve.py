@@ -9,7 +9,8 @@ from typing import Any, Generic, TypeVar, overload
 
 import attrs
 
-from raceway.core.columns import Number, at_row, cos, is_column, largest, log, sin, some, sqrt, where, with_values
+from raceway.core.columns import cos, log, sin, some, sqrt, with_values
+from raceway.core.contact.axial import axial_balance
 from raceway.errors import SceneError
 from raceway.framework.contracts import Traits
 from raceway.framework.duties import BodyKind, changes_speed, duration_s, has_phase, ramp_turns, speed_rpm, steady_form
@@ -219,7 +220,10 @@ class Problem(SceneTables):
     @cached_property
     def axial_approach(self) -> tuple[float, float]:
         """(x [m], load of a ball [N]) of the first row under the axial load alone."""
-        return axial_approach(self.bearing, self.load.axial)
+        b = self.bearing
+        distance = (b.conformity_inner + b.conformity_outer - 1.0) * b.ball_diameter
+        direction = sin(b.contact_angle), cos(b.contact_angle)
+        return axial_balance(series_factor(b), distance, *direction, b.ball_count, abs(self.load.axial))
 
     @cached_property
     def highest_frequency(self) -> float:
@@ -435,7 +439,7 @@ def _with_hypotheses(problem: Problem) -> Problem:
             elif key == "gyroscopic" and problem.contact.friction > 0.0:
                 words = "contact.friction: contacts that stick along the grooves carry them"
             else:
-                faults = attrs.evolve(at_row(trial, 0), points=()).body_kind.faults()
+                faults = trial.body_kind.faults()
                 messages = [fault.message for fault in faults if fault.path == f"kinematics.{key}"]
                 words = next(iter([*(text for _, text in speaking(rules, trial)), *messages]), "")
             choice[key] = off if words else value
@@ -509,10 +513,6 @@ def refuse_memory(problem: Problem, turns: int, steps_per_turn: int, count: int)
         )
 
 
-#: Of the axial displacement at most; a dozen do.
-_ITERATIONS = 60
-
-
 def series_factor(b: Bearing) -> float:
     """K [N/m^1.5] of both races of a ball in series.
 
@@ -531,33 +531,3 @@ def series_factor(b: Bearing) -> float:
         factor = pi * ellipticity * 2.0 * e * sqrt(second / (along + across) / (4.5 * first**3))
         softness += factor ** (-2.0 / 3.0)
     return softness**-1.5
-
-
-def axial_approach(b: Bearing, axial: Number) -> tuple[Number, Number]:
-    """(x [m], load of a ball [N]) under an axial load [N] alone, by Newton's iteration on the axial displacement."""
-    factor, alpha = series_factor(b), b.contact_angle
-    distance = (b.conformity_inner + b.conformity_outer - 1.0) * b.ball_diameter
-    along, across, target = distance * sin(alpha), distance * cos(alpha), abs(axial)
-
-    def state(x: Number) -> tuple[Number, Number, Number, Number]:
-        a = along + x
-        s = sqrt(a * a + across * across)
-        load = factor * largest(s - distance, 0.0) ** 1.5
-        return b.ball_count * load * a / s, load, a, s
-
-    high = distance if not is_column(factor * target) else distance + 0.0 * (factor * target)
-    # The force grows faster than the displacement: Newton's iteration stays above and falls, until rounding ends it.
-    for _ in range(_ITERATIONS):
-        low = (state(high)[0] < target) & (high < 100.0 * distance)
-        if not some(low):
-            break
-        high = high * where(low, 2.0, 1.0)
-    for _ in range(_ITERATIONS):
-        force, load, a, s = state(high)
-        slope = b.ball_count * (1.5 * factor * sqrt(largest(s - distance, 0.0)) * (a / s) ** 2 + load * across**2 / s**3)
-        step = where(slope > 0.0, (force - target) / largest(slope, 1e-300), 0.0)
-        going = (step > 1e-15 * high) & (step <= high)
-        if not some(going):
-            break
-        high = high - where(going, step, 0.0)
-    return high, state(high)[1]

@@ -11,7 +11,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import AMPLITUDE, KNOWN, OF_ORBITS, Z_IMAG, Z_REAL, C, K, Quantity, plugin_quantities
-from raceway.bodies.columns import ColumnBearing, Excitations, build_columns, impedance, solved_columns
+from raceway.bodies.columns import Builder, ColumnBearing, impedance, solved_columns
 from raceway.core.periodic.floquet import NEUTRAL
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.equilibria import States
@@ -21,9 +21,9 @@ from raceway.framework.duties import fitting_quantities, quantities_at, turn_sam
 from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
-from raceway.planning.columns import column_problem, why_not
+from raceway.planning.columns import why_not
 from raceway.planning.plan import make_plan
-from raceway.planning.resolve import Problem, resolve
+from raceway.planning.resolve import resolve
 from raceway.scene.scene import Scene
 
 #: Largest change of the stiffness along an orbit, over its mean, up to which the loop's answer is taken: beyond, several motions may
@@ -38,34 +38,30 @@ DIMENSIONS = {"dof": list(COORDINATES), "dof2": list(COORDINATES), "race": ["inn
 
 @attrs.frozen(eq=False, slots=False)
 class Computed:
-    """Equilibria, and orbits where a motion is asked for, of n points; ``example`` : problem of one of them."""
+    """Equilibria, and orbits where a motion is asked for, of n points."""
 
-    example: Problem
     bearing: ColumnBearing
     states: States
     orbits: Orbits | None
-    speed: np.ndarray
 
     @classmethod
-    def of(
-        cls,
-        example: Problem,
-        bearing: ColumnBearing,
-        excitations: Excitations | None,
-        tolerance: float,
-        outputs: Iterable[str],
-    ) -> Computed:
-        """Solve for what the outputs need; without excitations at rest."""
+    def of(cls, bearing: ColumnBearing, moving: bool, tolerance: float, outputs: Iterable[str]) -> Computed:
+        """Solve for what the outputs need."""
         states = bearing.equilibria()
-        if excitations is None:
-            return cls(example, bearing, states, None, np.zeros(0))
-        of_plugins = plugin_quantities(default_registry())
+        if not moving:
+            return cls(bearing, states, None)
+        example, of_plugins = bearing.plan.problem, plugin_quantities(default_registry())
         plugins = {of_plugins[name][0] for name in outputs if name in of_plugins}
         samples = [turn_samples(getattr(example.quantities, name), example) for name in plugins]
         times = math.lcm(*(count for count in samples if count)) if any(samples) else 0
         with_disturbances = _MULTIPLIER in outputs
-        motion = bearing.orbits(states, excitations, tolerance, disturbed=with_disturbances, times=times)
-        return cls(example, bearing, states, motion, excitations.speed)
+        motion = bearing.orbits(states, tolerance, disturbed=with_disturbances, times=times)
+        return cls(bearing, states, motion)
+
+    @property
+    def speed(self) -> np.ndarray:
+        """(n,) of the excitation [rad/s]."""
+        return self.bearing.excitations[2]
 
     @cached_property
     def fine(self) -> np.ndarray:
@@ -83,23 +79,18 @@ class Computed:
     @cached_property
     def points(self) -> SolvedPoints:
         """As plug-ins of quantities see them."""
-        return solved_columns(self.bearing, self.states, None if self.orbits is None else self._turn)
 
-    def _turn(self, count: int) -> np.ndarray:
-        """(n, T, 2, Z) contact forces at times of a turn, whose number a plug-in has asked for."""
-        turn = self.motion.turn
-        return turn[:, :: turn.shape[1] // count].reshape(len(turn), count, 2, -1)
+        def turn(count: int) -> np.ndarray:
+            force = self.motion.turn
+            return force[:, :: force.shape[1] // count].reshape(len(force), count, 2, -1)
 
-    @cached_property
-    def _of_plugins(self) -> dict[str, dict[str, np.ndarray]]:
-        return {}
+        return solved_columns(self.bearing, self.states, None if self.orbits is None else turn)
 
+    @np.errstate(all="ignore")
     def of_plugin(self, plugin: str, name: str) -> np.ndarray:
         """(n, ...) numbers of a plug-in of quantities, which computes all of its own at once."""
-        if plugin not in self._of_plugins:
-            with np.errstate(all="ignore"):
-                self._of_plugins[plugin] = quantities_at(getattr(self.bearing.problem.quantities, plugin), self.points)
-        return self._of_plugins[plugin][name]
+        quantities = getattr(self.bearing.problem.quantities, plugin)
+        return self.points.once(f"numbers of {plugin}", lambda: quantities_at(quantities, self.points))[name]
 
     @cached_property
     def pressure(self) -> np.ndarray:
@@ -156,12 +147,6 @@ def lasting(multiplier: float) -> bool:
     return multiplier <= 1.0 + NEUTRAL
 
 
-def _force_amplitude(c: Computed) -> np.ndarray:
-    """The larger semi-axis of the force's ellipse."""
-    turning = np.stack([c.force[:, :3].real, c.force[:, :3].imag], axis=1)
-    return np.linalg.svd(turning, compute_uv=False)[:, 0]
-
-
 def _tilts_follow(c: Computed) -> np.ndarray:
     """Condensation of the tilts, see ``raceway.bodies.model.tilts_follow``."""
     K, shaft = c.states.stiffness, c.bearing.points.shaft
@@ -189,7 +174,7 @@ _STATIC: dict[str, Callable[[Computed], np.ndarray]] = {
     "kyy_tilts_follow": _tilts_follow,
     "largest_ball_load": lambda c: c.states.force.max(axis=1),
     "ball_load": lambda c: _races(c.states.force),
-    "error_model_bound": lambda c: column_bounds(c.example, c.bearing, c.states.force),
+    "error_model_bound": lambda c: column_bounds(c.bearing.plan.problem, c.bearing, c.states.force),
     "contact_angle": lambda c: _races(np.degrees(np.concatenate(c.bearing.contact_angles(c.states), axis=1))),
 }
 #: Of the motion where there is one, else of the equilibrium.
@@ -211,7 +196,9 @@ _MOVING: dict[str, Callable[[Computed], np.ndarray]] = {
     Z_IMAG.name: lambda c: c.impedance.imag,
     "dynamic_stiffness": lambda c: np.abs(c.impedance),
     "phase_lag": lambda c: np.degrees(np.angle(c.impedance)),
-    "force_amplitude": _force_amplitude,
+    "force_amplitude": lambda c: np.linalg.svd(np.stack([c.force[:, :3].real, c.force[:, :3].imag], 1), compute_uv=False)[
+        :, 0
+    ],
     "mass": lambda c: c.mass,
     "speed_rpm": lambda c: c.speed * 30.0 / np.pi,
     "frequency": lambda c: c.speed / (2.0 * np.pi),
@@ -248,10 +235,10 @@ class SteadyLines:
         if scene.heat is not None or why_not(scene, True):
             return None
         if speed not in self._bearings:
-            columns = column_problem(scene, {"load.axial": np.array([scene.load.axial])})
-            self._bearings[speed] = build_columns(columns, make_plan(scene))
-        excitations = Excitations([scene.excitation], np.zeros(1, dtype=int), np.array([speed]))
-        numbers = Computed.of(resolve(scene), self._bearings[speed], excitations, _TOLERANCE, ())
+            self._bearings[speed] = Builder(make_plan(scene)).at({"load.axial": np.array([scene.load.axial])})
+        bearing = self._bearings[speed]
+        problem = attrs.evolve(bearing.problem, excitation=scene.excitation)
+        numbers = Computed.of(attrs.evolve(bearing, problem=problem), True, _TOLERANCE, ())
         return numbers.line[0] if numbers.fine[0] else None
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from raceway.answers.quantities import KNOWN, Quantity, plugin_quantities
-from raceway.bodies.columns import Excitations, build_columns
+from raceway.bodies.columns import Builder
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import PATHS, TEXT, TEXTS, Reader, door
@@ -27,8 +27,8 @@ from raceway.framework.registry import default_registry
 from raceway.framework.shown import duration
 from raceway.pipeline.gradient import other_meshes, refuse_points
 from raceway.pipeline.run import run
-from raceway.planning.columns import column_problem, law_keys, why_no_column, why_not
-from raceway.planning.plan import ScenePlan, make_plan
+from raceway.planning.columns import law_keys, why_no_column, why_not
+from raceway.planning.plan import make_plan
 from raceway.planning.resolve import Problem, resolve
 from raceway.plugins.formats.labelled import labelled_dataset
 from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Columns, Computed, jacobian, of_result
@@ -95,11 +95,11 @@ class Function:
     tolerance: float = 1e-8
     force: bool = False
     threads: int = 1
-    _plans: dict[bool, ScenePlan] = attrs.field(factory=dict, init=False, repr=False)
+    _builders: dict[bool, Builder] = attrs.field(factory=dict, init=False, repr=False)
 
     def __getstate__(self) -> dict[str, object]:
         numbers = {field.name: getattr(self, field.name) for field in attrs.fields(Function)}
-        return numbers | {"scene": self.scene.to_dict(), "_plans": {}}
+        return numbers | {"scene": self.scene.to_dict(), "_builders": {}}
 
     def __setstate__(self, state: Tables) -> None:
         scene = scene_from_dict(state["scene"], default_registry())
@@ -327,27 +327,25 @@ class Function:
                 turns = columns[key][fit] > 0.0
         for turning, rows in ((True, fit[turns]), (False, fit[~turns])):
             # The first row that no rule refuses decides about parts, once for either.
-            for row in rows[:5] if turning not in self._plans else ():
+            for row in rows[:5] if turning not in self._builders else ():
                 with suppress(RacewayError):
-                    self._plans[turning] = make_plan(self._scene_of(columns, row))
+                    self._builders[turning] = Builder(make_plan(self._scene_of(columns, row)))
                     break
-            plan = self._plans.get(turning)
-            if plan is None or not len(rows):
+            builder = self._builders.get(turning)
+            if builder is None or not len(rows):
                 continue
             inputs = {key: column[rows] for key, column in columns.items()}
             try:
                 if self.scene.heat is not None:
                     from raceway.pipeline.warm import RUNAWAY, warm
 
-                    warmth = warm(self.scene, inputs, plan)
+                    warmth = warm(self.scene, inputs, builder.plan)
                     reason[rows[warmth.runaway]] = RUNAWAY
                     inputs = {**inputs, **warmth.columns}
-                bearing = build_columns(column_problem(self.scene, inputs), plan)
+                bearing = builder.at(inputs)
             except RacewayError:  # of elastic bodies that no point has
                 continue
-            example = resolve(self._scene_with({key: column[0] for key, column in inputs.items()}))
-            excitations = Excitations.of(self.scene, inputs) if self.moving else None
-            numbers = Computed.of(example, bearing, excitations, self.tolerance, self.outputs)
+            numbers = Computed.of(bearing, self.moving, self.tolerance, self.outputs)
             fine = ~bearing.conspicuous & numbers.fine & (reason[rows] == "")
             status[rows[fine]] = PointStatus.COMPUTED
             oil = self.scene.lubricant
@@ -370,7 +368,7 @@ class Function:
             numbers = np.stack([columns[key] for key in keys], axis=1)
             fit = numbers[~refusals]
             if len(fit) and not all(
-                self._is_allowed(keys, ends) for ends in product(*zip(fit.min(0), fit.max(0), strict=True))
+                self._is_allowed(keys, ends) for ends in product(*map(set, zip(fit.min(0), fit.max(0), strict=True)))
             ):
                 # Rules are intervals, or compare two options of a law: numbers beyond them are looked at one by one.
                 several, place = np.unique(numbers, axis=0, return_inverse=True)
@@ -458,11 +456,7 @@ def _chain(answers: Sequence[Columns], outputs: Iterable[str]) -> Columns:
     for name in outputs:
         form = next((answer[name].shape[1:] for answer in answers if name in answer), ())
         out[name] = np.concatenate([answer.get(name, np.full((len(answer["status"]), *form), np.nan)) for answer in answers])
-    out["status"] = np.concatenate([answer["status"] for answer in answers])
-    out["reason"] = np.concatenate(
-        [answer.get("reason", np.full(len(answer["status"]), "", dtype=object)) for answer in answers]
-    )
-    return out
+    return out | {name: np.concatenate([answer[name] for answer in answers]) for name in ("status", "reason")}
 
 
 @door

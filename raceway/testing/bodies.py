@@ -16,7 +16,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import K
-from raceway.bodies.columns import build_columns
+from raceway.bodies.columns import Builder
 from raceway.bodies.model import BuiltBearing, Equilibrium, Model
 from raceway.core.record import Schedule
 from raceway.core.time.schemes import integrate
@@ -27,7 +27,7 @@ from raceway.framework.hookspecs import hookimpl
 from raceway.framework.registry import Registry
 from raceway.integrators.methods import CentralDifference, Newmark, QuasiStatic
 from raceway.pipeline.run import run
-from raceway.planning.columns import column_problem, why_not
+from raceway.planning.columns import why_not
 from raceway.planning.parts import Decisions, decide_balls, decide_motion, decide_tilts
 from raceway.planning.plan import make_plan
 from raceway.planning.resolve import resolve
@@ -300,7 +300,7 @@ class BodiesSuite(Suite):
         if why := why_not(scene, False):
             return f"its example has none: {why}"
         loads = scene.load.radial[0] * np.array([1.0, 0.6, 1.3])
-        bearing = build_columns(column_problem(scene, {"load.radial[0]": loads}), make_plan(scene))
+        bearing = Builder(make_plan(scene)).at({"load.radial[0]": loads})
         states, worst = bearing.equilibria(), 0.0
         for k, load in enumerate(loads.tolist()):
             model, alone = settled(with_number(scene, "load.radial[0]", load))

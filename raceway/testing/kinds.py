@@ -15,16 +15,14 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import plugin_quantities
-from raceway.bodies.columns import build_columns
+from raceway.bodies.columns import Builder
 from raceway.errors import RacewayError
 from raceway.framework.contracts import Batch, Refused, SolvedPoints
 from raceway.framework.duties import of_results, quantities_at, quantity_report, why_no_quantities
 from raceway.framework.registry import default_registry
 from raceway.pipeline.quantities import solved_point
 from raceway.pipeline.run import run
-from raceway.planning.columns import column_problem
 from raceway.planning.plan import make_plan
-from raceway.planning.resolve import resolve
 from raceway.points.column_quantities import Computed
 from raceway.scene.scene import scene_from_dict
 from raceway.storage.tables import Tables
@@ -293,8 +291,7 @@ def _column_points(tables: Tables, loads: list[float], result: Result | None = N
         assert problem.lubricant is not None, "rules of [heat] ask for it"
         warm["lubricant.temperature_c"] = problem.lubricant.temperature_c
         columns |= {key: np.full(len(loads), value) for key, value in warm.items()}
-    bearing = build_columns(column_problem(scene, columns), make_plan(scene))
-    return Computed.of(resolve(scene), bearing, None, 1e-10, ()).points
+    return Computed.of(Builder(make_plan(scene)).at(columns), False, 1e-10, ()).points
 
 
 #: Batches of a trial, and how many may be taken before the first is answered.
