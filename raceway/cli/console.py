@@ -142,7 +142,11 @@ def described(error: Exception) -> tuple[int, list[Tables]]:
     elif isinstance(error, MemoryError):
         code, message = 1, "not enough memory for this scene: `raceway plan` shows its size"
     else:
-        code, message = 1, f"unexpected {type(error).__name__}: {error or 'no message'}{_origin(error)}"
+        # File and line that raised, so that a plug-in's fault is not taken for the program's.
+        frames = traceback.extract_tb(error.__traceback__)
+        where = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
+        advice = "This is a fault of the program or of a plug-in: run again with --debug for the traceback and report it."
+        code, message = 1, f"unexpected {type(error).__name__}: {error or 'no message'}{where}. {advice}"
     return code, [{"path": None, "value": None, "message": message}]
 
 
@@ -159,15 +163,6 @@ def _os_message(error: OSError) -> str:
     file = f"`{error.filename}`: " if error.filename else ""
     remedy = " Free some space, or choose another folder." if error.errno == errno.ENOSPC else ""
     return f"{file}{error.strerror or error}.{remedy}"
-
-
-def _origin(error: Exception) -> str:
-    """File and line that raised, so that a plug-in's fault is not taken for the program's."""
-    frames = traceback.extract_tb(error.__traceback__)
-    where = f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
-    return (
-        f"{where}. This is a fault of the program or of a plug-in: run again with --debug for the traceback and report it."
-    )
 
 
 def plain(value: object) -> Any:

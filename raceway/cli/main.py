@@ -69,9 +69,9 @@ class _AllCommands(_CommandsByName):
     """``raceway``."""
 
     def _sections(self) -> dict[str, tuple[Command | Later, ...]]:
-        from raceway.framework.registry import installed
+        from raceway.framework.registry import default_registry
 
-        further = installed().mapping("raceway_commands")
+        further = default_registry().mapping("raceway_commands")
         by_name = {heading: sorted(commands, key=lambda about: about.name) for heading, commands in further.items()}
         return {
             heading: (*self.sections.get(heading, ()), *by_name.get(heading, ())) for heading in {**self.sections, **by_name}

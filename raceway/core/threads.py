@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
+from itertools import pairwise
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -22,12 +23,6 @@ def usable_cores() -> int:
         if limit.isdigit() and int(limit) > 0:
             count = min(count, int(limit))
     return count
-
-
-def _share(count: int, threads: int) -> list[tuple[int, int]]:
-    """Edges (start, end) that share ``count`` things among threads."""
-    edges = [count * k // threads for k in range(threads + 1)]
-    return list(zip(edges[:-1], edges[1:], strict=True))
 
 
 class ThreadPool:
@@ -91,7 +86,8 @@ class ThreadPool:
 
     def do_shares(self, count: int, job: Callable[[int, int], T]) -> list[T]:
         """What ``job(first, last)`` returns on equal shares of ``count`` things."""
-        shares = _share(count, self.count if self._pool is not None else 1)
+        threads = self.count if self._pool is not None else 1
+        shares = list(pairwise(count * k // threads for k in range(threads + 1)))
         # Every place is filled before the list is handed out.
         results: list[T] = [None] * len(shares)  # type: ignore[list-item]
 

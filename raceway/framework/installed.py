@@ -20,10 +20,10 @@ def listed_commands() -> Iterator[tuple[str, str, str]]:
     from importlib.metadata import entry_points
 
     if any(getattr(point.dist, "name", "") not in packages() for point in entry_points(group="raceway")):
-        from raceway.framework.registry import installed
+        from raceway.framework.registry import default_registry
 
         own = {name for has in packages().values() for name in has["commands"]}
-        for heading, commands in installed().mapping("raceway_commands").items():
+        for heading, commands in default_registry().mapping("raceway_commands").items():
             yield from ((heading, about.name, about.summary) for about in commands if about.name not in own)
 
 
@@ -46,8 +46,8 @@ def further_name(name: str) -> Any:
             if not available(package):
                 raise AttributeError(f"raceway.{name} is {missing_package(name, 'names')}")
             return named(f"{has['names'][name]}:{name.rpartition('.')[2]}")
-    from raceway.framework.registry import installed
+    from raceway.framework.registry import default_registry
 
-    if (module := installed().mapping("raceway_names").get(name)) is None:
+    if (module := default_registry().mapping("raceway_names").get(name)) is None:
         raise AttributeError(f"module 'raceway' has no attribute '{name}'")
     return named(f"{module}:{name}")

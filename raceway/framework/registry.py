@@ -126,10 +126,9 @@ class Registry:
     Parameters
     ----------
     third_party : whether to load what others have installed under the entry point group "raceway"
-    classes : whether to ask for classes; without, only for commands, names and tables, which built-in plug-ins have none of
     """
 
-    def __init__(self, third_party: bool = True, classes: bool = True) -> None:
+    def __init__(self, third_party: bool = True) -> None:
         self.manager = pluggy.PluginManager("raceway")
         self.manager.add_hookspecs(hookspecs)
         if os.environ.get("RACEWAY_TRACE"):
@@ -138,13 +137,10 @@ class Registry:
         self.entries: dict[tuple[str, str], list[Entry]] = {}
         self.faults: list[Fault] = []
         from raceway import __version__
+        from raceway.framework.contracts import KINDS
 
-        self._kinds: dict[str, tuple[str, tuple[str, ...]]] = {}
-        if classes:
-            from raceway.framework.contracts import KINDS
-
-            self._kinds = KINDS
-        for module in _BUILT_IN if classes else ():
+        self._kinds: dict[str, tuple[str, tuple[str, ...]]] = KINDS
+        for module in _BUILT_IN:
             self._register(import_module(module), module, "raceway", __version__)
         points, missing = chosen_entry_points(third_party)
         self.faults += [Fault(name, "named in RACEWAY_PLUGINS, but not installed") for name in missing]
@@ -448,12 +444,6 @@ def _shown(thing: object) -> str:
 def default_registry() -> Registry:
     """The plug-ins of this process: built-ins and whatever is installed."""
     return Registry()
-
-
-@cache
-def installed() -> Registry:
-    """What is installed beside ``raceway``, without its own plug-ins: for commands and public names, which need none of them."""
-    return Registry(classes=False)
 
 
 def registry_with(files: Iterable[str | Path]) -> Registry:

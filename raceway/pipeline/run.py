@@ -295,13 +295,6 @@ def _quantities_of(scene: Scene, model: Model, equilibrium: Equilibrium, simulat
     return quantities
 
 
-def _friction(motion: Simulation) -> float:
-    """Energy that friction took from a motion [J]."""
-    if motion.whole.energies:
-        return friction_lost(motion.whole.energies)
-    return motion.model.bearing.friction_lost(motion.model.system, motion.whole)
-
-
 def _work(motions: list[Simulation]) -> dict[str, int]:
     """Counts of the table ``cost``."""
     counts, unit = [motion.whole.counts for motion in motions], 1 if sys.platform == "darwin" else 1024
@@ -316,7 +309,11 @@ def _work(motions: list[Simulation]) -> dict[str, int]:
 def _stability(motions: list[Simulation]) -> Tables:
     """The table ``stability``: the worst of all motions (several speeds may be run); friction's energy is their sum."""
     drifts = [drift for drift in map(_drift, motions) if drift is not None]
-    rubbing = [_friction(motion) for motion in motions if motion.model.problem.contact.friction > 0.0]
+    rubbing = [
+        friction_lost(m.whole.energies) if m.whole.energies else m.model.bearing.friction_lost(m.model.system, m.whole)
+        for m in motions
+        if m.model.problem.contact.friction > 0.0
+    ]
     energies = [motion.whole.energies for motion in motions if motion.whole.energies]
     limits = [motion.critical_time_step for motion in motions if motion.critical_time_step is not None]
     counts = [motion.whole.counts for motion in motions]

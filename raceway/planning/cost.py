@@ -84,13 +84,11 @@ def slowness() -> float:
 
 def timed(repeats: int = REPEATS) -> float:
     """``slowness`` as it is now."""
-    return min(_seconds() for _ in range(repeats)) / _REFERENCE_S
-
-
-def _seconds() -> float:
-    """Of the logistic map in floating-point numbers of Python: scalar work like that of the compiled loops."""
-    start, x, total = time.process_time(), 0.5, 0.0
-    for _ in range(_ITERATIONS):
-        x = 3.7 * x * (1.0 - x)
-        total += x
-    return time.process_time() - start
+    seconds = []
+    for _ in range(repeats):  # the logistic map in numbers of Python: scalar work like that of the compiled loops
+        start, x, total = time.process_time(), 0.5, 0.0
+        for _ in range(_ITERATIONS):
+            x = 3.7 * x * (1.0 - x)
+            total += x
+        seconds.append(time.process_time() - start)
+    return min(seconds) / _REFERENCE_S

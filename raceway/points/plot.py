@@ -108,10 +108,15 @@ def write(figure: Figure, path: Path) -> Path:
 
 def _curves(axes: Axes, data: DataArray, x: str, y: str | None, label: str) -> None:
     """A curve for each value of y; the points of a list without lines, since they may have no order."""
+    from matplotlib import colormaps
+
     as_list = LIST in data.dims
     values: list[Any] = [None] if y is None else list(dict.fromkeys(np.atleast_1d(data[y].values).tolist()))
     values = sorted(values) if y is not None and _numeric(values) else values
-    places, names = _places(data[x].values)
+    # Numbers stand at themselves, in ordered colours; words at 0, 1, 2, ... in distinct ones.
+    plain, ordered = data[x].values.tolist(), _numeric(values) and len(values) > 1
+    names = [] if _numeric(plain) else list(dict.fromkeys(map(shown, plain)))
+    places = np.array([names.index(shown(value)) for value in plain] if names else plain, dtype=float)
     for k, value in enumerate(values):
         if y is None:
             series, at = data, places
@@ -120,8 +125,9 @@ def _curves(axes: Axes, data: DataArray, x: str, y: str | None, label: str) -> N
             series, at = data.isel({LIST: np.flatnonzero(keep)}), places[keep]
         else:
             series, at = data.sel({y: value}), places
+        colour = colormaps["viridis"](0.88 * k / (len(values) - 1)) if ordered else COLOURS[k % len(COLOURS)]
         axes.plot(
-            at, series.values, label=shown(value), color=_colour(k, values), marker=MARKERS[k % len(MARKERS)],
+            at, series.values, label=shown(value), color=colour, marker=MARKERS[k % len(MARKERS)],
             markersize=4.5 if len(at) <= 40 else 0.0, linewidth=0.0 if as_list or names else 1.6,
         )  # fmt: skip
         if as_list and len(at) > 40:
@@ -178,24 +184,6 @@ def _dress(axes: Axes, data: DataArray, x: str) -> None:
             formatter.set_useOffset(False)
     if _numeric(np.atleast_1d(data[x].values).tolist()):
         axes.locator_params(axis="x", nbins=7)
-
-
-def _places(values: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """Numbers as they are; words at 0, 1, 2, ... with their names."""
-    plain = values.tolist()
-    if _numeric(plain):
-        return np.asarray(values, dtype=float), []
-    names = list(dict.fromkeys(shown(value) for value in plain))
-    return np.array([names.index(shown(value)) for value in plain], dtype=float), names
-
-
-def _colour(rank: int, values: list[Any]) -> str | tuple[float, float, float, float]:
-    """Ordered colours for numbers, distinct ones for words."""
-    if not _numeric(values) or len(values) == 1:
-        return COLOURS[rank % len(COLOURS)]
-    from matplotlib import colormaps
-
-    return colormaps["viridis"](0.88 * rank / (len(values) - 1))
 
 
 def _axis(data: DataArray, key: str) -> str:

@@ -30,7 +30,7 @@ from raceway.points.column_quantities import MOVING, QUANTITIES, Columns, stated
 from raceway.points.dataset import DOF, SweepStore, all_failed, block_edges, dataset, open_store, values_of
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
 from raceway.points.function import BLOCK, Function, PointStatus, refuse_bytes
-from raceway.points.store import Row, Store, exists, written
+from raceway.points.store import Row, exists, written
 from raceway.points.survey import survey
 from raceway.points.workload import Workload, of_columns, run_times
 from raceway.scene.changes import continuous_keys
@@ -118,16 +118,6 @@ def _block_row(first: int, answer: Columns, reasons: dict[int, str], times: Read
     status = answer["status"]
     counts = {how.name: int((status == how).sum()) for how in PointStatus}
     return Row(f"{first}:{first + len(status)}", "done", json.dumps(reasons), answer, {**counts, **times})
-
-
-def _left_over(store: Store, edges: Mapping[str, tuple[int, int]]) -> list[int]:
-    """Numbers of points that the loop has left and that no run has finished."""
-    complete, numbers = store.keys("done") | store.keys("failed"), list[int]()
-    for key, (first, _) in edges.items():
-        row = store.get(key)
-        if row.state == "done" and row.cost[PointStatus.FAILED.name]:
-            numbers += (first + np.flatnonzero(row.content["status"] == PointStatus.FAILED)).tolist()
-    return [number for number in numbers if number not in complete]
 
 
 def _column_function(tables: ReadTables, scene: Scene, design: Design, registry: Registry) -> Function | None:
@@ -332,7 +322,13 @@ def fill_store(
                 leftover = {"status": np.full(last - first, PointStatus.FAILED)}  # with its worker: to runs
                 store.put([_block_row(first, leftover, {}, {}) if isinstance(answer, Lost) else answer])
                 count = advance(count + last - first)
-            numbers = _left_over(store, edges)
+            # What the loop has left and no run has finished.
+            complete, numbers = store.keys("done") | store.keys("failed"), list[int]()
+            for key, (first, _) in edges.items():
+                row = store.get(key)
+                if row.state == "done" and row.cost[PointStatus.FAILED.name]:
+                    numbers += (first + np.flatnonzero(row.content["status"] == PointStatus.FAILED)).tolist()
+            numbers = [number for number in numbers if number not in complete]
         else:
             numbers = [number for number in range(design.size) if number in waiting]
         count = design.size - len(numbers)

@@ -89,8 +89,12 @@ def floquet(solution: Solved, highest: float = 0.0) -> Floquet:
 
 def transfer(solution: Solved, highest: float = 0.0) -> np.ndarray:
     """(2 n, 2 n) of a disturbance of the state over a span, turned back; ``highest`` as of ``floquet``."""
-    span_transfer = solution.eliminated.span_transfer if highest == 0.0 else _finer(solution, highest)
-    return np.asarray(solution.problem.closing.T @ span_transfer[:, : 2 * len(solution.problem.free)])
+    problem, path, span_transfer = solution.problem, solution.path, solution.eliminated.span_transfer
+    parts = np.ceil(np.diff(path.nodes) * min(highest, 2000.0) / _PHASE - 1e-9).astype(int)
+    if parts.max() > 1:  # linearised anew where intervals are long for the fastest vibration
+        finer = resampled(problem, path, *divided(path.nodes, np.maximum(parts, 1)))
+        span_transfer = linearised(problem, finer).span_transfer
+    return np.asarray(problem.closing.T @ span_transfer[:, : 2 * len(problem.free)])
 
 
 def floquet_of(over: np.ndarray, span: float) -> Floquet:
@@ -99,12 +103,3 @@ def floquet_of(over: np.ndarray, span: float) -> Floquet:
     over_turn = over_span ** (2.0 * np.pi / span)
     order = np.argsort(-np.abs(over_turn))
     return Floquet(over_turn[order], over_span[order])
-
-
-def _finer(solution: Solved, highest: float) -> np.ndarray:
-    """The transfer over a span, linearised anew where intervals are long for the fastest vibration."""
-    problem, path = solution.problem, solution.path
-    parts = np.ceil(np.diff(path.nodes) * min(highest, 2000.0) / _PHASE - 1e-9).astype(int)
-    if parts.max() <= 1:
-        return solution.eliminated.span_transfer
-    return linearised(problem, resampled(problem, path, *divided(path.nodes, np.maximum(parts, 1)))).span_transfer

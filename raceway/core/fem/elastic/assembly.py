@@ -395,7 +395,12 @@ class Assembly:
         self.free_mass = mass[self.free]
         self.frame_mass = self.frame_mass + self._tie.T @ (mass[self.tied, None] * self._tie)
         self.foundations = self._beds()
-        self._seats = [self._seat(*bed) for bed in self.foundations]
+        #: Beds at their own entries alone: matrix (k, k), the frame's motion (k, frame_size), and the entries.
+        self._seats = []
+        for bed, ride in self.foundations:
+            entries = np.flatnonzero(np.diff(bed.indptr))
+            seat = Selection.of(entries, self.free, self.tied, self._tie)
+            self._seats.append((bed[entries][:, entries].tocsr(), np.ascontiguousarray(ride[entries]), seat))
         self._stiffness: csr_matrix = None
         #: Threads that share the work while they are open.
         self.threads = ThreadPool(threads_for(sum(len(body.operator.cells) for body in bodies)))
@@ -533,12 +538,6 @@ class Assembly:
                 f"{body.name}: {free} ({why}); constrain it by the cage, fixed nodes, or an elastic foundation under one of its surfaces"
             )
         return sentences
-
-    def _seat(self, foundation: csr_matrix, ride: np.ndarray) -> tuple[csr_matrix, np.ndarray, Selection]:
-        """A bed at its own entries alone: matrix (k, k), the frame's motion (k, frame_size), and the entries."""
-        entries = np.flatnonzero(np.diff(foundation.indptr))
-        seat = Selection.of(entries, self.free, self.tied, self._tie)
-        return foundation[entries][:, entries].tocsr(), np.ascontiguousarray(ride[entries]), seat
 
     def _beds(self) -> list[tuple[csr_matrix, np.ndarray]]:
         """For each bed its matrix (3 nodes, 3 nodes) and the frame's motion that it acts against (3 nodes, frame_size)."""

@@ -445,7 +445,11 @@ def _ring(assembly: Assembly, group: Group, contacts: np.ndarray, mass: float, o
         raise MeshError(
             f"{body.name}: no node of its groove below a contact is free: its seat reaches into the groove. Mesh the ring with free nodes there"
         )
-    bed = None if body.foundation is None else _of_part(bed_of_cells(body), cells, local, copies.cells)
+    bed = None
+    if body.foundation is not None:  # the cells of a sector that stand on it, numbered in the sector
+        (on_bed, matrices), key = bed_of_cells(body), {tuple(row): k for k, row in enumerate(local[copies.cells])}
+        pairs = [(key[row], matrix) for row, matrix in zip(map(tuple, cells[on_bed]), matrices, strict=True) if row in key]
+        bed = np.array([k for k, _ in pairs], dtype=np.int64), np.array([matrix for _, matrix in pairs])
     element = _Substructure(body.name, copies, body.operator, contact, free[local], mass, bed, on_progress).ring()
     inertia = mass * np.repeat(body.operator.lumped_mass() * free, 3)
     ride = assembly.carried[rows] if body.frame is not None else np.zeros((rows.stop - rows.start, 0))
@@ -460,15 +464,6 @@ def _ring(assembly: Assembly, group: Group, contacts: np.ndarray, mass: float, o
         return out
 
     return _Ring(element, rows, ride, apply, inertia, 3 * assembly.nodes)
-
-
-def _of_part(
-    bed: tuple[np.ndarray, np.ndarray], cells: np.ndarray, local: np.ndarray, part: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """The cells of a sector that stand on the bed, numbered in it."""
-    key = {tuple(row): k for k, row in enumerate(local[part])}
-    matrices = [(key[row], matrix) for row, matrix in zip(map(tuple, cells[bed[0]]), bed[1], strict=True) if row in key]
-    return np.array([k for k, _ in matrices], dtype=np.int64), np.array([matrix for _, matrix in matrices])
 
 
 def _balls(assembly: Assembly, group: Group, contacts: np.ndarray, mass: float, on_progress: OnProgress | None) -> _Balls:

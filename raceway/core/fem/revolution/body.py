@@ -429,7 +429,11 @@ class Revolution:
         both = np.unique(np.concatenate([load, outputs]))
         # Condensing costs the cube of the degrees of freedom that stay, solving the number of loads times the whole body.
         small = len(both) <= _CONDENSED * min(len(load), len(outputs))
-        row = self._places(self._order(both if small else both[:0]))
+        # Unknowns in an order of little fill, those that stay at the end, ascending.
+        last = both if small else both[:0]
+        inside = np.setdiff1d(self.unknowns, last)
+        order = inside[np.argsort(symmetric_factors(self._pencil(self._places(inside)).at(1.0), ordered=False).perm_c)]
+        row = self._places(np.concatenate([order, last[~self._held[last]]]))
         pencil = self._pencil(row)
         row_load, row_seen, row_both = row[load], row[outputs], row[both]
         fixed = (row_seen < 0)[:, None] | (row_load < 0)[None, :]
@@ -485,12 +489,6 @@ class Revolution:
         if n == 1:
             return np.stack([_field(unit, unit, zero), _field(x, x, -r)]), np.array([pin, pin + 2])
         return np.empty((0, 3 * len(r))), np.empty(0, dtype=np.int64)
-
-    def _order(self, last: np.ndarray) -> np.ndarray:
-        """(m,) Unknowns in an order of little fill, those of ``last`` that are not held at the end, ascending."""
-        inside = np.setdiff1d(self.unknowns, last)
-        order = inside[np.argsort(symmetric_factors(self._pencil(self._places(inside)).at(1.0), ordered=False).perm_c)]
-        return np.concatenate([order, last[~self._held[last]]])
 
     def _places(self, order: np.ndarray) -> np.ndarray:
         """(3 N,) Row of each degree of freedom when ``order`` lists them by rows; -1: held."""
