@@ -236,7 +236,6 @@ def test_lift_off(word, told):
 @pytest.mark.parametrize(("kind", "rpm"), [("rigid", 0.0), ("rigid", 12000.0), ("condensed", 12000.0)])
 def test_a_row_carries_nothing_at_its_lift_off(kind, rpm):
     """A run under the load: the row has left; under a little less it has not."""
-    # The condensed rings are those of tests/condensed, kept on the disk.
     bearing = {"row": [{}, {}, {"contact_angle_deg": 15.0}]} if kind == "rigid" else {"preset": "B7206C"}
     more = {"bodies": {"kind": kind}, "kinematics": {"ball_inertia": rpm > 0.0, "spin_speed_rpm": rpm}}
     preload = preload_table(*built("TBT", 200.0, bearing, **more))

@@ -106,14 +106,14 @@ def test_k_of_time_histories_lies_within_its_interval(response, tmp_path):
     omega = 2.0 * np.pi * np.fft.rfftfreq(2 * len(force), time[1])
     twice = np.fft.rfft(np.concatenate([force[::-1], force]))  # moving before the record begins
     moved = np.fft.irfft(twice * (1j * omega) ** order / (STIFFNESS + 1j * omega * DAMPING - MASS * omega**2))[len(force) :]
-    for trial in range(20):
+    for trial in range(10):
         noisy = (values + 1e-3 * values.std() * random.standard_normal(len(values)) for values in (force, size * moved))
         driven = history(next(noisy), 13, "N")
         beside = [history(moved, kind, rsp_node=8), history(next(noisy), kind, unit, rsp_dir=direction)]
         fitted = rw.fit(file(tmp_path / f"record{trial}.uff", driven, *beside), None, "K,C,mass")
         inside += [abs(fitted[name] - truth) < fitted.half_width(name) < 0.01 * truth for name, truth in TRUTH.items()]
     assert f"function 3 is read as {response} in {unit}" in " ".join(fitted.warnings)
-    assert sum(inside) >= 51  # of 60 with the probability 0.95; less are 1 in 1000
+    assert sum(inside) >= 24  # of 30 with the probability 0.95; less are 1 in 1000
 
 
 #: Files that are refused, and the words of the rule and the remedy.
