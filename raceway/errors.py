@@ -171,10 +171,6 @@ class ConvergenceError(RacewayError):
     exit_code = 1
 
 
-#: A run is stopped beyond so many times its predicted time; predictions are within a factor of three of measured ones.
-PATIENCE = 20.0
-
-
 class BeyondPlanError(RacewayError):
     """A run that was stopped because it took many times its plan; no search takes it for a solution that was not found.
 

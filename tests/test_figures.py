@@ -129,7 +129,8 @@ def of_the_article() -> list[Figure]:
     def k(setting, load, w):
         return (1e10,) if setting.tilt == "free" and w > 0.9 else 1e8 * (1.0 + 0.1 * w)
 
-    return [panel.figure() for panel in article.drawings(article_study.study(article_study.curves(k)))]
+    found = article_study.study(article_study.curves(k))
+    return [panel.figure() for panel in article.drawings(found.curves, found.scan)]
 
 
 def of_a_rig() -> list[Figure]:

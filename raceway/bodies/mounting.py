@@ -78,8 +78,6 @@ def place_ring(problem: Problem, basis: Basis, system: Ring) -> np.ndarray:
 def _ground_shifts(problem: Problem, basis: Basis, loose: R) -> np.ndarray:
     """(Z,) axial approach of every ball's row that the preload builds in [m].
 
-    Notes
-    -----
     Of a set, the rows of either direction approach alike, together under their force; of rows that were ground, each by itself
     under its own.  Rows that differ in nothing are solved for once.
     """
@@ -120,15 +118,10 @@ def _some(system: R, balls: np.ndarray, facing: bool = False) -> R:
 def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, guess: np.ndarray) -> np.ndarray:
     """(5,) equilibrium at which the sliding rows carry the spring's force; builds their place into the system.
 
-    Notes
-    -----
     The spring's travel counts from ``origin``, the shift [m] of the first of them before mounting.  With their shift s, their force f
     on the ring and K the tangents, g = side f_x grows by dg/ds = k_xx - k_xq K^-1 k_qx: Newton's method in s within a bracket.
 
-    Raises
-    ------
-    ConvergenceError
-        No such place, or one beyond the spring's travel.
+    ConvergenceError: no such place, or one beyond the spring's travel.
     """
     second, preload = system.sliding, problem.bearing.other_preload
     assert second is not None, "the scene's rows are on a spring"
@@ -221,8 +214,6 @@ def _unloaded(model: Model, system: Ring) -> float:
 def _lift_off(model: Model) -> Tables:
     """Axial loads along +x and -x at which the first row of a set lifts off, and its number.
 
-    Notes
-    -----
     The inner rings move axially from where the set carries no load; forces follow from the displacement, no equilibrium is solved for.
     Rows on a spring keep its force, as their outer rings follow.
     """
@@ -245,8 +236,6 @@ def _lift_off(model: Model) -> Tables:
 def _first_open(rows: Ring, start: float, furthest: float) -> tuple[float, int] | tuple[None, None]:
     """Axial displacement [m] at which an inner contact opens first, and its ball.
 
-    Parameters
-    ----------
     start : displacement from which the rings move [m];  furthest : by which they move at most, signed [m]
     """
     unloaded = np.flatnonzero(rows.table[:, ring.SIDE] != np.sign(furthest))

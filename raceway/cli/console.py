@@ -72,8 +72,6 @@ class Commands(click.Group):
 def _exit_code(command: Callable[[], object], words: list[str]) -> int:
     """Run a command; report what it raises; return the exit code.
 
-    Parameters
-    ----------
     words : the command line, which tells whether ``--json`` and ``--debug`` were asked for even when it cannot be parsed
     """
     as_json, debug = "--json" in words, "--debug" in words

@@ -42,8 +42,6 @@ _NUMBER = re.compile(r"\d+(\.\d+)?(e[+-]?\d+)?")
 class _Swept(Answer):
     """What a store holds.
 
-    Attributes
-    ----------
     files : that were written;  fault : why points or files are missing
     """
 
@@ -263,10 +261,7 @@ def _answer(
 ) -> Answer:  # fmt: skip
     """What the store holds once the points are computed, and its files.
 
-    Raises
-    ------
-    Interrupted
-        After Ctrl-C.
+    Interrupted: after Ctrl-C.
     """
     from raceway.points.sweep import fill_store, refuse_large
 

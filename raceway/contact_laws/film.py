@@ -14,7 +14,6 @@ from raceway.scene.lubricant import Oil
 if TYPE_CHECKING:
     import numpy as np
 
-    from raceway.core.contact.film import Film as Thickness
     from raceway.core.jit import Kernel
     from raceway.framework.contracts import ContactPairs
     from raceway.storage.tables import Tables
@@ -110,7 +109,9 @@ class Film(Oil):
         }
         table: Tables = {"viscosity_pa_s": self.dynamic_viscosity, "pressure_viscosity_per_pa": self.alpha}
         table |= {"inlet_heating": self.inlet_heating, "temperature_viscosity_per_k": self.beta}
-        return LawReport(columns, table, (*self._heated(pairs), *_doubts(films), *self._rough(lambdas)))
+        words = " and ".join(sorted({REGIMES[each] for each in films.regime if each != 0}))
+        doubts = [f"contacts are not in the piezoviscous-elastic regime of rolling bearings but {words}"] if words else []
+        return LawReport(columns, table, (*self._heated(pairs), *doubts, *self._rough(lambdas)))
 
     def _heated(self, pairs: ContactPairs) -> list[str]:
         """A sentence where the heat of the inlet decides the film, from speed and viscosity."""
@@ -140,12 +141,3 @@ class Film(Oil):
                 "load. Use a thicker oil, a higher speed or smoother surfaces, or contact.kind = 'hertz'"
             ]
         return [f"mixed lubrication: {sentence}, below {_MIXED:g}: asperities carry a part"] if thinnest < _MIXED else []
-
-
-def _doubts(thickness: Thickness) -> list[str]:
-    """A sentence where contacts are in another regime than rolling bearings' usual one."""
-    from raceway.core.contact.film import REGIMES
-
-    regimes = sorted({REGIMES[each] for each in thickness.regime if each != 0})
-    words = " and ".join(regimes)
-    return [f"contacts are not in the piezoviscous-elastic regime of rolling bearings but {words}"] if regimes else []

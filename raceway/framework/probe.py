@@ -59,10 +59,7 @@ def _kernel_of(function: Kernel, signature: Signature) -> Kernel:
 def _check_compiled(kernel: object, label: str, signature: Signature, name: str) -> None:
     """Refuse what ``kernel()`` returned unless it is compiled for a signature; parameters as ``plugin_kernel``.
 
-    Raises
-    ------
-    PluginError
-        It is not compiled, or for other arguments.
+    PluginError: it is not compiled, or for other arguments.
     """
     if _LOOKED_AT.get(id(kernel)) == (kernel, signature):
         return

@@ -13,3 +13,6 @@ quantities       numbers of plug-ins at one solved point
 warm             steady temperatures of scenes with [heat]
 result           the result: result.json, formats of results;  content: its keys;  run_screen, run_parts: its tables on a screen
 """
+
+#: A run is stopped beyond so many times its predicted time; predictions are within a factor of three of measured ones.
+PATIENCE = 20.0

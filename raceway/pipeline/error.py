@@ -192,8 +192,6 @@ def _no_total(run: Identified, parts: dict[str, Part]) -> Note | None:
 def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, Run | None]:
     """By a second run with other steps; that one, where other starts are compared with it because it is cheaper than the first.
 
-    Parameters
-    ----------
     second_steps : steps per turn of the second run; None: chosen here
     """
     model, method, first = run.model, run.model.problem.integrator.method, run.motion
@@ -270,13 +268,8 @@ def equilibria_of_second_series(steps: int) -> int:
 def _finer_value(run: Identified, count: int) -> complex:
     """Z [N/m] of a series of ``count`` equilibria per turn.
 
-    Raises
-    ------
-    ConvergenceError
-        An equilibrium that is not found.
+    ConvergenceError: an equilibrium that is not found.
 
-    Notes
-    -----
     Bodies that are stepped from Python take milliseconds an equilibrium: of them the change is that of their compiled
     surrogate, whose motion has nearly the same harmonics.
     """
@@ -373,16 +366,11 @@ def _identification(run: Identified) -> Part:
 def _largest_misfit(run: Identified) -> tuple[float, float]:
     """Largest |Z - (K - m w^2 + j w C)| over |Z|, and the whirl speed [r/min] where it is.
 
-    Notes
-    -----
     Between and beyond the speeds of a fit nothing tells what Z does, a resonance included.  Where the scene's own whirl speed,
     whose Z and K are stated, is none of them, its motion is computed: spin and force are the same.  There the misfit is over
     the smaller one of both Z, so that it is an error of the stated one, too.
 
-    Raises
-    ------
-    ConvergenceError, StabilityError
-        No motion at the scene's own speed.
+    ConvergenceError, StabilityError: no motion at the scene's own speed.
     """
     fit, model = run.identification, run.model
     series = list(fit.series)

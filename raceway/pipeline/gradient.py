@@ -93,8 +93,6 @@ class StaticGradient:
 class _MotionGradient:
     """Derivatives of the 1x line of the steady orbit by the number at one key.
 
-    Attributes
-    ----------
     dynamic_stiffness : complex, of Z [N/m];  equivalent_stiffness : of K [N/m];  equivalent_damping : of C [N s/m]
     amplitude : of the 1x line along the force [m]
     """
@@ -341,10 +339,7 @@ class Gradients:
     def _by_models(self, key: Key, relative: float = _STEP) -> Gradient:
         """Of a key whose neighbours are models of their own.
 
-        Raises
-        ------
-        NoDerivative
-            There is none, with the reason.
+        NoDerivative: there is none, with the reason.
         """
         if self.model.scene.heat is not None:
             raise NoDerivative(
@@ -417,10 +412,7 @@ def other_meshes(problem: Problem, other: Problem) -> str:
 def _has_other_contacts(model: Model, neighbour: Model) -> bool:
     """Whether anything differs, to the last bit.
 
-    Raises
-    ------
-    NoDerivative
-        Parts of one that the other does not have.
+    NoDerivative: parts of one that the other does not have.
     """
     systems = surrogate(model.system), surrogate(neighbour.system)
     pairs = [tuple(getattr(system, name) for system in systems) for name in _ARRAYS]

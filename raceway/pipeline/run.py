@@ -23,9 +23,10 @@ from raceway.core.record import drift, friction_lost, largest_share
 from raceway.core.ring.kernels.layout import GYROSCOPIC
 from raceway.core.ring.system import compiled
 from raceway.core.signals import Identification, Line, lines
-from raceway.errors import PATIENCE, BeyondPlanError, ConvergenceError, PluginError, RacewayError, SceneError
+from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, RacewayError, SceneError
 from raceway.framework.estimate import Estimate
 from raceway.framework.registry import Registry, default_registry
+from raceway.pipeline import PATIENCE
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.error import Errors, body_errors, error_warnings, errors_of, misfit_warnings
 from raceway.pipeline.plausible import (
@@ -215,10 +216,7 @@ def _answer(
 ) -> _Answer:
     """What the scene's identifier finds in the motions, and its error.
 
-    Raises
-    ------
-    ConvergenceError
-        A motion that leaves the grooves, or without a number.
+    ConvergenceError: A motion that leaves the grooves, or without a number.
     """
     for motion in motions:
         refuse_impossible(motion.model, equilibrium, motion.whole)

@@ -125,7 +125,10 @@ def simulate(
     orbit = start.orbit
     slopes += [] if orbit is None else zip(orbit.stiffness, orbit.damping, strict=True)
     critical = min(model.system.damped_time_step(*slope) for slope in slopes) if method.inertial else None
-    steps_per_turn = steps_per_turn or _steps_per_turn(model, period, critical)
+    steps = steps_per_turn or model.problem.integrator.steps_per_turn
+    if not isinstance(steps, int):
+        steps = STEPS_PER_TURN if method.implicit or critical is None else stable_steps_per_turn(period, critical)
+    steps_per_turn = steps
     step_warnings = _step_warnings(model, equilibrium, period, steps_per_turn, critical)
     ramp_length = ramp_turns(model.problem.excitation) or 2.0 * model.plan.turns / 3.0
     ramp = min(ramp_length, float(turns)) if start.kind == "ramp" else 0.0
@@ -244,15 +247,6 @@ def _motion(model: Model, equilibrium: Equilibrium, start: Start, dt: float) -> 
     if start.orbit is not None:
         return model.bearing.on_orbit(system, start.orbit, dt)
     return model.bearing.at_rest(system, q, ball, start.kind == "ramp")
-
-
-def _steps_per_turn(model: Model, period: float, critical: float | None) -> int:
-    steps = model.problem.integrator.steps_per_turn
-    if isinstance(steps, int):
-        return steps
-    if model.problem.integrator.method.implicit or critical is None:
-        return STEPS_PER_TURN
-    return stable_steps_per_turn(period, critical)
 
 
 def recording_stride(steps_per_turn: int, turns: int, inertial: bool = True) -> int:

@@ -155,17 +155,7 @@ def without_free_vibration(motion: Simulation) -> Clean | None:
         return Clean(value, _lasting(motion, record, value), Estimate.LEAKAGE(), halves)
     if len(motion.whole.time) <= per_turn or not motion.model.problem.integrator.method.inertial:
         return None
-    return Clean(_by_closed_turns(motion, per_turn), 0j, Estimate.OPEN_TURN())
-
-
-def _by_window(record: Record, part: slice, frequency_hz: float) -> complex:
-    """Z [N/m] of some whole turns under Hann's window."""
-    lines = hann_line(record.time[part], np.hstack([record.force, record.displacement])[part], frequency_hz)
-    return stiffness(lines[:5], lines[5:])
-
-
-def _by_closed_turns(motion: Simulation, per_turn: int) -> complex:
-    """Z of the last turn less what its free vibration leaves in the 1x line."""
+    # Z of the last turn less what its free vibration leaves in the 1x line.
     from scipy.linalg import eigh
 
     record, system, w = motion.whole, motion.model.system, 2.0 * np.pi * motion.model.excitation.frequency_hz
@@ -180,7 +170,14 @@ def _by_closed_turns(motion: Simulation, per_turn: int) -> complex:
     line = synchronous_phasor(record.time[turn], record.displacement[turn], w / (2.0 * np.pi))
     seam = np.exp(-1j * w * record.time[-1])
     line[free] -= w / np.pi * seam * modes @ ((slope + 1j * w * jump) / (w**2 - squares))
-    return stiffness(synchronous_phasor(record.time[turn], record.force[turn], w / (2.0 * np.pi)), line)
+    force = synchronous_phasor(record.time[turn], record.force[turn], w / (2.0 * np.pi))
+    return Clean(stiffness(force, line), 0j, Estimate.OPEN_TURN())
+
+
+def _by_window(record: Record, part: slice, frequency_hz: float) -> complex:
+    """Z [N/m] of some whole turns under Hann's window."""
+    lines = hann_line(record.time[part], np.hstack([record.force, record.displacement])[part], frequency_hz)
+    return stiffness(lines[:5], lines[5:])
 
 
 def hann_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:

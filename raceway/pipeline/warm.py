@@ -291,8 +291,6 @@ def _fixed_points(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Where x = G(x): x (n, k), (n,) whether it was found, and whether it ran away instead.
 
-    Parameters
-    ----------
     image : of x (m, k) and the rows (m,) that they belong to, G(x), nan where it is not defined;  least : (n,) of all x
     """
     answer = start.copy()

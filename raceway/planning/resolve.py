@@ -419,8 +419,6 @@ GROWTH: tuple[Rule[Problem], ...] = (
 def _with_hypotheses(problem: Problem) -> Problem:
     """The problem with a hypothesis for each key of [kinematics] that is 'auto', and why: what can be computed acts.
 
-    Notes
-    -----
     With friction contacts stick along the grooves, and would carry moments twice.
     """
     fit = "as far as mounting.shaft_interference holds" if some(problem.mounting.shaft_interference) else "as one body"

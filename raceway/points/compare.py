@@ -255,8 +255,6 @@ def _by_one_method(
 ) -> list[Tables]:
     """Tables of all points with the integrator that all can take, where planning chose several; the same list where it chose one.
 
-    Parameters
-    ----------
     methods : integrator of each point; None where there is none
     """
     several = sorted({name for name in methods if name})

@@ -235,8 +235,6 @@ def _follow_doubled(
 class _Continuation:
     """Follows one branch and writes down what it meets: points, special points, peaks, contacts that open, how it ends.
 
-    Attributes
-    ----------
     mass : m of K [kg];  points : orbits at most;  closed : whether the branch ends at a point, asked for each in its order
     """
 

@@ -123,8 +123,6 @@ class LawContact:
 class _Cycle:
     """One period of the approach.
 
-    Attributes
-    ----------
     frequency : [Hz];  amplitude : x [m]
     approach, rate, force : (n,) over one period [m, m/s, N]
     stiffness : K [N/m];  damping : C [N s/m];  energy : lost [J];  loss_factor : w C / K; None without K

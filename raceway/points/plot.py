@@ -212,8 +212,6 @@ _MOST_PANELS = 6
 class _Layout:
     """A picture of one quantity.
 
-    Attributes
-    ----------
     data : dimensions among ``x``, ``y`` and ``panels``, or ``point``; nan where there is no result; units and description in its
         attributes
     x, y : keys; in curves y is what the colours stand for and may be None
@@ -232,10 +230,7 @@ class _Layout:
     def write(self, path: Path) -> Path:
         """Draw it.
 
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or the file cannot be written.
+        RacewayError: matplotlib is missing, or the file cannot be written.
         """
         return write(draw(self), path)
 

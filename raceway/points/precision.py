@@ -117,7 +117,13 @@ class Precision(Answer):
                 row["at_bound"] = not error > EXACT * reference.bound
         # The order between each row and the next coarser one of its ladder.
         for key, inverse in _LADDERS.items():
-            for places in _ladders(rows, key):
+            ladders: dict[str, list[int]] = {}  # finished rows that differ in this key only
+            for index, row in enumerate(rows):
+                value = row["setting"].get(key)
+                if row["error"] and isinstance(value, int | float) and not isinstance(value, bool):
+                    others_fixed = {name: number for name, number in row["setting"].items() if name != key}
+                    ladders.setdefault(f"{row['family']} {others_fixed!r}", []).append(index)
+            for places in ladders.values():
                 places.sort(key=lambda k: rows[k]["setting"][key], reverse=not inverse)
                 for coarse, fine in zip(places, places[1:], strict=False):
                     bound = _ORDER_MARGIN * self.references[rows[fine]["physics"]].bound
@@ -354,17 +360,6 @@ def _time_of(row: Judged) -> str:
 def _error_of(row: Judged) -> str:
     """With a mark where it is known to the reference's bound only; empty where there is none."""
     return "" if row["error"] is None else f"{'~' if row['at_bound'] else ''}{row['error']:.1e}"
-
-
-def _ladders(rows: list[Judged], key: str) -> list[list[int]]:
-    """Places of finished rows that differ in one key only, a list for each ladder."""
-    ladders: dict[str, list[int]] = {}
-    for index, row in enumerate(rows):
-        value = row["setting"].get(key)
-        if row["error"] and isinstance(value, int | float) and not isinstance(value, bool):
-            others_fixed = {name: number for name, number in row["setting"].items() if name != key}
-            ladders.setdefault(f"{row['family']} {others_fixed!r}", []).append(index)
-    return [places for places in ladders.values() if len(places) > 1]
 
 
 def _words_of(setting: Tables) -> str:

@@ -38,8 +38,6 @@ if TYPE_CHECKING:
 class _Sensitivity:
     """Of all quantities to one key.
 
-    Attributes
-    ----------
     derivatives : quantity -> derivative, in its unit over the key's
     influence : quantity -> per cent by which it grows when the number at the key grows by one per cent; empty where that is 0
     """

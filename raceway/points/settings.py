@@ -384,12 +384,21 @@ def _direct(first: Setting, extra: Tables, runner: Runner) -> Reference | None:
 
 def _transients(first: Setting, finest: int, common: Tables, runner: Runner) -> Reference:
     steps = max(_FINER * finest, _LEAST_STEPS)
+    #: Method, values at step zero, the change to them, and what is left of the transient [relative].
     extrapolations: list[tuple[str, Values, Values, float]] = []
     while not extrapolations and steps > finest:
         for name in _METHODS:
-            if len(extrapolations) < 2 and name in runner.registry.names("integrator"):
-                extrapolation = _extrapolation(first, name, steps, common, runner)
-                extrapolations += [] if extrapolation is None else [extrapolation]
+            if len(extrapolations) == 2 or name not in runner.registry.names("integrator"):
+                continue
+            at = {**common, "integrator.kind": name}
+            coarse, fine = (runner.at(first, {**at, "integrator.steps_per_turn": n}) for n in (steps // 2, steps))
+            if coarse is None or fine is None:
+                continue
+            method: type[Integrator] = runner.registry.find("integrator", name).plugin
+            gain = 1.0 / (2.0**method.order - 1.0)
+            change = {key: gain * part for key, part in minus(fine["quantities"], coarse["quantities"]).items()}
+            values = {key: fine["quantities"][key] + part for key, part in change.items()}
+            extrapolations.append((name, values, change, fine["transient_error"] or 0.0))
         steps = steps if extrapolations else steps // 2
     if not extrapolations:
         return Reference({}, {}, "no transient at finer steps than the rows' could be run within the limit of time")
@@ -407,18 +416,3 @@ def _transients(first: Setting, finest: int, common: Tables, runner: Runner) -> 
     bounds = {key: abs(apart[key]) + floor[key] for key in values}
     how = f"'{name}' and '{second_name}' at {steps} steps per turn, {turns} turns, extrapolated to step zero; bound by their distance"
     return Reference(middle, bounds, f"{how} and by what is left of the transient")
-
-
-def _extrapolation(
-    first: Setting, name: str, steps: int, common: Tables, runner: Runner
-) -> tuple[str, Values, Values, float] | None:
-    """Method, values at step zero, the change to them, and what is left of the transient [relative]."""
-    at = {**common, "integrator.kind": name}
-    coarse, fine = (runner.at(first, {**at, "integrator.steps_per_turn": n}) for n in (steps // 2, steps))
-    if coarse is None or fine is None:
-        return None
-    method: type[Integrator] = runner.registry.find("integrator", name).plugin
-    gain = 1.0 / (2.0**method.order - 1.0)
-    change = {key: gain * part for key, part in minus(fine["quantities"], coarse["quantities"]).items()}
-    values = {key: fine["quantities"][key] + part for key, part in change.items()}
-    return name, values, change, fine["transient_error"] or 0.0

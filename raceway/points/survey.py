@@ -26,8 +26,6 @@ _MOST_MISTAKES = 10
 class _Survey:
     """Requirements of a sweep.
 
-    Attributes
-    ----------
     scene : at the first point
     used : (kind, name) of plug-ins;  files : path -> hash of its content
     notes : options that are left out where another kind does not know them

@@ -90,12 +90,8 @@ class Point:
 class _Block:
     """Callable on ``(first, columns)``, the number of the first point and the columns of the keys; the row of these points.
 
-    Attributes
-    ----------
     tables : of the scene at the first point of the sweep;  outputs : names of quantities
 
-    Notes
-    -----
     A row's content are the columns of quantities and ``status``, its reason is those of the points, by their numbers, as JSON.
     """
 
@@ -123,8 +119,6 @@ def _block_row(first: int, answer: Columns, reasons: dict[int, str], times: Read
 def _column_function(tables: ReadTables, scene: Scene, design: Design, registry: Registry) -> Function | None:
     """All columns of a sweep as a function of its keys; None where points need runs of their own.
 
-    Parameters
-    ----------
     tables : of the scene;  scene : at the first point
     """
     keys = {key.path for key in continuous_keys(scene)}

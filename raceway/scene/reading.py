@@ -43,11 +43,20 @@ def check_requirements(table: object, registry: Registry, mistakes: list[Mistake
     if not table:
         return
     from packaging.specifiers import InvalidSpecifier, SpecifierSet
+    from packaging.utils import canonicalize_name
+
+    from raceway import __version__
 
     if not isinstance(table, Mapping):
         mistakes.append(Mistake("requires", table, 'must be a table of names and versions: [requires] and NAME = ">=1.2"'))
         return
-    distributions = _distributions(registry)
+    #: Normalised name -> (distribution, version), for distributions, entry points and plug-ins' names.
+    distributions: dict[str, tuple[str, str]] = {}
+    for entry in registry.all():
+        sources = () if entry.distribution == "raceway" else (entry.source, entry.distribution)
+        for name in (entry.name, *sources):
+            distributions.setdefault(canonicalize_name(name), (entry.distribution, entry.version))
+    distributions["raceway"] = ("raceway", __version__)
     for name, specifier in table.items():
         path = f"requires.{name}"
         if not isinstance(specifier, str):
@@ -63,21 +72,6 @@ def check_requirements(table: object, registry: Registry, mistakes: list[Mistake
         why = _unmet(name, specifier, versions, distributions, registry)
         if why:
             mistakes.append(Mistake(path, specifier, why))
-
-
-def _distributions(registry: Registry) -> dict[str, tuple[str, str]]:
-    """Normalised name -> (distribution, version), for distributions, entry points and plug-ins' names."""
-    from packaging.utils import canonicalize_name
-
-    from raceway import __version__
-
-    distributions: dict[str, tuple[str, str]] = {}
-    for entry in registry.all():
-        sources = () if entry.distribution == "raceway" else (entry.source, entry.distribution)
-        for name in (entry.name, *sources):
-            distributions.setdefault(canonicalize_name(name), (entry.distribution, entry.version))
-    distributions["raceway"] = ("raceway", __version__)
-    return distributions
 
 
 def _unmet(
@@ -268,7 +262,7 @@ def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake
             mistakes.append(Mistake(name, plain[name], f"must be a table: write [{name}] and keys below it"))
             plain[name] = {}
     check_requirements(plain.get("requires", {}), registry, mistakes)
-    if "bearing" not in plain:
+    if "bearing" not in plain and not any(nearest(name, ["bearing"]) for name in tables if name not in names):
         mistakes.append(Mistake("bearing", None, 'is required: for instance [bearing] with preset = "B7206C"'))
     return title, plain
 

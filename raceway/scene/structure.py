@@ -123,10 +123,7 @@ _MEASURED = (float, float | None, *_LISTS, *_WORDS)
 def _without_units(value: object, attribute: Any) -> Any:
     """A key's value with the numbers that are text in the key's own unit.
 
-    Raises
-    ------
-    ValueError
-        Text that is no number of this unit, and no word either where the key takes words.
+    ValueError: text that is no number of this unit, and no word either where the key takes words.
     """
     unit = attribute.metadata.get("unit", "")
     if not unit or attribute.type not in _MEASURED:
@@ -232,9 +229,14 @@ def _mistakes(error: BaseException, value: object, cls: object, path: str) -> li
     if isinstance(error, cattrs.errors.ClassValidationError):
         mistakes: list[Mistake] = []
         notes, plain = error.group_exceptions()
+        strange = [
+            key for each in plain if isinstance(each, cattrs.errors.ForbiddenExtraKeysError) for key in each.extra_fields
+        ]
         for inner, note in notes:
             here = value.get(note.name) if isinstance(value, dict) else None
             where = f"{path}.{note.name}" if path else note.name
+            if isinstance(inner, KeyError) and any(nearest(key, [note.name]) for key in strange):
+                continue  # misspelt, which is said below
             if isinstance(inner, KeyError):
                 mistakes.append(Mistake(where, None, f"{_MISSING}{_describe(cls, note.name)}"))
             else:

@@ -47,14 +47,10 @@ _BALLS = {
 def _ranges_of(scene: SceneTables, key: str, name: str) -> dict[str, tuple[float, float]]:
     """Path -> how far the number at it may lie below and above the scene's [m].
 
-    Parameters
-    ----------
     key : one of ``NAMES``;  name : such as "P4", "ABEC 7" or "G5"
 
-    Raises
-    ------
-    SceneError
-        No such name; a size that the class's table does not have; a class that changes nothing, or that leaves a ring loose.
+    SceneError: no such name; a size that the class's table does not have; a class that changes nothing, or that leaves a
+        ring loose.
     """
     if key == "balls":
         variation = 1e-6 * _BALLS[_member(key, name, [*_BALLS])]

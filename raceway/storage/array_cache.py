@@ -240,26 +240,22 @@ def _write(path: Path, kind: str, label: str, arrays: Mapping[str, np.ndarray], 
             scratch.unlink()
         _warn_unwritable(str(path.parent), why.strerror or str(why))
         return
-    _trim(path)
-
-
-def _trim(newest: Path) -> None:
-    """Remove the least recently used entries above the limit, and what killed processes left; the newest entry stays."""
+    # The least recently used entries above the limit go, and what killed processes left; the newest entry stays.
     entries = []
-    for scratch in newest.parent.glob(".*"):
+    for scratch in path.parent.glob(".*"):
         with suppress(OSError):
             if time.time() - scratch.stat().st_mtime > _ABANDONED:
                 scratch.unlink()
-    for path in _files():
+    for other in _files():
         with suppress(OSError):
-            status = path.stat()
-            entries.append((path == newest, status.st_mtime, status.st_size, path))
+            status = other.stat()
+            entries.append((other == path, status.st_mtime, status.st_size, other))
     total = sum(size for _, _, size, _ in entries)
-    for fresh, _, size, path in sorted(entries, key=lambda f: f[:2]):
+    for fresh, _, size, other in sorted(entries, key=lambda f: f[:2]):
         if total <= LIMIT or fresh:
             break
         with suppress(OSError):
-            path.unlink()
+            other.unlink()
             total -= size
 
 

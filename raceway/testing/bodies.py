@@ -339,7 +339,15 @@ class BodiesSuite(Suite):
         shapes = [np.shape(angle) for angle in several]
         require(shapes == [(3, z)] * 2, f"the angles of three states have the shapes {shapes}, not (3, {z})")
         check_shape("over_edges() of three states", model.bearing.over_edges(model, *several, forces), (3,))
-        return _load_share(model, equilibrium)
+        # Sum of the inner races' forces against the loads on the free translations.
+        load, inner = np.where(force[:z] > 0.0, force[:z], 0.0), np.nan_to_num(equilibrium.angle_inner)
+        side = np.array([side for side, _ in model.problem.bearing.rows])[model.basis.row]
+        radial = load * np.cos(inner)
+        total = np.array([side @ (load * np.sin(inner)), radial @ np.cos(model.azimuth), radial @ np.sin(model.azimuth)])
+        residual = (total - model.system.load[:3]) * model.system.free[:3]
+        share = float(np.abs(residual).max() / load.sum())
+        require(share < _ANGLES, f"with their angles the inner races' forces leave {share:.2g} of them unbalanced")
+        return f"{share:.1e} of them is left"
 
     @duty("contact_ellipse, ball_columns, edge_warnings, report, warnings, mesh_error, contact_error: shapes and types")
     def test_told(self, bodies: BodiesKind) -> None:
@@ -418,17 +426,3 @@ class BodiesSuite(Suite):
         stiffness = K.of(content)
         require(stiffness is not None and stiffness > 0.0, f"the stiffness is {stiffness} N/m")
         return f"K = {stiffness:.4g} N/m"
-
-
-def _load_share(model: Model, equilibrium: Equilibrium) -> str:
-    """Sum of the inner races' forces against the loads on the free translations."""
-    z, azimuth = model.system.ball_count, model.azimuth
-    load = np.where(equilibrium.contact_force[:z] > 0.0, equilibrium.contact_force[:z], 0.0)
-    angle = np.nan_to_num(equilibrium.angle_inner)
-    side = np.array([side for side, _ in model.problem.bearing.rows])[model.basis.row]
-    radial = load * np.cos(angle)
-    total = np.array([side @ (load * np.sin(angle)), radial @ np.cos(azimuth), radial @ np.sin(azimuth)])
-    residual = (total - model.system.load[:3]) * model.system.free[:3]
-    part = float(np.abs(residual).max() / load.sum())
-    require(part < _ANGLES, f"with their angles the inner races' forces leave {part:.2g} of them unbalanced")
-    return f"{part:.1e} of them is left"

@@ -27,7 +27,8 @@ def _article(folder: Path) -> Path:
     from checks.validation.article_study import curves, study
 
     found = study(curves(lambda setting, load, w: 1e8 * (1.0 + 0.3 * w**2) * (load / 1000.0) ** 0.3, ("rigid", "condensed")))
-    return page(found, drawings(found)).write(folder / "article.html")
+    drawn, load = drawings(found.curves, found.scan), found.curves.design.scene_load
+    return page(found.to_dict(), load, found.scan, drawn, found.command).write(folder / "article.html")
 
 
 def _article_elastic(folder: Path) -> Path:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 import attrs
@@ -135,7 +135,11 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
     quantities = KNOWN | named(_MULTIPLIER) | plugin_values
     for name, axis in axes.items():
         wait(name)
-        titles = {t: _possible_names(result, t, names) for t, names in _PANELS.items() if name == "speed" or t in _OVER_LOAD}
+        titles = {
+            title: [curve for curve in names if _has(result, curve)][: None if title in _TOGETHER else 1]
+            for title, names in _PANELS.items()
+            if name == "speed" or title in _OVER_LOAD
+        }
         try:
             outputs = [curve for names in titles.values() for curve in names]
             answer = _curve_answer(scene, axis, [*outputs, *(["contact_angle"] if "ball_load" in outputs else [])])
@@ -145,12 +149,6 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
             continue
         panels += [_panel(name, axis, t, names, answer, quantities) for t, names in titles.items() if names]
     return panels
-
-
-def _possible_names(result: Result, title: str, names: Sequence[str]) -> list[str]:
-    """The curves of a panel that the result's scene has."""
-    possible = [name for name in names if _has(result, name)]
-    return possible if title in _TOGETHER else possible[:1]
 
 
 def _has(result: Result, name: str) -> bool:

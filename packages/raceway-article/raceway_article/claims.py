@@ -147,7 +147,11 @@ def power_exponent(x: np.ndarray, y: np.ndarray, errors: np.ndarray, constant: b
     free = len(y) - 2 - constant
     if free < 1:
         return None
-    sums = _residuals(x[None, :] ** _EXPONENTS[:, None], y, constant)
+    powers = x[None, :] ** _EXPONENTS[:, None]
+    if constant:  # about the means
+        powers, y = powers - powers.mean(axis=1, keepdims=True), y - y.mean()
+    factor = powers @ y / (powers**2).sum(axis=1)
+    sums = ((y - factor[:, None] * powers) ** 2).sum(axis=1)
     best = int(np.argmin(sums))
     limit = sums[best] * (1.0 + stdtrit(free, _CHANCE) ** 2 / free) + _CHI_SQUARED * float((errors**2).mean())
     inside = _EXPONENTS[sums <= limit]
@@ -155,14 +159,6 @@ def power_exponent(x: np.ndarray, y: np.ndarray, errors: np.ndarray, constant: b
     value, step = _EXPONENTS[best], _EXPONENTS[1] - _EXPONENTS[0]
     low, high = min(inside.min(initial=np.inf), value - step), max(inside.max(initial=0.0), value + step)
     return _Exponent(float(value), float(low), float(high))
-
-
-def _residuals(powers: np.ndarray, y: np.ndarray, constant: bool) -> np.ndarray:
-    """Sums of squares (k,) that y (n,) leaves beside the best multiple of each power (k, n), about the means with a constant."""
-    if constant:
-        powers, y = powers - powers.mean(axis=1, keepdims=True), y - y.mean()
-    factor = powers @ y / (powers**2).sum(axis=1)
-    return np.asarray(((y - factor[:, None] * powers) ** 2).sum(axis=1))
 
 
 _ORDER = ("friction", "tilt", "inertia", "bodies", "speed", "load")

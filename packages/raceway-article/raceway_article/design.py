@@ -38,6 +38,11 @@ ARTICLE = Path(__file__).resolve().parent / "data" / "article.toml"
 #: The article's ranges: section 4 (speeds) and 3.3 (axial loads); how finely is ours.
 SPEEDS = "10980:15000:9"
 LOADS = "400:2000:9"
+#: Speeds [r/min] of the independent solver's printed digits.
+SOLVER_SPEEDS = (10980.0, 12000.0, 13000.0, 14000.0, 15000.0)
+#: Tilt stiffness of the shaft [N m/rad], from next to free to next to locked.
+STIFFNESSES = tuple(float(f"{10.0 ** (2.0 + 0.25 * k):.4g}") for k in range(17))
+RACES = ("inner", "outer")
 #: The rig's shaft: span between the bearings from section 3.3; the diameter is not printed, 30 mm is the bearing's bore.
 _SHAFT_DIAMETER, _SPAN, _YOUNG = 0.030, 0.175, 212e9
 #: Status of a run that is neither failed nor refused.
@@ -343,3 +348,9 @@ class Curves:
         """Every run that gave no number to judge with."""
         for (setting, _), rows in self.rows.items():
             yield from ({**attrs.asdict(setting), **row} for row in rows if row["status"] != "completed")
+
+
+def hardening(rows: list[Tables]) -> np.ndarray:
+    """k*(1) over the stiffnesses (n,); nan where a run failed."""
+    k = np.array([row["k"] if row["status"] == "completed" else np.nan for row in rows]).reshape(-1, 2)
+    return np.asarray(k[:, 1] / k[:, 0])

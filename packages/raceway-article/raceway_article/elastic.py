@@ -21,7 +21,7 @@ from raceway.extend import (
     C, Clocks, Fact, Item, K, OnProgress, Part, ReadTables, Registry, RemainingTime, Tables, Words, Workload, Z, local,
     row_key, rows_table, run, stored_rows, tables_at, with_value, without_nan, work_through, write_whole, written,
 )  # fmt: skip
-from raceway_article.design import CLAIMED, excitation_of, friction_of
+from raceway_article.design import CLAIMED, RACES, excitation_of, friction_of
 from raceway_article.study import failure
 
 if TYPE_CHECKING:
@@ -31,7 +31,6 @@ SCENE = Path(__file__).resolve().parent / "data" / "article_elastic.toml"
 #: Condensed bodies come first: the others are compared with them, and they show in seconds whether the scene is what was meant.
 BODIES = ("condensed", "rigid", "elastic")
 _REFERENCE = BODIES[0]
-RACES = ("inner", "outer")
 #: One operating point: turns and steps of a turn.
 TURNS, STEPS = 2, 40
 #: Stiffness of a contact that sticks [N/m], for all bodies alike: it gives way by 0.8 um before it slides, a tenth of the orbit.  The
@@ -205,7 +204,14 @@ def _row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, fo
         result = run(scene, registry, tell)
         numbers, cost = _result_numbers(result.to_dict()), _cost(clocks, result)
         if folder is not None:
-            numbers |= _stress_section(result, folder)
+            from raceway_view.stress import contact_stress_files
+
+            numbers["pictures"] = []
+            try:
+                files = contact_stress_files(result)
+                numbers["pictures"] += [write_whole(content, folder / name).name for name, content in files.items()]
+            except RacewayError as why:
+                numbers["no_picture"] = failure(why)["reason"]
         del result
     except RacewayError as why:
         row = failure(why)
@@ -249,17 +255,6 @@ def _result_numbers(result: ReadTables) -> Tables:
         "error": {key: result["error"][key] for key in _ERROR},
         "warnings": result["warnings"],
     }
-
-
-def _stress_section(result: Result, folder: Path) -> Tables:
-    """The section below the most loaded contact of each race, where a picture can be made; why not, elsewhere."""
-    from raceway_view.stress import contact_stress_files
-
-    try:
-        files = contact_stress_files(result)
-        return {"pictures": [write_whole(content, folder / name).name for name, content in files.items()]}
-    except RacewayError as why:
-        return {"pictures": [], "no_picture": failure(why)["reason"]}
 
 
 def _from_hertz(row: ReadTables) -> Tables:

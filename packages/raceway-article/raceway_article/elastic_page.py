@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from raceway.extend import Cell, Page, ReadTables, Tables
-from raceway_article.elastic import RACES
+from raceway_article.design import RACES
 from raceway_article.figures import Panel, Picture, finish
 from raceway_article.page import percent, show_picture, shown
 

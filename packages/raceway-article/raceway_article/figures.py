@@ -14,16 +14,13 @@ import numpy as np
 
 from raceway.extend import Status, Tables, label_axes, new_figure
 from raceway_article.design import (
-    AMPLITUDES, CLAIMED, DIRECTIONS, FRICTION_WORDS, ROTATING, TILT_WORDS, TILTS, Curve, Curves, Setting,
+    AMPLITUDES, CLAIMED, DIRECTIONS, FRICTION_WORDS, ROTATING, STIFFNESSES, TILT_WORDS, TILTS, Curve, Curves, Setting, hardening,
 )  # fmt: skip
 from raceway_article.rules import LEVEL
-from raceway_article.study import STIFFNESSES, hardening
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from raceway_article.study import Article
 
 _Colour: TypeAlias = str | tuple[float, float, float, float]
 _WIDTH, _HEIGHT = 4.7, 3.8
@@ -135,10 +132,9 @@ def _colours(count: int) -> list[_Colour]:
     return [colormaps["viridis"](x) for x in np.linspace(0.0, 0.72, count)]
 
 
-def drawings(study: Article) -> list[Picture]:
+def drawings(curves: Curves, scan: Mapping[float, list[Tables]]) -> list[Picture]:
     """All figures in the order of the page: 9 to 12 for each kind of bodies, then what they have in common."""
-    curves, bodies = study.curves, study.curves.design.bodies
-    pictures = []
+    bodies, pictures = curves.design.bodies, []
     for kind in bodies:
         for name, title, measure, star, label in (
             ("figure-9", "Figure 9: k*, both excitations", "K", True, "k* (k = K)"),
@@ -162,7 +158,7 @@ def drawings(study: Article) -> list[Picture]:
     if len(curves.design.frictions) > 1:
         title = f"What friction does: k* over speed, rotating force m e w², coefficient {curves.design.friction:g}"
         pictures.append(Picture("friction", title, tuple(_friction(curves, tilt) for tilt in TILTS)))
-    pictures.append(_tilt_stiffness(study))
+    pictures.append(_tilt_stiffness({f"{load:g} N": hardening(rows) for load, rows in scan.items()}, curves.design.shaft))
     if len(bodies) > 1:
         panels = tuple(_both_bodies(curves, tilt, star) for star in (True, False) for tilt in TILTS)
         pictures.append(Picture("bodies", "Rigid and condensed bodies, rotating force m e w², ball inertia", panels))
@@ -344,10 +340,8 @@ def _reference(axes: Axes) -> None:
     axes.axhline(1.0, color=_REFERENCE, linewidth=0.8)
 
 
-def _tilt_stiffness(study: Article) -> Picture:
+def _tilt_stiffness(ratios: Mapping[str, np.ndarray], shaft: float) -> Picture:
     """k*(1) over the tilt stiffness, which decides whether the bearing hardens."""
-    ratios = {f"{load:g} N": hardening(rows) for load, rows in study.scan.items()}
-    shaft = study.curves.design.shaft
 
     def draw(axes: Axes) -> None:
         for (name, ratio), colour in zip(ratios.items(), _colours(len(ratios)), strict=True):

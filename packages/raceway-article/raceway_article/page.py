@@ -5,18 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import attrs
 
 from raceway.extend import Cell, Page, ReadTables, Tables, csv_text, save_figure, write_json, write_whole
-from raceway_article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, TILT_WORDS, Setting
+from raceway_article.design import FRICTION_STEPS, FRICTION_TURNS, FRICTION_WORDS, SOLVER_SPEEDS, TILT_WORDS, Setting
 from raceway_article.figures import Picture, named
 from raceway_article.rules import KINDS
-from raceway_article.study import SOLVER_SPEEDS
-
-if TYPE_CHECKING:
-    from raceway_article.study import Article
 
 ARTICLE = "“Dynamic Stiffness Characteristics of Bearings Under Combined Loads with Rotor Excitation” (Lubricants 2026, 14(3), 128)"
 _DOTS_PER_INCH = 110
@@ -31,16 +26,16 @@ def write_tables(
     return files + [save_figure(picture.figure(), folder / f"{picture.name}.png", _DOTS_PER_INCH) for picture in pictures]
 
 
-def page(study: Article, pictures: Sequence[Picture]) -> Page:
-    """The page."""
+def page(
+    content: ReadTables, load: float, scan: Mapping[float, list[Tables]], pictures: Sequence[Picture], command: str
+) -> Page:
+    """The page of article.json's content; ``load``: the scene's axial load [N]."""
     from raceway import __version__
 
-    content, by_name = study.to_dict(), {picture.name: picture for picture in pictures}
-    footer = f"Made by `{study.command}`, Raceway {__version__}, in {study.cpu_s:.0f} s of processor time. "
+    by_name, verdicts = {picture.name: picture for picture in pictures}, content["verdicts"]
+    footer = f"Made by `{command}`, Raceway {__version__}, in {content['cost']['cpu_s']:.0f} s of processor time. "
     footer += "Numbers of all runs: article.json and curves.csv beside this page."
-    out = Page("The article’s claims, computed again", study.title, footer)
-    load = study.curves.design.scene_load
-    verdicts = content["verdicts"]
+    out = Page("The article’s claims, computed again", content["title"], footer)
     counts = Counter(verdict["kind"] for verdict in verdicts)
     parts = ", ".join(f"{counts[kind]} {words}" for kind, (_, words) in KINDS.items() if counts[kind])
     out.text(
@@ -90,11 +85,11 @@ def page(study: Article, pictures: Sequence[Picture]) -> Page:
         "not modelled, neither here nor in the article.",
         kind="note",
     )
-    _figures(out, content, by_name, study.curves.design.scene_load)
+    _figures(out, content, by_name, load)
     _static(out, content)
     _trends(out, content)
     _rig(out, content)
-    _faults(out, content, [row for rows in study.scan.values() for row in rows])
+    _faults(out, content, [row for rows in scan.values() for row in rows])
     return out
 
 

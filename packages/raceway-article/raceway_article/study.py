@@ -27,7 +27,8 @@ from raceway.extend import (
 )  # fmt: skip
 from raceway_article.claims import verdicts
 from raceway_article.design import (
-    AMPLITUDES, ANSWERED, DIRECTIONS, ROTATING, TILTS, Curve, Curves, Design, Setting, article_tables,
+    AMPLITUDES, ANSWERED, DIRECTIONS, ROTATING, SOLVER_SPEEDS, STIFFNESSES, TILTS, Curve, Curves, Design, Setting,
+    article_tables, hardening,
 )  # fmt: skip
 from raceway_article.rules import Verdict
 
@@ -42,8 +43,6 @@ _SWAPS: dict[str, Tables] = {
     "friction, balls that stand": {"friction": "standing"},
     "friction, balls that orbit": {"friction": "orbiting"},
 }
-#: Tilt stiffness of the shaft [N m/rad], from next to free to next to locked.
-STIFFNESSES = tuple(float(f"{10.0 ** (2.0 + 0.25 * k):.4g}") for k in range(17))
 
 
 def _base(tilt: str, bodies: Sequence[str]) -> Setting:
@@ -84,12 +83,6 @@ def _scan_loads(design: Design) -> list[float]:
     return [design.loads[0], design.loads[len(design.loads) // 2], design.loads[-1]]
 
 
-def hardening(rows: list[Tables]) -> np.ndarray:
-    """k*(1) over the stiffnesses (n,); nan where a run failed."""
-    k = np.array([row["k"] if row["status"] == "completed" else np.nan for row in rows]).reshape(-1, 2)
-    return np.asarray(k[:, 1] / k[:, 0])
-
-
 def _turning_point(ratio: np.ndarray) -> float | None:
     """Tilt stiffness above which k falls with speed instead of rising [N m/rad]; None where it does not turn.
 
@@ -103,7 +96,6 @@ def _turning_point(ratio: np.ndarray) -> float | None:
     return None
 
 
-SOLVER_SPEEDS = (10980.0, 12000.0, 13000.0, 14000.0, 15000.0)
 #: (tilt, axial load [N], ball inertia): k at 10 980 r/min [N/um], k / that at the other speeds; docs/physics.md names the solver.
 TRENDS: dict[tuple[str, float, bool], tuple[float, tuple[float, ...]]] = {
     ("locked", 400.0, False): (180.1, (0.991, 0.979, 0.960, 0.926)),
@@ -411,9 +403,12 @@ class Article(Answer):
         from raceway_article.figures import drawings
         from raceway_article.page import page, write_tables
 
-        folder, content, drawn = Path(folder), self.to_dict(), drawings(self) if pictures else []
+        folder, content, drawn = Path(folder), self.to_dict(), drawings(self.curves, self.scan) if pictures else []
         files = write_tables("article", content, self.tables(content), drawn, folder)
-        return [page(self, drawn).write(folder / "article.html"), *files] if pictures else files
+        if not pictures:
+            return files
+        view = page(content, self.curves.design.scene_load, self.scan, drawn, self.command)
+        return [view.write(folder / "article.html"), *files]
 
     def failure(self) -> RacewayError | None:
         rows = [row for curve_rows in self.curves.rows.values() for row in curve_rows]

@@ -95,7 +95,8 @@ def made_page(monkeypatch):
 
     def make(k, bodies=("rigid", "condensed"), **options) -> str:
         found = study(curves(k, bodies, **options))
-        return page(found, drawings(found)).html()
+        pictures = drawings(found.curves, found.scan)
+        return page(found.to_dict(), found.curves.design.scene_load, found.scan, pictures, found.command).html()
 
     return make
 

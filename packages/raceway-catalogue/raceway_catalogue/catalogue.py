@@ -40,9 +40,23 @@ def section_drawing(name: str, bearing: Bearing) -> Figure:
                 axes.fill(_MM * outline[:, 0], sign * _MM * outline[:, 1], facecolor=_RACE, edgecolor=_INK, lw=0.9)
         axes.set_aspect("equal")
         axes.axis("off")
-    _draw_bearing(full, bearing)
-    # One ball with its diameter, the line of contact and the grooves.
+    # Both halves of the section with bore, outer and pitch diameter, and width.
     b = bearing
+    bore, outer, width = b.bore or 0.0, b.outer_diameter or 0.0, b.width or 0.0
+    for sign in (1.0, -1.0):
+        _ball(full, b, sign)
+    half, step = 0.5 * _MM * width, 0.09 * _MM * outer
+    full.plot([-half - step, half + step], [0.0, 0.0], color=_INK, lw=0.8, ls="-.")
+    for k, (value, word) in enumerate(((bore, "d"), (b.pitch_diameter, "$d_m$"), (outer, "D")), 1):
+        x, r = half + k * step, 0.5 * _MM * value
+        full.annotate("", (x, -r), (x, r), arrowprops={"arrowstyle": "<->", "color": _INK, "lw": 0.8})
+        for sign in (1.0, -1.0):
+            full.plot([0.0 if word == "$d_m$" else half, x], [sign * r] * 2, color=_INK, lw=0.4)
+        full.text(x, 0.2 * _MM * bore, f"{word} {_MM * value:.5g}", fontsize=8, rotation=90, va="center", ha="right")
+    top = 0.5 * _MM * outer + 0.5 * step
+    full.annotate("", (-half, top), (half, top), arrowprops={"arrowstyle": "<->", "color": _INK, "lw": 0.8})
+    full.text(0.0, top, f"B {_MM * width:.5g}", fontsize=8, ha="center", va="bottom")
+    # One ball with its diameter, the line of contact and the grooves.
     _ball(close, b)
     r, radius = 0.5 * _MM * b.pitch_diameter, 0.5 * _MM * b.ball_diameter
     # A positive axial load seats the inner ring along +x: its contact lies at -x below the ball.
@@ -81,24 +95,6 @@ def _ball(axes: Axes, b: Bearing, sign: float = 1.0) -> None:
 
     centre = 0.0, sign * 0.5 * _MM * b.pitch_diameter
     axes.add_patch(Circle(centre, 0.5 * _MM * b.ball_diameter, facecolor=_BALL, edgecolor=_INK, lw=0.9))
-
-
-def _draw_bearing(axes: Axes, b: Bearing) -> None:
-    """Both halves of the section with bore, outer and pitch diameter, and width."""
-    bore, outer, width = b.bore or 0.0, b.outer_diameter or 0.0, b.width or 0.0
-    for sign in (1.0, -1.0):
-        _ball(axes, b, sign)
-    half, step = 0.5 * _MM * width, 0.09 * _MM * outer
-    axes.plot([-half - step, half + step], [0.0, 0.0], color=_INK, lw=0.8, ls="-.")
-    for k, (value, word) in enumerate(((bore, "d"), (b.pitch_diameter, "$d_m$"), (outer, "D")), 1):
-        x, r = half + k * step, 0.5 * _MM * value
-        axes.annotate("", (x, -r), (x, r), arrowprops={"arrowstyle": "<->", "color": _INK, "lw": 0.8})
-        for sign in (1.0, -1.0):
-            axes.plot([0.0 if word == "$d_m$" else half, x], [sign * r] * 2, color=_INK, lw=0.4)
-        axes.text(x, 0.2 * _MM * bore, f"{word} {_MM * value:.5g}", fontsize=8, rotation=90, va="center", ha="right")
-    top = 0.5 * _MM * outer + 0.5 * step
-    axes.annotate("", (-half, top), (half, top), arrowprops={"arrowstyle": "<->", "color": _INK, "lw": 0.8})
-    axes.text(0.0, top, f"B {_MM * width:.5g}", fontsize=8, ha="center", va="bottom")
 
 
 _LENGTHS = {

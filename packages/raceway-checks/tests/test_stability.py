@@ -12,9 +12,9 @@ import attrs
 import numpy as np
 import pytest
 from raceway_checks.stability import scenes, systems
-from raceway_checks.stability.catalogue import BASE, SCENES, catalogue, law_changes, laws_with, transient
+from raceway_checks.stability.catalogue import BASE, SCENES, Case, catalogue, law_changes, laws_with, transient
 from raceway_checks.stability.scenes import displacement_under_axial_load, energy_slope
-from raceway_checks.stability.study import AS_EXPECTED, FAILED, Case, Limit, Rows, case_rows, measured, stability
+from raceway_checks.stability.study import AS_EXPECTED, FAILED, Limit, Rows, case_rows, measured, stability
 from raceway_checks.stability.systems import Bench
 
 from checks.validation.command_line import ARTICLE, EXAMPLES, invoke
@@ -304,7 +304,7 @@ def test_a_scene_of_the_user_is_put_through_the_cases_that_suit_any(tmp_path):
 
 def test_quick_cases_are_the_default_and_the_screen_says_what_is_left_out(tmp_path, monkeypatch):
     cases = (case("answer", value="near"), attrs.evolve(case("answer", value="far"), name="long", quick=False))
-    monkeypatch.setattr("raceway_checks.stability.catalogue.catalogue", lambda *_: cases)
+    monkeypatch.setattr("raceway_checks.stability.study.catalogue", lambda *_: cases)
     words = ("stability", "--processes", 0, "--out", tmp_path)
     quick = invoke(*words)
     assert quick.exit_code == 0 and "left out: 1 cases" in quick.stdout
@@ -319,7 +319,7 @@ def test_quick_cases_are_the_default_and_the_screen_says_what_is_left_out(tmp_pa
 
 def test_an_interruption_keeps_finished_cases(tmp_path, monkeypatch):
     cases = tuple(attrs.evolve(case("answer", value="near"), name=f"answer {k}", setting={"k": k}) for k in range(4))
-    monkeypatch.setattr("raceway_checks.stability.catalogue.catalogue", lambda *_: cases)
+    monkeypatch.setattr("raceway_checks.stability.study.catalogue", lambda *_: cases)
 
     def stop(what, done, total):
         if done == 2:

@@ -122,7 +122,10 @@ class Unit:
         content = {f"sources/{name}": text.encode() for name, text in sources.items()}
         content["modelDescription.xml"] = _xml(_description(self, version))
         if version == 3:
-            content["sources/buildDescription.xml"] = _xml(_build(self))
+            root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
+            build = _add(root, "BuildConfiguration", modelIdentifier=self.name)
+            _add(_add(build, "SourceFileSet", language="C99"), "SourceFile", name="fmi3.c")
+            content["sources/buildDescription.xml"] = _xml(root)
         *folders, ending = _PLATFORMS.get((sys.platform, platform.machine()), ("", "", ""))
         library, why = b"", f"no folder is defined for {platform.machine()} under {sys.platform}"
         if folder := folders[version - 2]:
@@ -226,15 +229,4 @@ def _description(unit: Unit, version: int) -> ET.Element:
                 "dependencies": " ".join(str(j + second) for j in range(first)),
             }
             _add(parent, "Unknown" if second else tag, **place)
-    return root
-
-
-def _build(unit: Unit) -> ET.Element:
-    """buildDescription.xml of FMI 3.0."""
-    root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
-    _add(
-        _add(_add(root, "BuildConfiguration", modelIdentifier=unit.name), "SourceFileSet", language="C99"),
-        "SourceFile",
-        name="fmi3.c",
-    )
     return root

@@ -127,7 +127,8 @@ def coefficients(
         raise SceneError.at("--damping", unresolved, "must be a finite damping of at least 0 N s/m")
     purpose = "and a table of coefficients goes over speed and frequency only"
     only_axes(selection, (SPEED, SPIN, DIRECTION), purpose)
-    source = member("source", source or _default_source(selection), SOURCES)
+    default = "tangent" if selection.value("excitation.kind") is None else "rotating"
+    source = member("source", source or ("directions" if DIRECTION in selection.axes else default), SOURCES)
     if source == "directions":
         selection = _directions_last(selection)
     else:
@@ -213,12 +214,6 @@ def _dry(source: str, stiffness: np.ndarray, damping: np.ndarray, with_damping: 
     remedy = f"{'' if source == 'tangent' else in_contacts}--damping C (in Python damping=C)"
     words = dry_damping_words(largest, float(np.max(stiffness[..., 0, 0])), remedy)
     return [] if words is None else [words]
-
-
-def _default_source(selection: Selection) -> str:
-    if DIRECTION in selection.axes:
-        return "directions"
-    return "tangent" if selection.value("excitation.kind") is None else "rotating"
 
 
 def _directions_last(selection: Selection) -> Selection:

@@ -144,7 +144,12 @@ def _tangent(selection: Selection) -> Matrices:
         raise RacewayError("the sweep holds no tangent of the equilibrium: choose --from rotating")
     matrix = reduced(selection)
     coupling = np.abs(matrix[..., 0, 1:])
-    follow = _following_tilts(selection)
+    # (..., 5, 3) motion of all coordinates with x, y, z, the tilts as supported.
+    whole = np.array(selection.dataset["stiffness"].values, dtype=float)
+    follow = np.zeros((*whole.shape[:-2], 5, 3))
+    follow[..., :3, :] = np.eye(3)
+    if (tilt := selection.value("supports.tilt", "locked")) != "locked":
+        follow[..., 3:, :] = -np.linalg.solve(_tilts(whole, tilt), whole[..., 3:, :3])
     transformation = follow[..., 1:]
     notes = []
     radial = matrix[..., 1:, 1:]
@@ -180,17 +185,6 @@ def _tangent(selection: Selection) -> Matrices:
 
 #: What coefficients are taken from.
 SOURCES = {"rotating": _rotating, "directions": _directions, "tangent": _tangent}
-
-
-def _following_tilts(selection: Selection) -> np.ndarray:
-    """(..., 5, 3) motion of all coordinates with x, y, z, the tilts as supported."""
-    matrix = np.array(selection.dataset["stiffness"].values, dtype=float)
-    out = np.zeros((*matrix.shape[:-2], 5, 3))
-    out[..., :3, :] = np.eye(3)
-    tilt = selection.value("supports.tilt", "locked")
-    if tilt != "locked":
-        out[..., 3:, :] = -np.linalg.solve(_tilts(matrix, tilt), matrix[..., 3:, :3])
-    return out
 
 
 def reduced(selection: Selection, tilt: float | str | None = None) -> np.ndarray:

@@ -46,7 +46,12 @@ def mesh_picture(meshes: Mapping[str, HexMesh], title: str) -> bytes:
     def draw(pyvista: ModuleType, plotter: Plotter) -> None:
         outside: dict[int, np.ndarray] = {}  # balls share one array of cells
         for name, mesh in meshes.items():
-            quads = _outer_faces(outside, mesh) if name.startswith("ball") else _cut_open(mesh)
+            if name.startswith("ball"):
+                if id(mesh.cells) not in outside:
+                    outside[id(mesh.cells)] = _outside(mesh.cells)
+                quads = outside[id(mesh.cells)]
+            else:
+                quads = _cut_open(mesh)
             if len(quads):
                 surface = pyvista.PolyData.from_regular_faces(mesh.points, quads)
                 colour = next((value for word, value in _COLOURS.items() if name.startswith(word)), _OTHER)
@@ -58,13 +63,6 @@ def mesh_picture(meshes: Mapping[str, HexMesh], title: str) -> bytes:
         look_from(plotter, [(1.35, 1.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)], 1.25)
 
     return rendered(draw, otherwise=_OTHERWISE)
-
-
-def _outer_faces(outside: dict[int, np.ndarray], mesh: HexMesh) -> np.ndarray:
-    """(k, 4) outer faces, computed once for each array of cells."""
-    if id(mesh.cells) not in outside:
-        outside[id(mesh.cells)] = _outside(mesh.cells)
-    return outside[id(mesh.cells)]
 
 
 def _cut_open(mesh: HexMesh) -> np.ndarray:

@@ -67,20 +67,14 @@ def view_page(bearing: BearingSolids, state: Snapshot, words: Tables, pictures: 
         page.section("Life, friction and other quantities")
         page.table(("quantity", "value", "remark"), words["quantities"])
     page.section("Pictures")
-    for picture in pictures:
-        page.markup(_picture(*picture))
+    for content, alternative, caption in pictures:  # a narrow screen shows them large enough to be read, and swipes over
+        label, below = escape(alternative, quote=True), escape(caption, quote=False)
+        wide = " wide" if content.startswith(b"\x89PNG") and int.from_bytes(content[16:20], "big") > _WIDE else ""
+        page.markup(
+            f'<figure class="picture"><div class="scroll swipe{wide}" tabindex="0" role="region" aria-label="{label}">'
+            f'<img alt="{label}" src="{data_uri(content)}"></div><figcaption>{below}</figcaption></figure>'
+        )
     return page
-
-
-def _picture(content: bytes, alternative: str, caption: str) -> str:
-    """A picture that a narrow screen shows large enough to be read, and swipes over."""
-    image = f'<img alt="{escape(alternative, quote=True)}" src="{data_uri(content)}">'
-    wide = " wide" if content.startswith(b"\x89PNG") and int.from_bytes(content[16:20], "big") > _WIDE else ""
-    words = escape(caption, quote=False)
-    return (
-        f'<figure class="picture"><div class="scroll swipe{wide}" tabindex="0" role="region" aria-label="{escape(alternative, quote=True)}">'
-        f"{image}</div><figcaption>{words}</figcaption></figure>"
-    )
 
 
 def rings_data(bearing: BearingSolids, facets: int = 120) -> Tables:

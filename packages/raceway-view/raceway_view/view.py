@@ -26,8 +26,6 @@ from raceway_view.stress import contact_stress_files, contacts_left_out, field_f
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from raceway.extend import Model
-
 
 @attrs.frozen(eq=False, repr=False, slots=False)
 class View(Answer):
@@ -153,17 +151,12 @@ def at_peak(result: Result) -> tuple[Snapshot, float]:
     z, load, t = model.system.ball_count, record.contact_force[k], float(record.time[k])
     now = attrs.evolve(model, system=model.system.at_speed(t))
     angle = np.concatenate(now.bearing.contact_angles(now, record.displacement[k], record.ball[k], load, t))
-    halves, peaks = zip(*(_contact_ellipse(now, race, part) for race, part in enumerate((load[:z], load[z:]))), strict=True)
+    ellipses = [now.bearing.contact_ellipse(now, race, part) for race, part in enumerate((load[:z], load[z:]))]
+    peaks, *axes = map(np.concatenate, zip(*ellipses, strict=True))
     direction = now.system.centre_vectors(record.displacement[k], t)[1]
     azimuth = np.arctan2(direction[:, 1], direction[:, 0])
-    state = Snapshot(azimuth, load, angle, np.concatenate(halves), np.concatenate(peaks), np.zeros(5))
+    state = Snapshot(azimuth, load, angle, np.column_stack(axes), peaks, np.zeros(5))
     return state, 360.0 * (k - first) / per_turn
-
-
-def _contact_ellipse(model: Model, race: int, load: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Semi-axes (n, 2) [m] and largest pressure (n,) [Pa]."""
-    pressure, major, minor = model.bearing.contact_ellipse(model, race, load)
-    return np.column_stack([major, minor]), pressure
 
 
 @attrs.frozen

@@ -61,26 +61,6 @@ def section_cost(problem: Problem) -> _SectionCost:
     return _SectionCost(nodes, nodes * _BYTES_PER_NODE, _BASE_S + _SECONDS * (nodes / _NODES) ** _POWER)
 
 
-def _seat_faults(problem: Problem) -> list[Mistake]:
-    """Seats so soft that they hold nothing."""
-    faults = []
-    load = abs(problem.load.axial) + sum(abs(force) for force in problem.load.radial)
-    load += 0.0 if problem.excitation is None else problem.excitation.amplitude_n
-    b = problem.bearing
-    for key, diameter in (("inner_seat", b.bore), ("outer_seat", b.outer_diameter)):
-        seat = getattr(problem.supports, key)
-        if isinstance(seat, str) or diameter is None or b.width is None:
-            continue
-        gives = load / (seat * pi * diameter * b.width)
-        if gives > _GIVES * b.ball_diameter:
-            why = (
-                f"deflects by {1e3 * gives:.3g} mm under {load:.4g} N, too much for balls in grooves: check its unit, N/m3 "
-                "(500 N/mm3 is 5e11)"
-            )
-            faults.append(Mistake(f"supports.{key}", seat, why))
-    return faults
-
-
 #: Points along each semi-axis where the scene says nothing.
 NODES = 4
 #: Bytes that patches may take.
@@ -98,8 +78,6 @@ _RUBBING = 3.0
 class _PatchCost:
     """Predictions.
 
-    Attributes
-    ----------
     points : surface points that carry, of a contact at the mean load
     bytes : of compliances and factors
     setup_s, equilibrium_s, step_s : processor time [s]
@@ -202,7 +180,17 @@ class Condensed:
             faults.append(Mistake(key, value, why))
         unmeshed = unrefined(problem, "sections of condensed bodies")
         faults += unmeshed
-        faults += _seat_faults(problem)
+        # Seats so soft that they hold nothing.
+        b, load = problem.bearing, abs(problem.load.axial) + sum(abs(force) for force in problem.load.radial)
+        load += 0.0 if problem.excitation is None else problem.excitation.amplitude_n
+        for key, diameter in (("inner_seat", b.bore), ("outer_seat", b.outer_diameter)):
+            seat = getattr(problem.supports, key)
+            if isinstance(seat, str) or diameter is None or b.width is None:
+                continue
+            gives = load / (seat * pi * diameter * b.width)
+            if gives > _GIVES * b.ball_diameter:
+                why = f"deflects by {1e3 * gives:.3g} mm under {load:.4g} N, too much for balls in grooves: check its unit, N/m3 "
+                faults.append(Mistake(f"supports.{key}", seat, f"{why}(500 N/mm3 is 5e11)"))
         if unmeshed or problem.contact.discretisation not in problem.contact.law.discretisations:
             return faults
         if _nodal(problem) and (patches := mistakes(_PATCHES, problem)):

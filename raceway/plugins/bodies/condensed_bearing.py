@@ -208,8 +208,6 @@ def build(problem: Problem, plan: ScenePlan) -> _CondensedBearing:
 class _CondensedBearing(BuiltBearing):
     """Condensed rings and balls with contact resultants.
 
-    Attributes
-    ----------
     rigid : the same bearing with rigid rings and balls
     compliances : of rings and balls
     angles : (Z,) at which the compliances between balls were taken [rad]; None where they are left out

@@ -61,8 +61,6 @@ _IMPORTS_S = 1.5
 class _ElasticCost:
     """Predictions.
 
-    Attributes
-    ----------
     cells : hexahedra;  unknowns : of all nodes;  bytes : at the peak
     stable_step_s : of explicit steps, by elements and contacts [s]
     equilibrium_s : processor time to the equilibrium and its stiffness, meshing included [s]
@@ -137,8 +135,6 @@ def _equal_sectors(problem: Problem) -> bool:
 def _stable_step(problem: Problem) -> float:
     """Of the ball's thinnest element and the contacts, whose 1/dt^2 add up [s].
 
-    Notes
-    -----
     Elements: h sqrt(rho / M), M = E (1 - nu) / ((1 + nu) (1 - 2 nu)), at h = 0.43 of the width of the cells under the
     patch, for the ball's core, half as wide, is thinner than its surface.  Contacts: a surface point of stiffness k_n A on
     nodes of mass rho A h / 2, both sides, by Gershgorin's theorem: 4 / dt^2 = 4.8 k_n / (rho h).

@@ -200,7 +200,7 @@ class ElasticResultants(ElasticBodies):
                 "calibration_outer_m_per_n": float(np.mean(beyond[z:])),
                 "replaced_spread_m_per_n": float(max(touch.spread for touch in contact.touches)),
                 "replaced_uncertainty": self._uncertainty(model, equilibrium),
-                "largest_turn_deg": float(np.degrees(self._turned(model, equilibrium))),
+                "largest_turn_deg": float(np.degrees(self._turned(equilibrium))),
             },
         }
 
@@ -213,7 +213,7 @@ class ElasticResultants(ElasticBodies):
                 f"the mesh is too coarse to determine its compliance below a contact to better than {100 * unsure:.2g} % of the "
                 "contact's: use a smaller mesh.element_size, or bodies.kind = 'condensed'"
             )
-        turned = self._turned(model, equilibrium)
+        turned = self._turned(equilibrium)
         if turned > _FAR_RAD:
             sentences.append(
                 f"a contact angle lies {np.degrees(turned):.2g} deg from that with rigid bodies, at which the mesh compliance "
@@ -239,7 +239,7 @@ class ElasticResultants(ElasticBodies):
         compliance = contact.local[worst] - 1.0 / contact.d_gap[worst]  # the law's own
         return float(0.5 * contact.touches[worst].spread / compliance)
 
-    def _turned(self, model: Model, equilibrium: Equilibrium) -> float:
+    def _turned(self, equilibrium: Equilibrium) -> float:
         """Largest angle between a loaded contact's line and that at which its footprints lie [rad]."""
         angles = self.bearing.setup.angles
         assert angles is not None

@@ -40,14 +40,9 @@ _OTHER_SIZE = 0.05
 def _check_size(mesher: Mesher, bearing: Bearing, meshes: Mapping[str, HexMesh]) -> None:
     """Compare rings and balls with the scene's [bearing]; warn of another size.
 
-    Parameters
-    ----------
     meshes : ``inner_ring``, ``outer_ring``, ``ball_...`` are compared, other names are not
 
-    Raises
-    ------
-    MeshError
-        A body in other units, with the remedy.
+    MeshError: A body in other units, with the remedy.
     """
     told_of: set[str] = set()  # all balls but for one are copies: one warning is enough
     for name, mesh in meshes.items():

@@ -60,8 +60,6 @@ _ENOUGH = 3.0
 class _NodalBearing(BuiltBearing):
     """Condensed rings and balls with pressures at surface points.
 
-    Attributes
-    ----------
     nodes : points along each semi-axis of the inner contact at ``load`` [N]
     spacing : Spacing
     pool : patches as they are now
@@ -114,8 +112,6 @@ class _NodalBearing(BuiltBearing):
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
         """Keys of ``equilibrium.balls[]`` in result.json beyond those of all bodies, each (Z,).
 
-        Notes
-        -----
         The approach of a contact is Hertz's at its load, what a law's penetration adds, and the rest, which finite rings
         and balls give less or more than half-spaces.
         """
@@ -168,8 +164,6 @@ class _NodalBearing(BuiltBearing):
     def mesh_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
         """Relative error by too few points: of the displacement or, where a motion is identified, by the ripple if larger.
 
-        Notes
-        -----
         The displacement's is of order 2: a third of what half as many points change.  The ripple is measured at one place
         of the points, against the mean over all places; a motion of some micrometres meets a few places and averages some of it.
         """
@@ -275,8 +269,12 @@ def _system(
     a, b = basis.inner.semi_axes(load)
     spacing = Spacing.of((float(a), float(b)), nodes, 0.5 * basis.geometry.ball_diameter, reach.widest)
     make = _maker(problem, spacing)
-    laws = _point_laws(problem, basis, spacing)
-    pool = Pool(make(reach), laws, _widening(basis, reach, make), problem.contact.friction)
+    law, laws = problem.contact.law, list[PointLaw | None]([None, None])
+    if not is_constraint(law):  # the plan has refused those that remember
+        pairs = at_points(contact_pairs(problem, basis), np.array([0, len(basis.azimuth)]), np.full(2, spacing.area))
+        kernel = plugin_kernel(law, "contact law", LAW, "LAW")
+        laws = [PointLaw(kernel, row, spacing.area) for row in law_params(law, pairs, "race")]
+    pool = Pool(make(reach), (laws[0], laws[1]), _widening(basis, reach, make), problem.contact.friction)
     mass = basis.geometry.ball_mass(problem.bearing.balls.density) if problem.kinematics.ball_inertia else 0.0
     fields = {f.name: getattr(ring, f.name) for f in attrs.fields(Ring)}
     return PatchSystem(**{**fields, "table": ring.table.copy()}, rigid=surrogate(ring), pool=pool, ball_mass=mass), spacing
@@ -349,15 +347,3 @@ def _widening(
         return make(now[0])
 
     return wider
-
-
-def _point_laws(problem: Problem, basis: Basis, spacing: Spacing) -> tuple[PointLaw | None, PointLaw | None]:
-    """Laws of the inner and the outer race's points; the plan has refused those that remember."""
-    law = problem.contact.law
-    if is_constraint(law):
-        return None, None
-    pairs = at_points(contact_pairs(problem, basis), np.array([0, len(basis.azimuth)]), np.full(2, spacing.area))
-    params = law_params(law, pairs, "race")
-    kernel = plugin_kernel(law, "contact law", LAW, "LAW")
-    first, second = (PointLaw(kernel, row, spacing.area) for row in params)
-    return first, second

@@ -100,7 +100,15 @@ class _Flight:
     def answers(self, batches: Iterator[Batch]) -> Iterator[Answer]:
         from distributed import wait
 
-        self._meet()
+        try:
+            self.client.wait_for_workers(1, timeout=self.patience)
+        except TimeoutError:
+            message = f"the dask scheduler has had no worker for {self.patience:g} s: start some with `dask worker`"
+            raise PluginError(message) from None
+        self._look()
+        if not self.fit:
+            reasons = "; ".join(f"{worker}: {why}" for worker, why in self.unfit.items())
+            raise PluginError(f"no dask worker can compute these points: {reasons}")
         try:
             self._fill(batches)
             while self.flying:
@@ -128,19 +136,6 @@ class _Flight:
         if self.fit:
             self._submit(batch)
         return bool(self.fit)
-
-    def _meet(self) -> None:
-        """Wait for a worker; ask all; refuse where none is fit."""
-        try:
-            self.client.wait_for_workers(1, timeout=self.patience)
-        except TimeoutError:
-            raise PluginError(
-                f"the dask scheduler has had no worker for {self.patience:g} s: start some with `dask worker`"
-            ) from None
-        self._look()
-        if not self.fit:
-            reasons = "; ".join(f"{worker}: {why}" for worker, why in self.unfit.items())
-            raise PluginError(f"no dask worker can compute these points: {reasons}")
 
     def _look(self) -> None:
         """See who came and who went; ask who is new."""
@@ -192,10 +187,7 @@ class _Flight:
 def _greet(address: str, patience: float) -> None:
     """Connect once and leave: a client gives up where nobody listens, but waits for ever for one who says nothing.
 
-    Raises
-    ------
-    OSError, ValueError
-        As a client does.
+    OSError, ValueError: as a client does.
     """
     from distributed.comm.core import connect
 

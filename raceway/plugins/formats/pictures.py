@@ -93,7 +93,16 @@ def plot(result: RunResult, what: str | None, ax: Axes | None) -> Axes | tuple[A
     if ax is not None and what is None:
         raise RacewayError(f"`ax` is for one picture: choose it by `what`, {', '.join(available)}")
     names = available if what is None else (what,)
-    axes = _new_axes(names) if ax is None else (given_axes(ax),)
+    if ax is None:
+        try:
+            from matplotlib import pyplot
+        except ImportError:
+            raise RacewayError(f"pictures need matplotlib, which is not installed: {extra('pictures')}") from None
+        figure = pyplot.figure(figsize=(6.4 * len(names), 6.0), layout="constrained")
+        frames = [{"projection": _DRAWINGS[name].projection} for name in names]
+        axes = tuple(figure.add_subplot(1, len(names), k, **frame) for k, frame in enumerate(frames, 1))
+    else:
+        axes = (given_axes(ax),)
     for name, frame in zip(names, axes, strict=True):
         polar = _DRAWINGS[name].projection == "polar"
         if polar and frame.name != "polar":
@@ -106,16 +115,6 @@ def plot(result: RunResult, what: str | None, ax: Axes | None) -> Axes | tuple[A
 
 def _available(result: RunResult) -> tuple[str, ...]:
     return tuple(_DRAWINGS) if result.simulation is not None else ("ball_loads",)
-
-
-def _new_axes(names: tuple[str, ...]) -> tuple[Axes, ...]:
-    try:
-        from matplotlib import pyplot
-    except ImportError:
-        raise RacewayError(f"pictures need matplotlib, which is not installed: {extra('pictures')}") from None
-    figure = pyplot.figure(figsize=(6.4 * len(names), 6.0), layout="constrained")
-    frames = [{"projection": _DRAWINGS[name].projection} for name in names]
-    return tuple(figure.add_subplot(1, len(names), k, **frame) for k, frame in enumerate(frames, 1))
 
 
 def _draw_orbit(axes: Axes, result: RunResult) -> None:

@@ -115,8 +115,6 @@ def _steady(
 ) -> tuple[complex, float]:
     """Z [N/m] less the forces of a changing motion, of 1x vectors (10,) of force and motion A with A', A''; and their share.
 
-    Parameters
-    ----------
     system : None where nothing has inertia;  speeds : w [rad/s] and w' [rad/s2]
     """
     import numpy as np

@@ -81,10 +81,20 @@ class Structured:
         """
         from raceway.core.fem.mesh.ball_mesh import ball_cells
         from raceway.core.fem.mesh.hex_mesh import ball_names
-        from raceway.core.fem.mesh.quality import Prediction, refuse_memory
+        from raceway.core.fem.mesh.quality import Prediction, refuse_coarse, refuse_memory
         from raceway.core.fem.mesh.ring_mesh import ring_shape
 
-        self._refuse(bearing)
+        if not bearing.equal_rows:
+            raise MeshError("bearing.row holds rows of different bearings: mesh each by itself, as a scene of one row")
+        volume = pi / 6.0 * bearing.ball_diameter**3 * bearing.ball_count
+        for inner, word in ((True, "inner"), (False, "outer")):
+            shape = ring_shape(bearing, inner)
+            refuse_coarse(self.element_size, shape.wall, f"wall of the {word} ring under its groove")
+            volume += shape.volume
+        refuse_coarse(self.element_size, 0.5 * bearing.ball_diameter, "radius of a ball")
+        # From the volume first: with tiny elements even the lines of the mesh would not fit.
+        lowest = Prediction.of({"all": volume * len(bearing.rows) / self.element_size**3})
+        refuse_memory(lowest, "mesh.element_size", self.element_size, "take larger elements")
         bodies: dict[str, float] = {}
         u, v, w, layers, _ = self._ball_lines(bearing)
         ball = ball_cells(len(u) - 1, len(v) - 1, len(w) - 1, len(layers) - 1)
@@ -104,22 +114,6 @@ class Structured:
         """Suffixes of the names of the bodies of each row."""
         count = len(bearing.rows)
         return [f"_row{row + 1}" if count > 1 else "" for row in range(count)]
-
-    def _refuse(self, bearing: Bearing) -> None:
-        from raceway.core.fem.mesh.quality import Prediction, refuse_coarse, refuse_memory
-        from raceway.core.fem.mesh.ring_mesh import ring_shape
-
-        if not bearing.equal_rows:
-            raise MeshError("bearing.row holds rows of different bearings: mesh each by itself, as a scene of one row")
-        volume = pi / 6.0 * bearing.ball_diameter**3 * bearing.ball_count
-        for inner, word in ((True, "inner"), (False, "outer")):
-            shape = ring_shape(bearing, inner)
-            refuse_coarse(self.element_size, shape.wall, f"wall of the {word} ring under its groove")
-            volume += shape.volume
-        refuse_coarse(self.element_size, 0.5 * bearing.ball_diameter, "radius of a ball")
-        # From the volume first: with tiny elements even the lines of the mesh would not fit.
-        lowest = Prediction.of({"all": volume * len(bearing.rows) / self.element_size**3})
-        refuse_memory(lowest, "mesh.element_size", self.element_size, "take larger elements")
 
     def _semi_axes(self, bearing: Bearing, inner: bool) -> tuple[float, float]:
         """Semi-axes [m] of a contact ellipse, along the groove and along the rolling direction."""

@@ -40,7 +40,6 @@ from raceway.framework.options import between, option, optional, positive
 from raceway.framework.shown import Fact, number
 
 if TYPE_CHECKING:
-    from raceway.core.columns import Number
     from raceway.framework.contracts import Problem, SolvedPoints
     from raceway.scene.ratings import LoadRatings
     from raceway.storage.tables import ReadTables, Tables
@@ -161,22 +160,16 @@ class Life:
             return "no oil: [lubricant] or quantities.life.viscosity_ratio"
         return "no speed, which the required viscosity depends on"
 
-    def _viscosity_ratio(self, points: SolvedPoints, pitch_diameter: Number) -> np.ndarray:
-        """kappa (n,), nan where it is not known."""
-        ratio, oil = self.viscosity_ratio, points.problem.lubricant
-        if ratio is None and oil is not None:
-            ratio = oil.kinematic_viscosity / reference_viscosity(
-                np.where(points.speed, points.speed, np.nan), pitch_diameter
-            )
-        return np.broadcast_to(np.nan if ratio is None else ratio, points.speed.shape)
-
     def _rows(self, points: SolvedPoints) -> list[_Row]:
-        rows = []
+        rows, oil, speed = [], points.problem.lubricant, np.where(points.speed, points.speed, np.nan)
         for k, ratings in enumerate(points.problem.ratings):
             loads, most = self._loads(points, k)
             lives = ring_lives(loads, ratings.row.contact_ratings(ratings.dynamic).T)
             equivalent = ratings.dynamic * np.cbrt(1.0 / system_life(lives))
-            ratio = self._viscosity_ratio(points, ratings.row.pitch)
+            kappa = self.viscosity_ratio  # nan where it is not known
+            if kappa is None:
+                kappa = np.nan if oil is None else oil.kinematic_viscosity / reference_viscosity(speed, ratings.row.pitch)
+            ratio = np.broadcast_to(kappa, points.speed.shape)
             with np.errstate(divide="ignore"):
                 safety = (ratings.row.static_contact_ratings(ratings.static).T / most).min(axis=-1)
                 limit = ratings.row.fatigue_load_limit(ratings.modulus)

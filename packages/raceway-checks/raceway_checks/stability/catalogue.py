@@ -6,14 +6,13 @@ What a case measures is in the module that its ``measure`` names.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib.resources import files
 
 import attrs
 
 from raceway import SceneError
 from raceway.extend import Entry, ReadTables, Registry, Tables, line_contact
-from raceway_checks.stability.study import Case
 
 #: The scenes, their changes, and what each list of them is for (``about``).
 _DATA: Tables = json.loads(files("raceway_checks").joinpath("data/stability.json").read_text(encoding="utf-8"))
@@ -26,6 +25,26 @@ _PENALTIES = (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3)
 #: Step over the limit and amplitude over the approach of undamped steps: contacts stay closed, or open.
 _UNDAMPED = ((0.1, 0.03), (0.02, 1.5))
 _AT_REST = "scenes:condensed_at_rest"
+
+
+@attrs.frozen
+class Case:
+    """One place of the catalogue; small enough to be sent to another process.
+
+    Attributes
+    ----------
+    name : what its rows are called by
+    measure : ``module:function``, a module of this folder or a whole path, called as ``function(rows, bench, **arguments)``
+    setting : law, integrator, what else was varied
+    arguments : plain values; ``tables`` and ``changes`` of a scene make the ``Bench``, which is None without
+    quick : whether it belongs to what is run unless all is asked for
+    """
+
+    name: str
+    measure: str
+    setting: Mapping[str, object] = attrs.field(factory=dict)
+    arguments: Tables = attrs.field(factory=dict)
+    quick: bool = True
 
 
 def _force(newton: float) -> Tables:

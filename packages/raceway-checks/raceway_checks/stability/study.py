@@ -20,6 +20,7 @@ from raceway.extend import (
     Fact, Item, Part, ReadTables, Registry, Store, Tables, Words, local, micro, nearest, processor_time, program_key,
     registry_with, tables_key, work_through, written,
 )  # fmt: skip
+from raceway_checks.stability.catalogue import Case, catalogue
 
 if TYPE_CHECKING:
     from raceway.extend import OnProgress
@@ -33,26 +34,6 @@ _PATIENCE_S = 900.0
 _LONGEST = 200
 #: A value, or a value and the drift of the energy.
 Measured = float | tuple[float, float | None]
-
-
-@attrs.frozen
-class Case:
-    """One place of the catalogue; small enough to be sent to another process.
-
-    Attributes
-    ----------
-    name : what its rows are called by
-    measure : ``module:function``, a module of this folder or a whole path, called as ``function(rows, bench, **arguments)``
-    setting : law, integrator, what else was varied
-    arguments : plain values; ``tables`` and ``changes`` of a scene make the ``Bench``, which is None without
-    quick : whether it belongs to what is run unless all is asked for
-    """
-
-    name: str
-    measure: str
-    setting: Mapping[str, object] = attrs.field(factory=dict)
-    arguments: Tables = attrs.field(factory=dict)
-    quick: bool = True
 
 
 @attrs.frozen
@@ -283,8 +264,6 @@ def stability(
     SceneError
         A name that no case has, or a scene that cannot be put through the catalogue.
     """
-    from raceway_checks.stability.catalogue import catalogue
-
     start, cpu = time.monotonic(), processor_time()
     registry = registry_with(plugins)
     if scene is not None:

@@ -73,7 +73,7 @@ def _masta(case: Case, registry: Registry) -> Rows:
 def _race_ellipse(case: Case, registry: Registry) -> Rows:
     """Ellipse, approach and pressure of the inner race at a load and contact angle (the loaded one)."""
     bearing = {"preset": "ACB21-HARRIS-MINDEL", "contact_angle_deg": case.inputs["alpha_deg"]}
-    inner = _model(_scene(case, registry, bearing=bearing, load={"axial": 3000.0 * _POUND})).inner
+    inner = build_model(_scene(case, registry, bearing=bearing, load={"axial": 3000.0 * _POUND})).inner
     load = case.inputs["Q_lb"] * _POUND
     a, b = inner.semi_axes(load)
     yield from _number_rows(case, {
@@ -240,7 +240,7 @@ def _article_pressures(case: Case, registry: Registry) -> Rows:
             "mesh": {"kind": "structured", "nodes_per_semi_axis": points, "element_size": 0.8e-3},
         }  # fmt: skip
         load = {"axial": float(axial), "radial": [float(radial), 0.0]}
-        return _model(_scene(case, registry, bearing={"preset": "B7206C"}, load=load, **(nodal if points else {})))
+        return build_model(_scene(case, registry, bearing={"preset": "B7206C"}, load=load, **(nodal if points else {})))
 
     for axial, radial in inputs["loads_n"]:
         where = f"{axial:g} N axial" + (f", {radial:g} N radial" if radial else "")
@@ -254,10 +254,6 @@ def _article_pressures(case: Case, registry: Registry) -> Rows:
     for race in ("inner", "outer"):
         quantity = f"mesh independence: {race} race, {axial:g} N axial, {fewer} points per semi-axis against {most} [MPa]"
         yield case.row(quantity, fine[race], coarse[race], tolerance["mesh"])
-
-
-def _model(scene: Scene) -> Model:
-    return build_model(scene)
 
 
 def _hertz(model: Model) -> dict[str, float]:

@@ -359,26 +359,14 @@ def judged(
     if freedom == 0 and not stated:  # as many data as numbers, errors not stated: nothing determines the noise
         half[:] = np.inf
     half[(np.abs(directions[weak_directions]) > _NAMED).any(axis=0)] = np.inf
-    combinations = tuple(
-        _combination(free, direction, size / noise if noise else 0.0, sizes)
-        for direction, size in zip(directions[weak_directions], s[weak_directions], strict=True)
-    )
+    combinations = []
+    for direction, size in zip(directions[weak_directions], s[weak_directions], strict=True):
+        part = 0.1 / direction[np.argmax(np.abs(direction))]  # the largest one changes by a tenth of its size
+        shares = zip(free, part * direction, sizes, strict=True)
+        changes = {key.name: float(share * one) for key, share, one in shares if abs(share) > 0.1 * _NAMED}
+        combinations.append(Combination(changes, float(abs(part) * (size / noise if noise else 0.0))))
     at_limit = tuple(key.name for key, value in zip(free, values, strict=True) if key.margin(value) < _AT_LIMIT)
     return Estimate(
-        free, values, covariance, reach, half, residuals, jacobian, scatter, widening, combinations, directions[weak_directions] * sizes, at_limit,
+        free, values, covariance, reach, half, residuals, jacobian, scatter, widening, tuple(combinations), directions[weak_directions] * sizes, at_limit,
         evaluations,
     )  # fmt: skip
-
-
-def _combination(free: Sequence[Free], direction: np.ndarray, moves: float, sizes: np.ndarray) -> Combination:
-    """A singular vector as changes of numbers, the largest one by a tenth of its size and up.
-
-    moves : standard errors by which the vector itself moves the data
-    """
-    part = 0.1 / direction[np.argmax(np.abs(direction))]
-    changes = {
-        number.name: float(part * share * size)
-        for number, share, size in zip(free, direction, sizes, strict=True)
-        if abs(part * share) > 0.1 * _NAMED
-    }
-    return Combination(changes, float(abs(part) * moves))

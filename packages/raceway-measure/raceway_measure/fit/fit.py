@@ -142,7 +142,16 @@ def fit_texts(
     run_out : amplitude [µm] of the run-out and its angle from the mark [deg]
     columns : quantity of a column: "Ch 1=K [N/µm]", "X [um]=y_um", "CH1=force_n*100" (100 N per V), or =ignore
     """
-    free, vector, meanings = tuple(free), _vector(run_out), {}
+    free, vector, meanings = tuple(free), None, {}
+    if run_out is not None:
+        try:
+            amplitude, angle = (float(word) for word in run_out.split(","))
+        except ValueError:
+            amplitude, angle = float("nan"), 0.0
+        if not (isfinite(amplitude) and isfinite(angle) and amplitude >= 0.0):
+            remedy = "must be an amplitude of at least 0 µm and an angle in deg, for instance 5.0,70"
+            raise SceneError.at("--run-out", run_out, remedy)
+        vector = 1e-6 * amplitude, angle
     for text in columns:  # a header may have an equals sign, a name has none
         header, sign, name = (part.strip() for part in text.rpartition("="))
         if not (sign and header and name):
@@ -166,18 +175,3 @@ def fit_texts(
     if mass is not None:
         raise SceneError.at("--mass", mass, "belongs to --free and a record of force and displacement")
     return identify(data, scene, slow_roll=slow_roll, run_out=vector, columns=meanings, plugins=plugins, progress=progress)
-
-
-def _vector(text: str | None) -> tuple[float, float] | None:
-    """Amplitude [m] and angle [deg] from ``UM,DEG``."""
-    if text is None:
-        return None
-    try:
-        amplitude, angle = (float(word) for word in text.split(","))
-    except ValueError:
-        amplitude, angle = float("nan"), 0.0
-    if not (isfinite(amplitude) and isfinite(angle) and amplitude >= 0.0):
-        raise SceneError.at(
-            "--run-out", text, "must be an amplitude of at least 0 µm and an angle in deg, for instance 5.0,70"
-        )
-    return 1e-6 * amplitude, angle

@@ -273,7 +273,9 @@ class ElasticSystem:
         """
         touching = []
         if self.contact is not None:
-            touching = [self._bodies_of(index) for index in range(len(self.contact.counts))]
+            for nodes in map(self.contact.nodes_of, range(len(self.contact.counts))):
+                first, second = np.searchsorted(self.assembly.starts, nodes, side="right") - 1
+                touching.append((int(first), int(second)))
         loose = self.assembly.loose_motions(touching)
         if loose:
             raise ConvergenceError("nothing holds " + "; ".join(loose))
@@ -311,11 +313,6 @@ class ElasticSystem:
             "friction": 0.0 if self.contact is None else self.contact.friction_energy(),
             "hourglass": a.hourglass_energy(u),
         }
-
-    def _bodies_of(self, pair: int) -> tuple[int, int]:
-        assert self.contact is not None
-        first, second = np.searchsorted(self.assembly.starts, self.contact.nodes_of(pair), side="right") - 1
-        return int(first), int(second)
 
 
 #: Stiffness of the cage's springs over that of a Hertz contact: it only has to be there.

@@ -55,12 +55,23 @@ def _aggregates(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> _
     has to follow: an aggregate takes the neighbours that are hardly farther than the nearest one. Distances tell that more
     surely than entries of the stiffness, whose couplings along and across a long trilinear cell are of one size.
     """
+    import scipy.sparse as sp
     from pyamg.aggregation.aggregate import standard_aggregation
 
     levels = _Levels([], [])
     strong, belongs = graph, None  # of the last level kept: its strong pairs, and what its nodes belong to
     while graph.shape[0] > COARSEST:
-        near = _strong(graph, points)
+        # Pairs that one of the two counts among its nearest, and the diagonal, as ones.
+        pairs = graph.tocoo()
+        apart = pairs.row != pairs.col
+        row, column = pairs.row[apart], pairs.col[apart]
+        distance = np.linalg.norm(points[row] - points[column], axis=1)
+        nearest = np.full(len(points), np.inf)
+        np.minimum.at(nearest, row, distance)
+        close = distance <= REACH * nearest[row]
+        one_way = sp.csr_matrix((np.ones(close.sum()), (row[close], column[close])), shape=graph.shape)
+        near = (one_way + one_way.T + sp.eye(len(points), format="csr")).tocsr()
+        near.data[:] = 1.0
         aggregates = standard_aggregation(near)[0].tocsr().astype(float)
         if aggregates.shape[1] > 0.9 * aggregates.shape[0]:  # nothing left to put together
             break
@@ -78,23 +89,6 @@ def _aggregates(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> _
         levels.strong.append(strong)
         levels.aggregates.append(belongs)
     return levels
-
-
-def _strong(graph: csr_matrix, points: np.ndarray) -> csr_matrix:
-    """(n, n) CSR of ones: pairs that one of the two counts among its nearest, and the diagonal."""
-    import scipy.sparse as sp
-
-    pairs = graph.tocoo()
-    apart = pairs.row != pairs.col
-    row, column = pairs.row[apart], pairs.col[apart]
-    distance = np.linalg.norm(points[row] - points[column], axis=1)
-    nearest = np.full(len(points), np.inf)
-    np.minimum.at(nearest, row, distance)
-    near = distance <= REACH * nearest[row]
-    one_way = sp.csr_matrix((np.ones(near.sum()), (row[near], column[near])), shape=graph.shape)
-    strong = (one_way + one_way.T + sp.eye(len(points), format="csr")).tocsr()
-    strong.data[:] = 1.0
-    return strong
 
 
 #: Columns of ``rigid_motions``.

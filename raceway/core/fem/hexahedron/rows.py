@@ -264,18 +264,11 @@ def stable_step(matrices: Callable[[slice], Floats], masses: Floats) -> float:
         frequencies_squared = np.concatenate(
             [_mass_scaling(matrices(slice(e, e + 1)), masses[e : e + 1]) for e in elements.tolist()]
         )
-        if not _all_below(frequencies_squared, largest * (1.0 + _SAME)):
+        try:  # positive definite where all eigenvalues are below the bound
+            np.linalg.cholesky(largest * (1.0 + _SAME) * np.eye(frequencies_squared.shape[-1]) - frequencies_squared)
+        except np.linalg.LinAlgError:
             largest = max(largest, float(np.linalg.eigvalsh(frequencies_squared)[:, -1].max()))
     return float(2.0 / np.sqrt(largest))
-
-
-def _all_below(matrices: Floats, bound: float) -> bool:
-    """Whether all eigenvalues are below the bound: the difference is then positive definite."""
-    try:
-        np.linalg.cholesky(bound * np.eye(matrices.shape[-1]) - matrices)
-    except np.linalg.LinAlgError:
-        return False
-    return True
 
 
 def _mass_scaling(stiffness: Floats, mass: Floats) -> Floats:

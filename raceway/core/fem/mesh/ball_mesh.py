@@ -48,7 +48,16 @@ def ball_mesh(
     i, j, k = np.meshgrid(np.arange(nu - 1), np.arange(nv - 1), np.arange(nw - 1), indexing="ij")
     around = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
     cube = np.stack([number[i + a, j + b, k + c] for a, b, c in around], axis=-1).reshape(-1, 8)
-    quads = rank[_outward_quads(number)]
+    # Lattice nodes of the cube's surface quadrilaterals, anticlockwise seen from outside.
+    sides = []
+    for axis in range(3):
+        for end, flip in ((0, True), (-1, False)):
+            # Axes in cyclic order, so that (first, second, normal) is right-handed.
+            face = np.moveaxis(number, axis, 0)[end]
+            face = face.T if axis == 1 else face
+            quad = [face[:-1, :-1], face[1:, :-1], face[1:, 1:], face[:-1, 1:]]
+            sides.append(np.stack(quad[::-1] if flip else quad, axis=-1).reshape(-1, 4))
+    quads = rank[np.concatenate(sides)]
     blocks = []
     for layer in range(len(layers) - 1):
         below = skin[quads] if layer == 0 else number.size + (layer - 1) * len(skin) + quads
@@ -79,19 +88,3 @@ def _rounded(p: np.ndarray) -> np.ndarray:
         b, c = s[..., (a + 1) % 3], s[..., (a + 2) % 3]
         out[..., a] = p[..., a] * ((1.0 - BULGE) + BULGE * np.sqrt(1.0 - 0.5 * (b + c) + b * c / 3.0))
     return out
-
-
-def _outward_quads(number: np.ndarray) -> np.ndarray:
-    """(k, 4) lattice nodes of the cube's surface quadrilaterals, anticlockwise seen from outside."""
-    quads = []
-    for axis in range(3):
-        for side, flip in ((0, True), (-1, False)):
-            # Axes in cyclic order, so that (first, second, normal) is right-handed.
-            face = np.moveaxis(number, axis, 0)[side]
-            if axis == 1:
-                face = face.T
-            quad = [face[:-1, :-1], face[1:, :-1], face[1:, 1:], face[:-1, 1:]]
-            if flip:
-                quad = quad[::-1]
-            quads.append(np.stack(quad, axis=-1).reshape(-1, 4))
-    return np.concatenate(quads)
