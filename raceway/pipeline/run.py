@@ -216,7 +216,7 @@ def _answer(
 ) -> _Answer:
     """What the scene's identifier finds in the motions, and its error.
 
-    ConvergenceError: A motion that leaves the grooves, or without a number.
+    ConvergenceError: a motion that leaves the grooves, or without a number.
     """
     for motion in motions:
         refuse_impossible(motion.model, equilibrium, motion.whole)

@@ -42,7 +42,7 @@ def _check_size(mesher: Mesher, bearing: Bearing, meshes: Mapping[str, HexMesh])
 
     meshes : ``inner_ring``, ``outer_ring``, ``ball_...`` are compared, other names are not
 
-    MeshError: A body in other units, with the remedy.
+    MeshError: a body in other units, with the remedy.
     """
     told_of: set[str] = set()  # all balls but for one are copies: one warning is enough
     for name, mesh in meshes.items():
