@@ -106,6 +106,13 @@ def parse_at(texts: Iterable[str]) -> Tables:
     return values
 
 
+def swept_keys(dataset: Dataset) -> list[str]:
+    """The keys of the scene that a sweep varied, in its order."""
+    if LIST in dataset.dims:
+        return [str(name) for name, coordinate in dataset.coords.items() if coordinate.dims == (LIST,) and name != LIST]
+    return [str(name) for name in dataset.dims if name in dataset.coords and "." in str(name)]
+
+
 def select(dataset: Dataset, at: ReadTables) -> Selection:
     """The results at chosen values.
 
@@ -119,9 +126,7 @@ def select(dataset: Dataset, at: ReadTables) -> Selection:
     SceneError
         An unknown key, or a value that the sweep does not hold; the nearest one is named.
     """
-    keys = [str(name) for name in dataset.dims if name in dataset.coords and "." in str(name)]
-    if LIST in dataset.dims:
-        keys = [str(name) for name, at in dataset.coords.items() if at.dims == (LIST,) and name != LIST]
+    keys = swept_keys(dataset)
     mistakes, fixed_values = [], Tables()
     for key, wanted_value in at.items():
         if key not in keys:
