@@ -232,7 +232,7 @@ def held() -> list[Row]:
     branches = [path for path in trees("raceway") if _BRANCH.search((ROOT / path).read_text(encoding="utf-8"))]
     rings, up, meant = circles(), climbs(), meanings()
     return [
-        row("functions whose name occurs once beside their definition", len(once), 650),
+        row("functions whose name occurs once beside their definition", len(once), 600),
         row(
             "names that are one participle [%]",
             round(100.0 * single / names, 2),

@@ -25,7 +25,6 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
-    from raceway.core.jit import Kernel
 
 #: Shares of a ball's gyroscopic moment that inner and outer race carry, by hypothesis; 2 together.
 _SHARES = {"outer_race": (0.0, 2.0), "shared": (1.0, 1.0), "traction": (1.0, 1.0)}
@@ -73,7 +72,15 @@ def rigid_system(problem: Problem, plan: ScenePlan, basis: Basis) -> System:
 
 def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
     """Kernels of balls and law, and their numbers, with a first axis of n operating points where these have columns."""
-    kernel, base = _bodies_kernels(plan)
+    if plan.centrifugal:
+        from raceway.core.ring.kernels.rigid_inertial import rigid_inertial as base
+    else:
+        from raceway.core.ring.kernels.rigid_weightless import rigid_weightless as base
+    kernel = base  # base: the one whose forces have a potential
+    if plan.balls == "tangential":
+        from raceway.core.ring.kernels.tangential import rigid_tangential
+
+        kernel = rigid_tangential
     params = law_params(problem.contact.law, contact_pairs(problem, basis))
     geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
     out = np.zeros((*problem.points, ring.SCALARS))
@@ -114,19 +121,6 @@ def probe(problem: Problem, basis: Basis, system: System) -> None:
     probe_law(problem.contact.law, system.law, system.law_params, system.law_state, depths=depths)
     if problem.excitation is not None:
         probe_excitation(problem.excitation, system.force, system.force_params)
-
-
-def _bodies_kernels(plan: ScenePlan) -> tuple[Kernel, Kernel]:
-    """The plan's kernel, and the one whose forces have a potential."""
-    if plan.centrifugal:
-        from raceway.core.ring.kernels.rigid_inertial import rigid_inertial as base
-    else:
-        from raceway.core.ring.kernels.rigid_weightless import rigid_weightless as base
-    if plan.balls != "tangential":
-        return base, base
-    from raceway.core.ring.kernels.tangential import rigid_tangential
-
-    return rigid_tangential, base
 
 
 def _grooves(problem: Problem, geometry: BallBearing) -> np.ndarray:

@@ -120,7 +120,13 @@ def equilibrium_rows(result: Content) -> list[Row]:
         rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
     rows += mounting_rows(equilibrium)
     rows += loaded_balls(result, ["most", "least"] if dynamic else ["least"])
-    return rows + (tangent_rows(result) if dynamic else [])
+    if not dynamic:
+        return rows
+    # kxx, kyy and kyy with tilts that follow, each within its interval.
+    facts = [stated(one, result) for one in (KXX, KYY, KYY_TILTS_FOLLOW) if one.of(result) is not None]
+    axial, radial, *follows = [(label, value, words.partition(":")[0]) for label, value, words in facts]
+    rows.append(("tangent kxx, kyy", f"{axial[1].partition(' ')[0]}, {radial[1]}", f"{axial[2]}, {radial[2]}"))
+    return [*rows, *follows, *held_rows(result)]
 
 
 def mounting_rows(equilibrium: AtRest) -> list[Row]:
@@ -237,14 +243,6 @@ def interval_rows(result: Content, *quantities: Quantity) -> list[Row]:
         within, _, parts = words.partition(": ")
         rows += [(label, value, within), *([("", "", parts)] if parts else [])]
     return rows
-
-
-def tangent_rows(result: Content) -> list[Row]:
-    """kxx, kyy and kyy with tilts that follow, each within its interval."""
-    facts = [stated(one, result) for one in (KXX, KYY, KYY_TILTS_FOLLOW) if one.of(result) is not None]
-    axial, radial, *follows = [(label, value, words.partition(":")[0]) for label, value, words in facts]
-    both = ("tangent kxx, kyy", f"{axial[1].partition(' ')[0]}, {radial[1]}", f"{axial[2]}, {radial[2]}")
-    return [both, *follows, *held_rows(result)]
 
 
 def held_rows(result: Content) -> list[Row]:

@@ -216,7 +216,9 @@ def read_tables(tables: ReadTables, registry: Registry) -> tuple[str, Tables, Sc
         elif name not in PLUGIN_TABLES and (name != "bearing" or name in plain):
             parts[name] = structure(at_inlet.get(name, {}), cls, name, mistakes)
     if at_inlet is not plain:
-        mistakes[:] = [_of_inlet(mistake) for mistake in mistakes]
+        for k, mistake in enumerate(mistakes):  # the oil's temperature is that of the key that gives it
+            if mistake.path == "lubricant" and mistake.message.startswith("`temperature_c` = "):
+                mistakes[k] = Mistake("heat.oil_inlet_c", None, mistake.message.partition(" = ")[2])
     for name, (kind, default) in PLUGIN_TABLES.items():
         parts[name] = None
         if name in plain or name not in OPTIONAL_TABLES:
@@ -235,14 +237,6 @@ def read_tables(tables: ReadTables, registry: Registry) -> tuple[str, Tables, Sc
 
         check_tolerances(checked)
     return title, content, checked
-
-
-def _of_inlet(mistake: Mistake) -> Mistake:
-    """A mistake in the oil's temperature as one of the key that gives it."""
-    if mistake.path != "lubricant" or not mistake.message.startswith("`temperature_c` = "):
-        return mistake
-    text = mistake.message.partition(" = ")[2]
-    return Mistake("heat.oil_inlet_c", None, text)
 
 
 def _known_tables(tables: ReadTables, registry: Registry, mistakes: list[Mistake]) -> tuple[str, Tables]:

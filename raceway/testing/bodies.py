@@ -190,15 +190,6 @@ def _nothing_built() -> Iterator[None]:
         del BuiltBearing.__new__
 
 
-def _is_refused(scene: Scene) -> bool:
-    """Whether the plan refuses a scene."""
-    try:
-        make_plan(scene)
-    except SceneError:
-        return True
-    return False
-
-
 class BodiesSuite(Suite):
     """Duties of ``raceway.framework.contracts.BodiesKind``."""
 
@@ -405,7 +396,11 @@ class BodiesSuite(Suite):
         plain = settled(_scene_of(bodies, PLAIN, registry))[1].displacement
         for word, (changes, shows) in _EXTRAS.items():
             scene = _scene_of(bodies, changes, registry)
-            if _is_refused(scene) or not bodies.traits(resolve(scene)).resultants:
+            try:
+                make_plan(scene)
+            except SceneError:
+                continue
+            if not bodies.traits(resolve(scene)).resultants:
                 continue
             names.append(word)
             try:

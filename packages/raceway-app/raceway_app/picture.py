@@ -142,7 +142,14 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
         }
         try:
             outputs = [curve for names in titles.values() for curve in names]
-            answer = _curve_answer(scene, axis, [*outputs, *(["contact_angle"] if "ball_load" in outputs else [])])
+            outputs += ["contact_angle"] if "ball_load" in outputs else []
+            compiled: Function = function(scene, [axis.key], outputs, tolerance=_TOLERANCE)
+            if compiled.why_slow:
+                raise RacewayError(f"no curves: {compiled.why_slow}; `raceway sweep` computes them point by point")
+            points = {axis.key: axis.numbers()}
+            columns = compiled.looped(points)
+            answer: Tables = {**columns, "points": axis.numbers(), "reason": compiled.with_reasons(points, columns)["reason"]}
+            answer["rows"] = len(scene.bearing.rows)
         except RacewayError as why:
             if str(why) not in [panel["why"] for panel in panels]:
                 panels.append({"panel": "", "axis": name, "label": axis.label, "why": str(why), "lines": []})
@@ -163,20 +170,6 @@ def _has(result: Result, name: str) -> bool:
     if name == "kyy_tilts_follow":
         return scene.supports.tilt == "free"
     return name in KNOWN or name in result.quantities
-
-
-def _curve_answer(scene: Scene, axis: Axis, outputs: Iterable[str]) -> Tables:
-    """Columns of the loop, its points, and reasons.
-
-    RacewayError: a scene that the loop cannot do.
-    """
-    compiled: Function = function(scene, [axis.key], list(outputs), tolerance=_TOLERANCE)
-    if compiled.why_slow:
-        raise RacewayError(f"no curves: {compiled.why_slow}; `raceway sweep` computes them point by point")
-    numbers = axis.numbers()
-    columns = compiled.looped({axis.key: numbers})
-    reasons = compiled.with_reasons({axis.key: numbers}, columns)["reason"]
-    return {**columns, "points": numbers, "reason": reasons, "rows": len(scene.bearing.rows)}
 
 
 def _panel(

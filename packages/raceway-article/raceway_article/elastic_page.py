@@ -204,8 +204,29 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
 
 def tables(content: ReadTables) -> dict[str, list[Tables]]:
     """Those of differences from the reference at rest and in motion, by their captions."""
-    rows = _rows_at_rest(_of_phase(content, "static"), content), _rows_in_motion(_of_phase(content, "motion"), content)
-    return {caption.format(**content): lines for caption, lines in zip((_AT_REST, _IN_MOTION), rows, strict=True)}
+    lines, moving_lines = list[Tables](), list[Tables]()
+    for row in content["rows"]:
+        if row["status"] != "completed":
+            continue
+        differences = row[f"from_{content['reference']}"] or {}
+        if row["phase"] == "static":
+            x, y = (f"{1e6 * row['displacement'][name]:.4f}".replace("-0.0000", "0.0000") for name in ("x", "y"))
+            lines.append({
+                "load": _case(row), "bodies": row["bodies"], "x µm": x, "y µm": y, "kyy N/µm": f"{1e-6 * row['kyy_n_per_m']:.2f}",
+                "ball loads": percent(differences.get("ball_loads")),
+                **{name: percent(differences.get(name)) for name in ("x", "y", "kyy")},
+            })  # fmt: skip
+            continue
+        z = row["identified"]
+        moving_lines.append({
+            "force": _case(row), "bodies": row["bodies"],
+            "K N/µm": f"{1e-6 * z['k']:.3f}", "C N s/m": f"{z['c']:.0f}", "|Z| N/µm": f"{1e-6 * z['abs_z']:.3f}",
+            "K": percent(differences.get("k")), "C": percent(differences.get("c")),
+            "wC over |Z|": percent(differences.get("wc")), "|Z|": percent(differences.get("abs_z")),
+            "energy balance": shown(row["energy_balance"], ".1e"), "transient": shown(row["error"]["transient"], ".1e"),
+            "stability": row["stability"]["status"],
+        })  # fmt: skip
+    return {_AT_REST.format(**content): lines, _IN_MOTION.format(**content): moving_lines}
 
 
 _AT_REST = (
@@ -256,20 +277,6 @@ def _case(row: ReadTables) -> str:
     return str(row["case"]).replace(" N ", "\u00a0N\u00a0")
 
 
-def _rows_at_rest(rows: list[Tables], content: ReadTables) -> list[Tables]:
-    lines = []
-    for row in rows:
-        if row["status"] == "completed":
-            differences = row[f"from_{content['reference']}"] or {}
-            x, y = (f"{1e6 * row['displacement'][name]:.4f}".replace("-0.0000", "0.0000") for name in ("x", "y"))
-            lines.append({
-                "load": _case(row), "bodies": row["bodies"], "x µm": x, "y µm": y, "kyy N/µm": f"{1e-6 * row['kyy_n_per_m']:.2f}",
-                "ball loads": percent(differences.get("ball_loads")),
-                **{name: percent(differences.get(name)) for name in ("x", "y", "kyy")},
-            })  # fmt: skip
-    return lines
-
-
 def _motion_section(out: Page, content: ReadTables) -> None:
     out.section("In motion")
     out.text(
@@ -285,22 +292,6 @@ def _motion_section(out: Page, content: ReadTables) -> None:
             "One turn only: how much of K and C is the transient of the start is not known, and C may be little else. Use `--turns 2`.",
             kind="note",
         )
-
-
-def _rows_in_motion(rows: list[Tables], content: ReadTables) -> list[Tables]:
-    lines = []
-    for row in rows:
-        if row["status"] == "completed":
-            z, differences = row["identified"], row[f"from_{content['reference']}"] or {}
-            lines.append({
-                "force": _case(row), "bodies": row["bodies"],
-                "K N/µm": f"{1e-6 * z['k']:.3f}", "C N s/m": f"{z['c']:.0f}", "|Z| N/µm": f"{1e-6 * z['abs_z']:.3f}",
-                "K": percent(differences.get("k")), "C": percent(differences.get("c")),
-                "wC over |Z|": percent(differences.get("wc")), "|Z|": percent(differences.get("abs_z")),
-                "energy balance": shown(row["energy_balance"], ".1e"), "transient": shown(row["error"]["transient"], ".1e"),
-                "stability": row["stability"]["status"],
-            })  # fmt: skip
-    return lines
 
 
 def _stresses(out: Page, rows: list[Tables], section: bytes | None) -> None:

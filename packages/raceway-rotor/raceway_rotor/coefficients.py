@@ -130,7 +130,11 @@ def coefficients(
     default = "tangent" if selection.value("excitation.kind") is None else "rotating"
     source = member("source", source or ("directions" if DIRECTION in selection.axes else default), SOURCES)
     if source == "directions":
-        selection = _directions_last(selection)
+        if DIRECTION not in selection.axes:
+            raise RacewayError(f"there is one direction only: sweep with --grid {DIRECTION}=0,45,90")
+        if LIST not in selection.dataset.dims:
+            axes = {key: selection.axes[key] for key in sorted(selection.axes, key=lambda key: key == DIRECTION)}
+            selection = attrs.evolve(selection, axes=axes, dataset=selection.dataset.transpose(*axes, ...))
     else:
         only_axes(selection, (SPEED, SPIN), purpose)
     if selection.unfinished:
@@ -214,15 +218,6 @@ def _dry(source: str, stiffness: np.ndarray, damping: np.ndarray, with_damping: 
     remedy = f"{'' if source == 'tangent' else in_contacts}--damping C (in Python damping=C)"
     words = dry_damping_words(largest, float(np.max(stiffness[..., 0, 0])), remedy)
     return [] if words is None else [words]
-
-
-def _directions_last(selection: Selection) -> Selection:
-    if DIRECTION not in selection.axes:
-        raise RacewayError(f"there is one direction only: sweep with --grid {DIRECTION}=0,45,90")
-    if LIST in selection.dataset.dims:
-        return selection
-    axes = {key: selection.axes[key] for key in sorted(selection.axes, key=lambda key: key == DIRECTION)}
-    return attrs.evolve(selection, axes=axes, dataset=selection.dataset.transpose(*axes, ...))
 
 
 def _refuse_few(selection: Selection, least: int) -> None:

@@ -50,8 +50,11 @@ def mesh_picture(meshes: Mapping[str, HexMesh], title: str) -> bytes:
                 if id(mesh.cells) not in outside:
                     outside[id(mesh.cells)] = _outside(mesh.cells)
                 quads = outside[id(mesh.cells)]
-            else:
-                quads = _cut_open(mesh)
+            else:  # the outer faces of the cells that stay
+                middle = mesh.points[mesh.cells].mean(axis=1)
+                azimuth = np.arctan2(middle[:, 2], middle[:, 1])
+                stays = (azimuth < _CUT[0]) | (azimuth > _CUT[1])
+                quads = _outside(mesh.cells[stays]) if stays.any() else np.zeros((0, 4), dtype=np.int64)
             if len(quads):
                 surface = pyvista.PolyData.from_regular_faces(mesh.points, quads)
                 colour = next((value for word, value in _COLOURS.items() if name.startswith(word)), _OTHER)
@@ -63,14 +66,6 @@ def mesh_picture(meshes: Mapping[str, HexMesh], title: str) -> bytes:
         look_from(plotter, [(1.35, 1.0, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)], 1.25)
 
     return rendered(draw, otherwise=_OTHERWISE)
-
-
-def _cut_open(mesh: HexMesh) -> np.ndarray:
-    """(k, 4) outer faces of the cells that stay."""
-    middle = mesh.points[mesh.cells].mean(axis=1)
-    azimuth = np.arctan2(middle[:, 2], middle[:, 1])
-    stays = (azimuth < _CUT[0]) | (azimuth > _CUT[1])
-    return _outside(mesh.cells[stays]) if stays.any() else np.zeros((0, 4), dtype=np.int64)
 
 
 def _outside(cells: np.ndarray) -> np.ndarray:

@@ -217,7 +217,13 @@ def _drawn(result: Result, sides: list[BelowContact]) -> tuple[Figure, Grid]:
             shear = axis_shear(depth, side.semi_axes, side.peak_pressure, side.poisson)
             # Above the first element's centre the fit extrapolates.
             inside = depth >= (0.5 * profile.lengths[0, 2] if side.resolved else 0.0)
-            stresses = np.stack([profile.von_mises, profile.shear]) if side.resolved else _elements_on(side, grid)
+            if side.resolved:
+                stresses = np.stack([profile.von_mises, profile.shear])
+            else:  # of the elements at the depths of the profile, nan outside of all
+                places = side.axis.at_depth(depth) + _BESIDE * np.asarray(side.semi_axes) @ side.axis.axes[:2]
+                body = grid.extract_cells(grid.cell_data["body"] == side.index)
+                cell = np.atleast_1d(body.find_containing_cell(places))
+                stresses = np.stack([np.where(cell < 0, np.nan, body.cell_data[name][cell]) for name in _STRESSES])
             for values, hertz, colour, word in (
                 (stresses[0], von_mises(full), "#b5651d", "von Mises"),
                 (stresses[1], shear, "#0b5fa5", "largest shear"),
@@ -318,11 +324,3 @@ def _depth_axis(axes: Axes) -> None:
     """Depths below both surfaces, counted from where they touch."""
     axes.yaxis.set_major_formatter(lambda height, _: f"{abs(height):g}")
     axes.set_ylabel("depth, ring down [µm]")
-
-
-def _elements_on(side: BelowContact, grid: Grid) -> np.ndarray:
-    """(2, n) von Mises and largest shear stresses [Pa] of the elements at the depths of the profile, nan outside of all."""
-    places = side.axis.at_depth(side.profile.depth) + _BESIDE * np.asarray(side.semi_axes) @ side.axis.axes[:2]
-    body = grid.extract_cells(grid.cell_data["body"] == side.index)
-    cell = np.atleast_1d(body.find_containing_cell(places))
-    return np.stack([np.where(cell < 0, np.nan, body.cell_data[name][cell]) for name in _STRESSES])

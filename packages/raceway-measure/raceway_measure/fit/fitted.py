@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
@@ -11,7 +10,7 @@ import numpy as np
 
 from raceway import Answer, RacewayError, SceneError, door
 from raceway.extend import PATH, Fact, Part, Tables, Words, member, number, number_within, read_in, rows_table, without_nan
-from raceway_measure.fit.estimate import CONFIDENCE, Combination, Estimate
+from raceway_measure.fit.estimate import CONFIDENCE, Estimate
 from raceway_measure.fit.response import FrequencyResponse
 
 if TYPE_CHECKING:
@@ -110,8 +109,16 @@ class Fitted(Answer):
     @property
     def warnings(self) -> list[str]:
         """Sentences that a reader of the numbers needs."""
-        answer = self.estimate
-        out = [_sentence(combination, self._numbers) for combination in answer.undetermined]
+        answer, out = self.estimate, []
+        for combination in answer.undetermined:
+            parts = [
+                f"{name} {change:+.3g} {self._numbers[name][2]}".rstrip() for name, change in combination.changes.items()
+            ]
+            names, moves = " and ".join(combination.changes), f"moves them by {combination.moves:.2g} standard errors"
+            together, remedy = "", "Do not free it"
+            if len(parts) > 1:
+                together, remedy = " together", "Free one of them less, or measure what separates them"
+            out.append(f"the data do not determine {names}{together}: {' with '.join(parts)} {moves}. {remedy}")
         if answer.freedom == 0 and not np.isfinite(answer.half).all() and not answer.undetermined:
             out.append("as many data as free numbers, and no stated errors: no uncertainty can be estimated")
         out += [
@@ -213,16 +220,6 @@ def interval(name: str, value: float, half: float, unit: str, remark: str = "") 
         return name, number(value, word, 4), "not determined"
     words = f"+- {number(size, word, 2)} at 95 %"
     return name, number_within(value, size, word), f"{words}; {remark}" if remark else words
-
-
-def _sentence(combination: Combination, numbers: Mapping[str, tuple[float, float, str]]) -> str:
-    """Changes that the data do not determine."""
-    parts = [f"{name} {change:+.3g} {numbers[name][2]}".rstrip() for name, change in combination.changes.items()]
-    names, moves = " and ".join(combination.changes), f"moves them by {combination.moves:.2g} standard errors"
-    if len(parts) == 1:
-        return f"the data do not determine {names}: {parts[0]} {moves}. Do not free it"
-    remedy = "Free one of them less, or measure what separates them"
-    return f"the data do not determine {names} together: {' with '.join(parts)} {moves}. {remedy}"
 
 
 def refuse_few(data: int, free: int, source: str) -> None:

@@ -126,23 +126,6 @@ def rigid_motions(points: np.ndarray, centre: np.ndarray | None = None) -> np.nd
     return motions.reshape(-1, 6)
 
 
-def _free_motions(points: np.ndarray, fixed_dofs: np.ndarray) -> list[int]:
-    """Indices into ``MOTIONS`` of what the supports leave free; rotations are those about the middle of the held points.
-
-    points : (n, 3) float [m]
-    fixed_dofs : (n, 3) bool
-    """
-    somewhere = fixed_dofs.any(axis=1)
-    centre = points[somewhere].mean(axis=0) if somewhere.any() else None
-    rows = rigid_motions(points, centre)[fixed_dofs.reshape(-1)]
-    if not len(rows):
-        return list(range(6))
-    _, sizes, directions = np.linalg.svd(rows.T @ rows)  # 6 x 6; its values are squares of the singular values
-    loose = directions[sizes <= _RANK * sizes[0]]
-    share = (loose**2).sum(axis=0)
-    return [i for i in range(6) if share[i] > 0.1]
-
-
 def _signature(real: Any) -> Signature:
     vector = real[::1]
     return void(int32[::1], int32[::1], vector, vector, vector, real, vector)
@@ -450,7 +433,12 @@ def _refuse_free_motion(matrix: csr_matrix, points: np.ndarray, mask: np.ndarray
     # Zero blocks may be left out of the matrix, so a node's three rows can be in parts of their own only where they are empty.
     for index in np.unique(part):
         nodes = np.flatnonzero(part == index)
-        loose = _free_motions(points[nodes], mask.reshape(-1, 3)[nodes])
+        here, held, loose = points[nodes], mask.reshape(-1, 3)[nodes], list(range(6))
+        if held.any():  # rotations are those about the middle of the held points
+            rows = rigid_motions(here, here[held.any(axis=1)].mean(axis=0))[held.reshape(-1)]
+            _, sizes, directions = np.linalg.svd(rows.T @ rows)  # 6 x 6; its values are squares of the singular values
+            share = (directions[sizes <= _RANK * sizes[0]] ** 2).sum(axis=0)
+            loose = [i for i in range(6) if share[i] > 0.1]
         if loose:
             where = f" of part {index + 1} of {count}, {len(nodes)} nodes," if count > 1 else ""
             names = ", ".join(MOTIONS[i] for i in loose)

@@ -81,12 +81,6 @@ class _Pencil:
     def __init__(self, even: csr_matrix, cosine: np.ndarray, sine: np.ndarray) -> None:
         self.even, self.cosine, self.sine = even, cosine, sine
 
-    def add_to_diagonal(self, values: np.ndarray) -> None:
-        """Add springs (m,) [N/m] to every harmonic."""
-        matrix = self.even
-        rows, columns = matrix.indices, np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
-        matrix.data[rows == columns] += values
-
     def at(self, angle: float) -> csr_matrix:
         """(m, m) scipy.sparse.csc_matrix of the harmonic with n a = ``angle``."""
         from scipy.sparse import csc_matrix
@@ -501,7 +495,9 @@ class Revolution:
         if self._springs.any():
             springs = np.zeros(pencil.even.shape[0])
             springs[row[row >= 0]] = self._springs[row >= 0]
-            pencil.add_to_diagonal(springs)
+            matrix = pencil.even  # of every harmonic
+            columns = np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
+            matrix.data[matrix.indices == columns] += springs
         return pencil
 
 
