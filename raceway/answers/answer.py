@@ -123,12 +123,9 @@ class Answer(Shown):
         from raceway.answers.table import file_lines, rows_table
         from raceway.answers.wrapping import Words
 
-        def rich_part(part: Part) -> RenderableType:
-            if isinstance(part, str):
-                return Words(part)
-            return rows_table(part) if isinstance(part, list) else part
-
-        return Group(*map(rich_part, self.report()), *file_lines(list(files)))
+        words = [Words(part) if isinstance(part, str) else part for part in self.report()]
+        parts = [rows_table(part) if isinstance(part, list) else part for part in words]
+        return Group(*parts, *file_lines(list(files)))
 
 
 class Interrupted(KeyboardInterrupt):

@@ -139,7 +139,13 @@ def uncertainty_table(result: Computed) -> Tables:
             continue
         # K changes as the radial stiffness does.
         static = (KYY if result.kyy_tilts_follow is None else FOLLOWS).name if quantity is K else name
-        data = [*_geometry(result, quantity, scatters), *_tolerances(result, quantity)]
+        data = [*_geometry(result, quantity, scatters)]
+        if (band := result.tolerances) is not None:
+            names = {PEAK_BALL_LOAD: "largest_ball_load", L10R: L10R.name}
+            at = band["quantities"].get(names.get(quantity, quantity.symbol)) or {"value": 0.0}
+            ends = [(at[end] - at["value"]) / abs(at["value"]) for end in ("low", "high") if at["value"]]
+            how = "95 % to first order" if ends else band["why"] or "no derivative"
+            data.append(("tolerances", _part(ends or None, how)))
         each: list[Cause] = [{"part": word, **part} for word, part in data]
         intervals = [change for part in each if (change := _change(part)) is not None]
         how = "; ".join(f"{word}: {part['how']}" for word, part in data) or "the scene states its geometry"
@@ -252,14 +258,6 @@ def _geometry(result: Computed, quantity: Quantity, scatters: Mapping[str, Range
         for part in geometry["data"]:
             change = part["axial" if quantity is KXX else "radial"]
             yield part["part"], {**_part(change, part["why"]), "remedy": part["remedy"]}
-
-
-def _tolerances(result: Computed, quantity: Quantity) -> Iterator[tuple[str, Cause]]:
-    if (band := result.tolerances) is not None:
-        names = {PEAK_BALL_LOAD: "largest_ball_load", L10R: L10R.name}
-        ends_of = band["quantities"].get(names.get(quantity, quantity.symbol)) or {"value": 0.0}
-        ends = [(ends_of[end] - ends_of["value"]) / abs(ends_of["value"]) for end in ("low", "high") if ends_of["value"]]
-        yield "tolerances", _part(ends or None, "95 % to first order" if ends else band["why"] or "no derivative")
 
 
 def _at_scatters(result: Computed) -> dict[str, Range]:

@@ -148,7 +148,11 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
                 raise RacewayError(f"no curves: {compiled.why_slow}; `raceway sweep` computes them point by point")
             points = {axis.key: axis.numbers()}
             columns = compiled.looped(points)
-            answer: Tables = {**columns, "points": axis.numbers(), "reason": compiled.with_reasons(points, columns)["reason"]}
+            answer: Tables = {
+                **columns,
+                "points": axis.numbers(),
+                "reason": compiled.with_reasons(points, columns)["reason"],
+            }
             answer["rows"] = len(scene.bearing.rows)
         except RacewayError as why:
             if str(why) not in [panel["why"] for panel in panels]:

@@ -129,7 +129,12 @@ class CoefficientFile(Shown):
         over = " x ".join(f"{len(values)} values of {name}" for name, values in self.coefficients.axes.items())
         # What may make the numbers wrong for a rotor leads: of a text of 15 lines the last notes fall away.
         notes = sorted(self.notes, key=lambda note: "rule of thumb" not in note and "in these numbers" not in note)
-        facts = [*map(_point_fact, (rows[0], rows[-1])), *(("everywhere", "", text) for text in constant)]
+        facts = [("everywhere", "", text) for text in constant]
+        for row in (rows[-1], rows[0]):  # the speeds of a point, and its numbers
+            cells = [(*title.split("\n"), value) for title, value in row.items()]
+            speeds = ", ".join(f"{value} {unit}" for _, unit, value in cells if unit == "r/min")
+            numbers = ", ".join(f"{name} {value} {unit}" for name, unit, value in cells if unit != "r/min")
+            facts.insert(0, (f"at {speeds}", "", numbers))
         return f"{self.tag}, coefficients for {self.program}\n{over}", [*facts, *(("note", "", text) for text in notes)]
 
 
@@ -413,10 +418,3 @@ def point_rows(axes: Mapping[str, np.ndarray], columns: Mapping[str, np.ndarray]
 
 def _file_text(name: str, value: float) -> str:
     return f"{value * (1e-6 if name[0] == 'k' else 1.0):.5g}"
-
-
-def _point_fact(row: Mapping[str, str]) -> Fact:
-    """The speeds of a point, and its numbers."""
-    cells = [(*title.split("\n"), value) for title, value in row.items()]
-    speeds = ", ".join(f"{value} {unit}" for _, unit, value in cells if unit == "r/min")
-    return f"at {speeds}", "", ", ".join(f"{name} {value} {unit}" for name, unit, value in cells if unit != "r/min")

@@ -239,7 +239,12 @@ def summary(meshes: Mapping[str, HexMesh]) -> Tables:
     first_names: dict[int, str] = {}
     for name, mesh in meshes.items():
         twin = first_names.setdefault(id(mesh.cells), name)
-        bodies[name] = bodies[twin] if twin != name and _congruent(mesh, meshes[twin]) else _body(mesh)
+        # A rigid motion of the same cells leaves a sample of edges as long as it was.
+        sample, size = mesh.cells[:: max(len(mesh.cells) // 1000, 1)], float(np.ptp(mesh.points, axis=0).max())
+        mine, others = (_edges(one, sample) for one in (mesh, meshes[twin]))
+        bodies[name] = (
+            bodies[twin] if twin != name and np.allclose(mine, others, rtol=0.0, atol=1e-9 * size) else _body(mesh)
+        )
     weights = np.array([body["elements"] for body in bodies.values()], dtype=float)
 
     def over(key: str, word: str) -> float:
@@ -304,10 +309,3 @@ def _widest(patches: list[dict[str, dict[str, float]]]) -> dict[str, dict[str, f
 def _edges(mesh: HexMesh, cells: np.ndarray) -> np.ndarray:
     ends = mesh.points[cells[:, EDGES]]
     return np.asarray(np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2))
-
-
-def _congruent(mesh: HexMesh, twin: HexMesh) -> bool:
-    """Whether a sample of edges is as long in both: a rigid motion of the same cells."""
-    sample = mesh.cells[:: max(len(mesh.cells) // 1000, 1)]
-    size = float(np.ptp(mesh.points, axis=0).max())
-    return np.allclose(_edges(mesh, sample), _edges(twin, sample), rtol=0.0, atol=1e-9 * size)
