@@ -120,10 +120,14 @@ class ElasticDesign:
     def speed_rpm(self) -> float:
         return float(self.tables["excitation"]["speed_rpm"])
 
+    @property
+    def load_cases(self) -> list[tuple[float, float]]:
+        """Axial and radial loads at rest, of the static verification [N]."""
+        return [(float(axial), float(radial)) for axial, radial in reference_cases()[_CASES].inputs["loads_n"]]
+
     def runs(self) -> list[ElasticRun]:
         """Those at rest first, motions last: they cost most."""
-        loads = reference_cases()[_CASES].inputs["loads_n"]  # those of the static verification
-        static = [ElasticRun(bodies, float(axial), float(radial)) for axial, radial in loads for bodies in BODIES]
+        static = [ElasticRun(bodies, axial, radial) for axial, radial in self.load_cases for bodies in BODIES]
         axial = float(self.tables["load"]["axial"])
         return static + [ElasticRun(bodies, axial, excitation=pair) for pair in CLAIMED for bodies in BODIES]
 
