@@ -26,10 +26,8 @@ import numpy as np
 
 from raceway.core.fem.patches.pressure import Contact, ContactState, SlipState
 from raceway.core.ring.kernels.rolling import gyroscopic_moment, traction_within
+from raceway.core.ring.kernels.tensors import Pair
 from raceway.errors import ConvergenceError
-
-#: Step of the difference quotients of the moment [rad], see there.
-_STEP = 1e-5
 
 
 @attrs.frozen(eq=False)
@@ -75,17 +73,10 @@ class Gyroscopic:
         si, so = float(np.hypot(*inner)), float(np.hypot(*outer))
         ni, no = -inner / si, outer / so
         ti, to = np.array([ni[1], -ni[0]]), np.array([no[1], -no[0]])
-        here = float(np.arctan2(*ni)), float(np.arctan2(*no))
         angle = np.zeros((2, 4))  # derivatives of both angles by both places
         angle[0, :2], angle[1, 2:] = -ti / si, to / so
-        moment = self._moment(*here)
-        slope = np.array(
-            [
-                self._moment(here[0] + _STEP, here[1]) - self._moment(here[0] - _STEP, here[1]),
-                self._moment(here[0], here[1] + _STEP) - self._moment(here[0], here[1] - _STEP),
-            ]
-        ) / (2.0 * _STEP)
-        grows = slope @ angle
+        moment, *slope = gyroscopic_moment(Pair(*ni), Pair(*no), self.ratio, self.scale)
+        grows = np.array(slope) @ angle
         pull = [share * moment / self.diameter for share in self.shares]
         by_place = [share / self.diameter * grows for share in self.shares]
         size, grow = np.zeros(2), np.zeros((2, 4))  # normal forces, and their derivatives by both places
@@ -110,9 +101,6 @@ class Gyroscopic:
         stiffness[2:] = -np.outer(to, by_place[1]) + pull[1] * np.outer(no, angle[1])
         force = np.concatenate([-pull[0] * ti, pull[1] * to])
         return _Turned(force, stiffness, self.groove * pull[0], self.groove * by_place[0])
-
-    def _moment(self, inner: float, outer: float) -> float:
-        return float(gyroscopic_moment(inner, outer, self.ratio, self.scale))
 
 
 _LIMIT = 60

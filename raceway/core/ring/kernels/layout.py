@@ -17,8 +17,9 @@ from numba.extending import register_jitable
 
 from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
+from raceway.core.lanes import WIDTH, column_of, live_of, spread, sum_of
 from raceway.core.ring import kernels as rows
-from raceway.core.ring.kernels.tensors import PAIR, TENSOR
+from raceway.core.ring.kernels.tensors import PAIR, TENSOR, pair_of
 from raceway.core.signatures import CONSTANTS, CONTACTS, MATRIX, VECTOR
 
 #: Entries of ``scalars``.  CAGE: speed of orbiting balls [rad/s].  The last ones belong to ``rigid_tangential``:
@@ -94,17 +95,19 @@ def ring_force(table, arm, work, direction, row, f):
     ``direction`` is the row that ``place`` put the azimuths in.
     """
     n = table.shape[0]
-    x, y, z, tilt_y, tilt_z = 0.0, 0.0, 0.0, 0.0, 0.0
-    for k in range(n):
-        c, s = work[direction, k], work[direction, n + k]
-        axial, radial = table[k, SIDE] * work[row, k], work[row, n + k]
-        couple = (arm + table[k, OWN_TILT_ARM]) * axial - table[k, LEVER] * radial
+    x, y, z, tilt_y, tilt_z = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    for k in range(0, n, WIDTH):
+        live = live_of(k, n)
+        (c, s), (axial, radial) = pair_of(work, direction, k, live), pair_of(work, row, k, live)
+        axial = column_of(table, k, SIDE, live) * axial
+        reach, lever = arm + column_of(table, k, OWN_TILT_ARM, live), column_of(table, k, LEVER, live)
+        couple = reach * axial - lever * radial
         x += axial
         y += radial * c
         z += radial * s
         tilt_y += couple * s
         tilt_z += couple * c
-    f[0], f[1], f[2], f[3], f[4] = x, y, z, tilt_y, -tilt_z
+    f[0], f[1], f[2], f[3], f[4] = sum_of(x), sum_of(y), sum_of(z), sum_of(tilt_y), -sum_of(tilt_z)
 
 
 @jit(void(MATRIX, float64, MATRIX, int64, int64, MATRIX))
@@ -120,16 +123,21 @@ def ring_tangent(table, arm, work, direction, row, K):
     Each ball's tangent is taken to the three coordinates x, rho and u first; all entries are then sums times 1, cos, sin
     and their products, held in registers: three times as fast as adding each ball to K in memory.
     """
-    xx, xr_c, xr_s, rx_c, rx_s = 0.0, 0.0, 0.0, 0.0, 0.0
-    xu_c, xu_s, ux_c, ux_s = 0.0, 0.0, 0.0, 0.0
-    rr_cc, rr_cs, rr_ss = 0.0, 0.0, 0.0
-    ru_cc, ru_cs, ru_ss, ur_cc, ur_cs, ur_ss = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    uu_cc, uu_cs, uu_ss = 0.0, 0.0, 0.0
+    none = spread(0.0)
+    xx, xr_c, xr_s, rx_c, rx_s, xu_c, xu_s, ux_c, ux_s = none, none, none, none, none, none, none, none, none
+    rr_cc, rr_cs, rr_ss, uu_cc, uu_cs, uu_ss = none, none, none, none, none, none
+    ru_cc, ru_cs, ru_ss, ur_cc, ur_cs, ur_ss = none, none, none, none, none, none
     z = table.shape[0]
-    for k in range(z):
-        c, s, lever, reach = work[direction, k], work[direction, z + k], table[k, LEVER], arm + table[k, OWN_TILT_ARM]
-        aa, ar = work[row, k], table[k, SIDE] * work[row, z + k]
-        ra, rr = table[k, SIDE] * work[row + 1, k], work[row + 1, z + k]
+    for k in range(0, z, WIDTH):
+        live = live_of(k, z)
+        (c, s), (aa, ar), (ra, rr) = (
+            pair_of(work, direction, k, live),
+            pair_of(work, row, k, live),
+            pair_of(work, row + 1, k, live),
+        )
+        side, lever = column_of(table, k, SIDE, live), column_of(table, k, LEVER, live)
+        reach = arm + column_of(table, k, OWN_TILT_ARM, live)
+        ar, ra = side * ar, side * ra
         cc, cs, ss = c * c, c * s, s * s
         xu, ux = reach * aa - lever * ar, reach * aa - lever * ra
         ru, ur = reach * ra - lever * rr, reach * ar - lever * rr
@@ -155,11 +163,17 @@ def ring_tangent(table, arm, work, direction, row, K):
         uu_cc += uu * cc
         uu_cs += uu * cs
         uu_ss += uu * ss
-    K[0, 0], K[0, 1], K[0, 2], K[0, 3], K[0, 4] = xx, xr_c, xr_s, xu_s, -xu_c
-    K[1, 0], K[1, 1], K[1, 2], K[1, 3], K[1, 4] = rx_c, rr_cc, rr_cs, ru_cs, -ru_cc
-    K[2, 0], K[2, 1], K[2, 2], K[2, 3], K[2, 4] = rx_s, rr_cs, rr_ss, ru_ss, -ru_cs
-    K[3, 0], K[3, 1], K[3, 2], K[3, 3], K[3, 4] = ux_s, ur_cs, ur_ss, uu_ss, -uu_cs
-    K[4, 0], K[4, 1], K[4, 2], K[4, 3], K[4, 4] = -ux_c, -ur_cc, -ur_cs, -uu_cs, uu_cc
+    K[0, 0], K[0, 1], K[0, 2], K[0, 3], K[0, 4] = sum_of(xx), sum_of(xr_c), sum_of(xr_s), sum_of(xu_s), -sum_of(xu_c)
+    K[1, 0], K[1, 1], K[1, 2], K[1, 3], K[1, 4] = sum_of(rx_c), sum_of(rr_cc), sum_of(rr_cs), sum_of(ru_cs), -sum_of(ru_cc)
+    K[2, 0], K[2, 1], K[2, 2], K[2, 3], K[2, 4] = sum_of(rx_s), sum_of(rr_cs), sum_of(rr_ss), sum_of(ru_ss), -sum_of(ru_cs)
+    K[3, 0], K[3, 1], K[3, 2], K[3, 3], K[3, 4] = sum_of(ux_s), sum_of(ur_cs), sum_of(ur_ss), sum_of(uu_ss), -sum_of(uu_cs)
+    K[4, 0], K[4, 1], K[4, 2], K[4, 3], K[4, 4] = (
+        -sum_of(ux_c),
+        -sum_of(ur_cc),
+        -sum_of(ur_cs),
+        -sum_of(uu_cs),
+        sum_of(uu_cc),
+    )
 
 
 _FIRST = rows.WORK_ROWS + rows.KERNEL_ROWS + 2

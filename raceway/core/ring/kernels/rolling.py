@@ -61,43 +61,29 @@ CONTACT = types.NamedUniTuple(float64, 5, BallContact)
 CONTACTS = types.UniTuple(CONTACT, 2)
 
 
-#: Step of the difference quotients of the moment [rad]: their error is of the order 1e-10.
-_ANGLE_STEP = 1e-5
+class Moment(NamedTuple):
+    """A ball's gyroscopic moment [N m], and its derivatives by the inner and the outer contact angle."""
+
+    size: float
+    by_inner: float
+    by_outer: float
 
 
-class _Rolling(NamedTuple):
-    """A ball that rolls without spin on the outer race: its axis beta, and that race's part of the speeds' ratio."""
-
-    tangent: float
-    sine: float
-    cosine: float
-    outer: float
-
-
-_ROLLING = types.NamedUniTuple(float64, 4, _Rolling)
-
-
-@jit(_ROLLING(float64, float64), inline=True)
-def _rolling(outer, ratio):
-    """At the outer contact angle."""
-    sine, cosine = np.sin(outer), np.cos(outer)
-    beta = np.arctan2(sine, cosine + ratio)
-    tangent = np.tan(beta)
-    return _Rolling(tangent, np.sin(beta), np.cos(beta), (cosine + tangent * sine) / (1.0 + ratio * cosine))
-
-
-@jit(float64(float64, _ROLLING, float64, float64), inline=True)
-def _moment(inner, ball, ratio, scale):
-    """M [N m] at the inner contact angle."""
-    cosine = np.cos(inner)
-    rolling = ball.outer + (cosine + ball.tangent * np.sin(inner)) / (1.0 - ratio * cosine)
-    return scale * ball.sine / (rolling * ratio * ball.cosine)
-
-
-@jit(float64(float64, float64, float64, float64))
+@jit(types.NamedUniTuple(float64, 3, Moment)(PAIR, PAIR, float64, float64), inline=True)
 def gyroscopic_moment(inner, outer, ratio, scale):
-    """M [N m] at the contact angles; ratio = D / d_m, scale = J * (inner ring's speed) * w_c."""
-    return _moment(inner, _rolling(outer, ratio), ratio, scale)
+    """M at the directions n = (sin a, cos a) of the contacts; ratio r = D / d_m, scale = J * (inner ring's speed) * w_c.
+
+    Notes
+    -----
+    With tan(beta) = sin(a_o) / (cos(a_o) + r), the ball's axis under control of the outer race, its speed is the ring's over
+    r cos(beta) [(cos a_o + tan(beta) sin a_o) / (1 + r cos a_o) + (cos a_i + tan(beta) sin a_i) / (1 - r cos a_i)].  The
+    first fraction is 1 / (cos a_o + r), so that M = scale sin(a_o) (1 - r cos a_i) / [r (1 + cos(a_i - a_o))]: no function
+    of an angle is left.
+    """
+    si, ci, so, co = inner.axial, inner.radial, outer.axial, outer.radial
+    inverse = 1.0 / (1.0 + ci * co + si * so)
+    part, rest, sine = scale * inverse / ratio, 1.0 - ratio * ci, (si * co - ci * so) * inverse
+    return Moment(part * so * rest, part * so * (ratio * si + rest * sine), part * rest * (co - so * sine))
 
 
 class _Traction(NamedTuple):
@@ -123,8 +109,7 @@ def traction_within(demand, normal, limit):
 def add_gyroscopic(k, contacts, scalars, work):
     """Add what ball k's moment does to its tangential forces and to the couple on the ring's section.
 
-    T = share * M / D with M = J w_R w_c sin(beta), tan(beta) = sin(a_o) / (cos(a_o) + D/d_m); the ball's spin w_R follows
-    from rolling on both races. M follows the contact angles a, with derivatives. The inner race carries no more than its
+    T = share * M / D with M = J w_R w_c sin(beta): ``gyroscopic_moment``. The inner race carries no more than its
     normal force, the outer one the rest: so it fades continuously where the inner contact opens.  With TRACTION both carry
     what ``traction_within`` leaves: the inner race of its share, the outer one of the rest.
 
@@ -134,13 +119,9 @@ def add_gyroscopic(k, contacts, scalars, work):
     diameter, ratio, scale = scalars[ring.DIAMETER], scalars[ring.BALL_OVER_PITCH], scalars[ring.GYROSCOPIC]
     groove, limit = scalars[ring.OFFSET_INNER] + 0.5 * diameter, scalars[ring.TRACTION]
     force, stiffness = contacts[0].force, contacts[0].stiffness
-    inner, outer = np.arctan2(contacts[0].axial, contacts[0].radial), np.arctan2(contacts[1].axial, contacts[1].radial)
+    inner, outer = Pair(contacts[0].axial, contacts[0].radial), Pair(contacts[1].axial, contacts[1].radial)
     share_i, share_o = scalars[ring.SHARE_INNER] / diameter, scalars[ring.SHARE_OUTER] / diameter
-    here, step = _rolling(outer, ratio), _ANGLE_STEP
-    moment = _moment(inner, here, ratio, scale)
-    by_i = (_moment(inner + step, here, ratio, scale) - _moment(inner - step, here, ratio, scale)) / (2.0 * step)
-    by_o = _moment(inner, _rolling(outer + step, ratio), ratio, scale)
-    by_o = (by_o - _moment(inner, _rolling(outer - step, ratio), ratio, scale)) / (2.0 * step)
+    moment, by_i, by_o = gyroscopic_moment(inner, outer, ratio, scale)
     traction, rest, grows, coupling = share_i * moment, share_o * moment, 0.0, 0.0
     if limit > 0.0:
         # Dashpots carry no traction: it is limited by the elastic forces, and rates of gaps leave it alone.

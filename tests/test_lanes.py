@@ -1,0 +1,76 @@
+"""Lanes: every operation against single numbers, in whole blocks and in rests of one to three."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numba import float64, void
+
+from raceway import jit
+from raceway.core.lanes import WIDTH, any_of, column_of, larger, live_of, put, root, smaller, spread, sum_of, take, where
+
+#: What ``_operations`` writes into its rows, of two rows of numbers x and y.
+ROWS = {
+    "sum": lambda x, y: x + y, "difference": lambda x, y: x - y, "product": lambda x, y: x * y, "quotient": lambda x, y: x / y,
+    "of the number before": lambda x, _: 2.0 - x, "of the number behind": lambda x, _: x / 3.0, "negative": lambda x, _: -x,
+    "root": lambda x, _: np.sqrt(np.abs(x)), "larger": np.maximum, "smaller": np.minimum,
+    "less": lambda x, y: 1.0 * (x < y), "not more": lambda x, y: 1.0 * (x <= y), "more": lambda x, y: 1.0 * (x > y),
+    "not less": lambda x, y: 1.0 * (x >= y), "equal": lambda x, y: 1.0 * (x == y), "both": lambda x, y: 1.0 * ((x > 0.0) & (y > 0.0)),
+    "not": lambda x, _: 1.0 * ~(x > 0.0), "added to": lambda x, y: x + y, "number": lambda x, _: np.full_like(x, 7.0),
+    "chosen": lambda x, y: np.where(x < y, x, y + 1.0),
+}  # fmt: skip
+
+
+@jit(void(float64[:, ::1], float64[:, ::1], float64[:, ::1], float64[::1]))
+def _operations(given, columns, out, single):
+    n, total = given.shape[1], spread(0.0)
+    for k in range(0, n, WIDTH):
+        live = live_of(k, n)
+        x, y = take(given, 0, k, live), take(given, 1, k, live)
+        put(out, 0, k, live, x + y)
+        put(out, 1, k, live, x - y)
+        put(out, 2, k, live, x * y)
+        put(out, 3, k, live, x / y)
+        put(out, 4, k, live, 2.0 - x)
+        put(out, 5, k, live, x / 3.0)
+        put(out, 6, k, live, -x)
+        put(out, 7, k, live, root(larger(x, -x)))
+        put(out, 8, k, live, larger(x, y))
+        put(out, 9, k, live, smaller(x, y))
+        put(out, 10, k, live, where(x < y, 1.0, 0.0))
+        put(out, 11, k, live, where(x <= y, 1.0, 0.0))
+        put(out, 12, k, live, where(x > y, 1.0, 0.0))
+        put(out, 13, k, live, where(x >= y, 1.0, 0.0))
+        put(out, 14, k, live, where(x == y, 1.0, 0.0))
+        put(out, 15, k, live, where((x > 0.0) & (y > 0.0), 1.0, 0.0))
+        put(out, 16, k, live, where(~(x > 0.0), 1.0, 0.0))
+        added = x
+        added += y
+        put(out, 17, k, live, added)
+        put(out, 18, k, live, 7.0)
+        put(out, 19, k, live, where(x < y, x, y + 1.0))
+        total += where(live, column_of(columns, k, 1, live), 0.0)
+        if any_of(live & (x > 1e3)):
+            single[1] += 1.0
+    single[0] = sum_of(total)
+
+
+@pytest.mark.parametrize("n", range(1, 10))
+def test_every_lane_is_the_arithmetic_of_its_numbers(n):
+    """To the last bit; nothing is written, added or found beyond the row."""
+    x, y = np.random.default_rng(n).normal(size=(2, n))
+    y[n // 2] = x[n // 2]
+    out, columns = np.zeros((len(ROWS) + 1, n)), np.arange(3.0 * n).reshape(n, 3)
+    single = np.zeros(2)
+    _operations(np.array([x, y, np.full(n, 1e6)]), columns, out, single)
+    for row, (name, expected) in zip(out, ROWS.items(), strict=False):
+        np.testing.assert_array_equal(row, expected(x, y), err_msg=name)
+    assert not out[-1].any()
+    assert single[0] == columns[:, 1].sum() and single[1] == 0.0
+
+
+def test_sums_add_neighbours_first_and_one_lane_is_enough_to_be_found():
+    out, single = np.zeros((len(ROWS) + 1, 4)), np.zeros(2)
+    columns = np.array([[0.0, value] for value in (1e16, 1.0, -1e16, 1.0)])
+    _operations(np.array([[0.0, 0.0, 2e3, 0.0], 4 * [1.0]]), columns, out, single)
+    assert single[0] == (1e16 + 1.0) + (-1e16 + 1.0) != columns[:, 1].sum() and single[1] == 1.0
