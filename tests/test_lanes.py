@@ -7,7 +7,21 @@ import pytest
 from numba import float64, void
 
 from raceway import jit
-from raceway.core.lanes import WIDTH, any_of, column_of, larger, live_of, put, root, smaller, spread, sum_of, take, where
+from raceway.core.lanes import (
+    WIDTH,
+    angle_of,
+    any_of,
+    column_of,
+    larger,
+    live_of,
+    put,
+    root,
+    smaller,
+    spread,
+    sum_of,
+    take,
+    where,
+)
 
 #: What ``_operations`` writes into its rows, of two rows of numbers x and y.
 ROWS = {
@@ -17,6 +31,7 @@ ROWS = {
     "less": lambda x, y: 1.0 * (x < y), "not more": lambda x, y: 1.0 * (x <= y), "more": lambda x, y: 1.0 * (x > y),
     "not less": lambda x, y: 1.0 * (x >= y), "equal": lambda x, y: 1.0 * (x == y), "both": lambda x, y: 1.0 * ((x > 0.0) & (y > 0.0)),
     "not": lambda x, _: 1.0 * ~(x > 0.0), "added to": lambda x, y: x + y, "number": lambda x, _: np.full_like(x, 7.0),
+    "angle": np.arctan2, "either": lambda x, y: 1.0 * ((x > 0.0) | (y > 0.0)),
     "chosen": lambda x, y: np.where(x < y, x, y + 1.0),
 }  # fmt: skip
 
@@ -48,7 +63,9 @@ def _operations(given, columns, out, single):
         added += y
         put(out, 17, k, live, added)
         put(out, 18, k, live, 7.0)
-        put(out, 19, k, live, where(x < y, x, y + 1.0))
+        put(out, 19, k, live, angle_of(x, y))
+        put(out, 20, k, live, where((x > 0.0) | (y > 0.0), 1.0, 0.0))
+        put(out, 21, k, live, where(x < y, x, y + 1.0))
         total += where(live, column_of(columns, k, 1, live), 0.0)
         if any_of(live & (x > 1e3)):
             single[1] += 1.0

@@ -118,6 +118,7 @@ for _operator, _name in (
     _lanewise(LIVE, *_TWO, of=_operator)(lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y))
 _lanewise(LANES, (LANES,), of=operator.neg)(lambda builder, x: builder.fneg(x))
 _lanewise(LIVE, (LIVE, LIVE), of=operator.and_)(lambda builder, x, y: builder.and_(x, y))
+_lanewise(LIVE, (LIVE, LIVE), of=operator.or_)(lambda builder, x, y: builder.or_(x, y))
 _lanewise(LIVE, (LIVE,), of=operator.invert)(lambda builder, x: builder.not_(x))
 
 
@@ -131,6 +132,17 @@ def _call(builder: _Numba, name: str, answer: _Numba, *args: _Numba) -> _Numba:
 def root(builder: _Numba, x: _Numba) -> _Numba:
     """The square root of each lane."""
     return _call(builder, f"sqrt.v{WIDTH}f64", _NUMBERS, x)
+
+
+@_lanewise(LANES, (LANES, LANES))
+def angle_of(builder: _Numba, sine: _Numba, cosine: _Numba) -> _Numba:
+    """The angle of each lane's sine and cosine, or multiples of them: by the C library, one after the other."""
+    kind = ir.FunctionType(ir.DoubleType(), 2 * [ir.DoubleType()])
+    function, angles = cgutils.get_or_insert_function(builder.module, kind, "atan2"), ir.Constant(_NUMBERS, ir.Undefined)
+    for lane in range(WIDTH):
+        angle = builder.call(function, [builder.extract_element(part, _INDEX(lane)) for part in (sine, cosine)])
+        angles = builder.insert_element(angles, angle, _INDEX(lane))
+    return angles
 
 
 @_lanewise(LANES, *_TWO)

@@ -25,7 +25,7 @@ import attrs
 import numpy as np
 
 from raceway.core.fem.patches.pressure import Contact, ContactState, SlipState
-from raceway.core.ring.kernels.rolling import gyroscopic_moment, traction_within
+from raceway.core.ring.kernels.rolling import Traction, gyroscopic_moment
 from raceway.core.ring.kernels.tensors import Pair
 from raceway.errors import ConvergenceError
 
@@ -86,11 +86,11 @@ class Gyroscopic:
             if size[race] > 0.0:
                 grow[race, 2 * race : 2 * race + 2] = -(normal / size[race]) @ (one.stiffness - one.along)
         if self.traction > 0.0:
-            force, by_asked, by_normal = traction_within(pull[0], size[0], self.traction)
-            fades = by_asked * by_place[0] + by_normal * grow[0]
-            rest, by_asked, by_normal = traction_within(2.0 * moment / self.diameter - force, size[1], self.traction)
-            pull = [force, rest]
-            by_place = [fades, by_asked * (2.0 / self.diameter * grows - fades) + by_normal * grow[1]]
+            at_i = traction_within(pull[0], size[0], self.traction)
+            fades = at_i.by_asked * by_place[0] + at_i.by_normal * grow[0]
+            at_o = traction_within(2.0 * moment / self.diameter - at_i.force, size[1], self.traction)
+            pull = [at_i.force, at_o.force]
+            by_place = [fades, at_o.by_asked * (2.0 / self.diameter * grows - fades) + at_o.by_normal * grow[1]]
         elif abs(pull[0]) > size[0]:
             sign = float(np.sign(moment))
             fades = sign * grow[0]
@@ -101,6 +101,13 @@ class Gyroscopic:
         stiffness[2:] = -np.outer(to, by_place[1]) + pull[1] * np.outer(no, angle[1])
         force = np.concatenate([-pull[0] * ti, pull[1] * to])
         return _Turned(force, stiffness, self.groove * pull[0], self.groove * by_place[0])
+
+
+def traction_within(demand: float, normal: float, limit: float) -> Traction:
+    """As ``raceway.core.ring.kernels.rolling`` has it in lanes."""
+    most = limit * normal
+    size = float(np.hypot(demand, most)) or np.inf
+    return Traction(most * demand / size, (most / size) ** 3, limit * (demand / size) ** 3)
 
 
 _LIMIT = 60

@@ -31,11 +31,11 @@ impact             one mass against one contact, for the published impacts and t
 
 #: Rows of ``work`` that the law fills or reads, of every contact: gap [m], its rate [m/s], force [N], its derivatives by both.
 GAP, GAP_RATE, CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE = range(5)
-#: Rows of rigid bodies in all.  Those of the ball solvers (5 to 25) stand with the kernels; then follows what the bodies'
-#: elasticity adds to each gap [m], its rate [m/s] and the energy it stores [J]: zeros for rigid bodies; at last the gap that a
-#: damped contact answers to [m].
-WORK_ROWS = 30
-SHIFT, SHIFT_RATE, STORED, AHEAD = 26, 27, 28, 29
+#: Rows of rigid bodies in all.  Those of the ball solvers (5 to 25 and from 33 on) stand with the kernels; between them what the
+#: bodies' elasticity adds to each gap [m], its rate [m/s] and the energy it stores [J]: zeros for rigid bodies; the gap that a
+#: damped contact answers to [m]; place of the ball [m] and the known part of its rate [m/s]; offsets of both grooves [m].
+WORK_ROWS = 44
+SHIFT, SHIFT_RATE, STORED, AHEAD, PLACE, HISTORY, OFFSET = range(26, 33)
 #: Rows that condensed bodies have beyond these.  Kernels fill them with the derivatives of both contact forces of a ball by
 #: the vector e, its velocity, the shifts (own and the other contact's) and the turn of the section; of its force on the
 #: ring, and of its couple, by the shifts; of that force (two rows each: axial, radial) by e and by its velocity, and by the

@@ -17,9 +17,9 @@ from numba.extending import register_jitable
 
 from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
-from raceway.core.lanes import WIDTH, column_of, live_of, spread, sum_of
+from raceway.core.lanes import LIVE, WIDTH, column_of, live_of, root, spread, sum_of, where
 from raceway.core.ring import kernels as rows
-from raceway.core.ring.kernels.tensors import PAIR, TENSOR, pair_of
+from raceway.core.ring.kernels.tensors import PAIR, TENSOR, pair_of, put_pair
 from raceway.core.signatures import CONSTANTS, CONTACTS, MATRIX, VECTOR
 
 #: Entries of ``scalars``.  CAGE: speed of orbiting balls [rad/s].  The last ones belong to ``rigid_tangential``:
@@ -174,6 +174,81 @@ def ring_tangent(table, arm, work, direction, row, K):
         -sum_of(uu_cs),
         sum_of(uu_cc),
     )
+
+
+@jit(void(MATRIX, float64, MATRIX, int64, int64, VECTOR, MATRIX))
+def add_couples(table, arm, work, direction, row, f, K):
+    """Add the couples of tangential forces on the balls' sections of the ring [N m] to f (5,), their derivatives to K (5, 5) or (0, 0).
+
+    Parameters
+    ----------
+    work : work[row] = couple (Z,), its derivative by the section's turn side u (Z,);  the next two rows, axial (Z,) and radial (Z,) each:
+        derivative of the ball's force by that turn, of the couple by e
+    """
+    none = spread(0.0)
+    tilt_y, tilt_z, xu_c, xu_s, ux_c, ux_s = none, none, none, none, none, none
+    ru_cc, ru_cs, ru_ss, ur_cc, ur_cs, ur_ss, uu_cc, uu_cs, uu_ss = none, none, none, none, none, none, none, none, none
+    z = table.shape[0]
+    for k in range(0, z, WIDTH):
+        live = live_of(k, z)
+        (c, s), (couple, turn) = pair_of(work, direction, k, live), pair_of(work, row, k, live)
+        (xu, ru), (ux, ur) = pair_of(work, row + 1, k, live), pair_of(work, row + 2, k, live)
+        side, lever = column_of(table, k, SIDE, live), column_of(table, k, LEVER, live)
+        couple, ru, ur = side * couple, side * ru, side * ur
+        cc, cs, ss = c * c, c * s, s * s
+        uu = (arm + column_of(table, k, OWN_TILT_ARM, live)) * (xu + ux) - lever * (ru + ur) + turn
+        tilt_y += couple * s
+        tilt_z += couple * c
+        xu_c += xu * c
+        xu_s += xu * s
+        ux_c += ux * c
+        ux_s += ux * s
+        ru_cc += ru * cc
+        ru_cs += ru * cs
+        ru_ss += ru * ss
+        ur_cc += ur * cc
+        ur_cs += ur * cs
+        ur_ss += ur * ss
+        uu_cc += uu * cc
+        uu_cs += uu * cs
+        uu_ss += uu * ss
+    f[3] += sum_of(tilt_y)
+    f[4] -= sum_of(tilt_z)
+    if K.size == 0:
+        return
+    for i, by_y, by_z in ((0, xu_s, xu_c), (1, ru_cs, ru_cc), (2, ru_ss, ru_cs), (3, uu_ss, uu_cs), (4, -uu_cs, -uu_cc)):
+        K[i, 3] += sum_of(by_y)
+        K[i, 4] -= sum_of(by_z)
+    for j, of_y, of_z in ((0, ux_s, ux_c), (1, ur_cs, ur_cc), (2, ur_ss, ur_cs)):
+        K[3, j] += sum_of(of_y)
+        K[4, j] -= sum_of(of_z)
+
+
+#: Rows of the solvers of balls with two unknowns, see there: groove centre e [m] and its velocity [m/s], directions of a ball's contacts
+#: and its distances from both groove centres [m].
+BALL_CENTRE, BALL_VELOCITY, INNER, OUTER, LENGTH = 5, 6, 9, 10, 11
+
+
+@jit(void(int64, LIVE, float64, MATRIX), inline=True)
+def approach(k, live, ball_gain, work):
+    """Directions, lengths, gaps and gap rates of both contacts of balls from k on."""
+    (pa, pr), (ea, er) = pair_of(work, rows.PLACE, k, live), pair_of(work, BALL_CENTRE, k, live)
+    xa, xr = ea - pa, er - pr
+    so, si = root(pa * pa + pr * pr), root(xa * xa + xr * xr)
+    by_so, apart = 1.0 / so, si > 0.0
+    by_si = 1.0 / where(apart, si, 1.0)
+    oa, orr = pa * by_so, pr * by_so
+    ia, ir = where(apart, xa * by_si, oa), where(apart, xr * by_si, orr)
+    (va, vr), (known_a, known_r) = pair_of(work, BALL_VELOCITY, k, live), pair_of(work, rows.HISTORY, k, live)
+    own_a, own_r = ball_gain * pa + known_a, ball_gain * pr + known_r
+    (li, lo), (shift_i, shift_o) = pair_of(work, rows.OFFSET, k, live), pair_of(work, rows.SHIFT, k, live)
+    rate_i, rate_o = pair_of(work, rows.SHIFT_RATE, k, live)
+    put_pair(work, LENGTH, k, live, si, so)
+    put_pair(work, OUTER, k, live, oa, orr)
+    put_pair(work, INNER, k, live, ia, ir)
+    put_pair(work, rows.GAP, k, live, li - si + shift_i, lo - so + shift_o)
+    rate_i, rate_o = rate_i - (ia * (va - own_a) + ir * (vr - own_r)), rate_o - (oa * own_a + orr * own_r)
+    put_pair(work, rows.GAP_RATE, k, live, rate_i, rate_o)
 
 
 _FIRST = rows.WORK_ROWS + rows.KERNEL_ROWS + 2
@@ -380,26 +455,3 @@ def add_products(work, row, sign, out):
             for c in range(work.shape[1]):
                 total += work[WEIGHT + i, c] * work[row + j, c]
             out[i, j] += sign * total
-
-
-@jit(void(SEAT, float64, PAIR, PAIR, float64, VECTOR, MATRIX))
-def add_couple(seat, couple, force_by_turn, by_centre, by_turn, f, K):
-    """Add the couple [N m] that tangential forces put on a ball's section of the ring, with its derivatives.
-
-    Parameters
-    ----------
-    force_by_turn : derivative of the ball's force by the turn of its section, side (tilt_y s - tilt_z c)
-    by_centre, by_turn : of the couple by e and by that turn
-    """
-    c, s, arm, side, lever = seat
-    turn = (0.0, 0.0, 0.0, side * s, -side * c)
-    ja = (side, 0.0, 0.0, side * arm * s, -side * arm * c)
-    jr = (0.0, c, s, -lever * s, lever * c)
-    for i in range(5):
-        f[i] += turn[i] * couple
-    if K.size == 0:
-        return
-    for j in range(5):
-        moment = by_centre.axial * ja[j] + by_centre.radial * jr[j] + by_turn * turn[j]
-        for i in range(5):
-            K[i, j] += turn[i] * moment + (ja[i] * force_by_turn.axial + jr[i] * force_by_turn.radial) * turn[j]

@@ -16,22 +16,32 @@ from raceway.core.lanes import LANES, LIVE, WIDTH, any_of, larger, live_of, root
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels import tensors
-from raceway.core.ring.kernels.layout import move_centres, normal_forces, offsets_of, place, ring_force, ring_tangent
+from raceway.core.ring.kernels.layout import BALL_CENTRE as CENTRE
+from raceway.core.ring.kernels.layout import BALL_VELOCITY as VELOCITY
+from raceway.core.ring.kernels.layout import (
+    INNER,
+    LENGTH,
+    OUTER,
+    approach,
+    move_centres,
+    normal_forces,
+    offsets_of,
+    place,
+    ring_force,
+    ring_tangent,
+)
 from raceway.core.ring.kernels.tensors import pair_of, put_pair, put_tensors
 from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
 
 _ITERATIONS = 200
-#: Rows of ``work`` beyond the law's, two quantities each, a half row long (index k, then z + k): inner groove centre [m] and its
-#: velocity [m/s], last step [m], slope along it [N m] with a flag for settled balls, directions of the two contacts' lines
-#: and their lengths [m].
-CENTRE, VELOCITY, STEP, SEARCH, INNER, OUTER, LENGTH = 5, 6, 7, 8, 9, 10, 11
-DONE = SEARCH
+#: Rows of ``work`` beyond the law's, two quantities each, a half row long (index k, then z + k), and those of ``layout.approach``: last
+#: step [m], slope along it [N m] with a flag for settled balls.
+STEP, SEARCH, DONE = 7, 8, 8
 #: Of settled balls, since the law is called again for others: force [N] and its derivatives of both contacts, direction of the
 #: inner one.
 KEPT_FORCE, KEPT_BY_GAP, KEPT_BY_RATE, KEPT_NORMAL = 12, 13, 14, 15
-#: cos and sin of the azimuth; place of the ball [m] and the known part of its rate [m/s]; offsets of both grooves [m]; centrifugal
-#: force [N].
-DIRECTION, PLACE, HISTORY, OFFSET, CENTRIFUGAL = 16, 17, 18, 19, 20
+#: cos and sin of the azimuth; centrifugal force [N].
+DIRECTION, CENTRIFUGAL = 16, 17
 #: Rows that the iteration has done with, used again for what goes to the ring: force [N], tangents [N/m, N s/m] (two rows each).
 CARRIED, STIFF, VISCOUS = 9, 5, 7
 
@@ -51,32 +61,10 @@ def _first_guess(k, scalars, table, ball, ball_history, work):
             pa, pr = scale * ea, scale * er
         else:
             pa, pr = 0.0, lo + (centrifugal / table[k, ring.OUTER_FACTOR]) ** (2.0 / 3.0)
-    work[PLACE, k], work[PLACE, z + k], work[CENTRIFUGAL, k] = pa, pr, centrifugal
-    work[HISTORY, k], work[HISTORY, z + k] = ball_history[k, 0], ball_history[k, 1]
-    work[OFFSET, k], work[OFFSET, z + k] = li, lo
+    work[rows.PLACE, k], work[rows.PLACE, z + k], work[CENTRIFUGAL, k] = pa, pr, centrifugal
+    work[rows.HISTORY, k], work[rows.HISTORY, z + k] = ball_history[k, 0], ball_history[k, 1]
+    work[rows.OFFSET, k], work[rows.OFFSET, z + k] = li, lo
     work[SEARCH, k], work[DONE, z + k] = 0.0, 0.0
-
-
-@jit(void(int64, LIVE, float64, MATRIX), inline=True)
-def _approach(k, live, ball_gain, work):
-    """Directions, lengths, gaps and gap rates of both contacts of the balls from k on."""
-    (pa, pr), (ea, er) = pair_of(work, PLACE, k, live), pair_of(work, CENTRE, k, live)
-    xa, xr = ea - pa, er - pr
-    so, si = root(pa * pa + pr * pr), root(xa * xa + xr * xr)
-    by_so, apart = 1.0 / so, si > 0.0
-    by_si = 1.0 / where(apart, si, 1.0)
-    oa, orr = pa * by_so, pr * by_so
-    ia, ir = where(apart, xa * by_si, oa), where(apart, xr * by_si, orr)
-    (va, vr), (known_a, known_r) = pair_of(work, VELOCITY, k, live), pair_of(work, HISTORY, k, live)
-    own_a, own_r = ball_gain * pa + known_a, ball_gain * pr + known_r
-    (li, lo), (shift_i, shift_o) = pair_of(work, OFFSET, k, live), pair_of(work, rows.SHIFT, k, live)
-    rate_i, rate_o = pair_of(work, rows.SHIFT_RATE, k, live)
-    put_pair(work, LENGTH, k, live, si, so)
-    put_pair(work, OUTER, k, live, oa, orr)
-    put_pair(work, INNER, k, live, ia, ir)
-    put_pair(work, rows.GAP, k, live, li - si + shift_i, lo - so + shift_o)
-    rate_i, rate_o = rate_i - (ia * (va - own_a) + ir * (vr - own_r)), rate_o - (oa * own_a + orr * own_r)
-    put_pair(work, rows.GAP_RATE, k, live, rate_i, rate_o)
 
 
 @jit(tensors.LANES_TENSOR(LANES, LANES, LANES, LANES), inline=True)
@@ -93,7 +81,7 @@ def _moving(k, live, ball_gain, work):
     z = work.shape[1] // 2
     (fi, fo), (gap_i, gap_o) = pair_of(work, rows.CONTACT_FORCE, k, live), pair_of(work, rows.GAP, k, live)
     (ia, ir), (oa, orr) = pair_of(work, INNER, k, live), pair_of(work, OUTER, k, live)
-    (pa, pr), (da, dr) = pair_of(work, PLACE, k, live), pair_of(work, STEP, k, live)
+    (pa, pr), (da, dr) = pair_of(work, rows.PLACE, k, live), pair_of(work, STEP, k, live)
     search, done = pair_of(work, SEARCH, k, live)
     active = live & (done == 0.0)
     ga = fo * oa - fi * ia
@@ -103,7 +91,7 @@ def _moving(k, live, ball_gain, work):
     by_gap_i, by_gap_o = pair_of(work, rows.FORCE_BY_GAP, k, live)
     by_rate_i, by_rate_o = pair_of(work, rows.FORCE_BY_RATE, k, live)
     ki, ko = -by_gap_i - ball_gain * by_rate_i, -by_gap_o - ball_gain * by_rate_o
-    (si, so), lo = pair_of(work, LENGTH, k, live), take(work, OFFSET, z + k, live)
+    (si, so), lo = pair_of(work, LENGTH, k, live), take(work, rows.OFFSET, z + k, live)
     by_si = where(si > 0.0, 1.0 / si, 0.0)
     a, b = _of_contact(ia, ir, ki, fi * by_si), _of_contact(oa, orr, ko, fo / so)
     haa, har, hrr = a.aa + b.aa, a.ar + b.ar, a.rr + b.rr
@@ -131,7 +119,7 @@ def _moving(k, live, ball_gain, work):
     half = where(back, 0.5, 0.0)
     slope = where(back, 0.5 * search, ga * sa + gr * sr)
     sa, sr = where(back, -half * da, sa), where(back, -half * dr, sr)
-    put_pair(work, PLACE, k, active, pa + sa, pr + sr)
+    put_pair(work, rows.PLACE, k, active, pa + sa, pr + sr)
     put_pair(work, STEP, k, active, where(back, -sa, sa), where(back, -sr, sr))
     put_pair(work, SEARCH, k, active, slope, where(ends, 1.0, 0.0))
     return active & ~ends
@@ -199,7 +187,7 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
     moving = True
     for _ in range(_ITERATIONS):
         for k in range(0, z, WIDTH):
-            _approach(k, live_of(k, z), ball_gain, work)
+            approach(k, live_of(k, z), ball_gain, work)
         normal_forces(contacts, scalars, work)
         moving = False
         for k in range(0, z, WIDTH):
@@ -220,7 +208,7 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
                 put_pair(work, row, k, live, spread(0.0), spread(0.0))
             put_pair(work, rows.FORCE, k, live, fi * na, fi * nr)
     for k in range(z):
-        ball[k, 0], ball[k, 1] = work[PLACE, k], work[PLACE, z + k]
+        ball[k, 0], ball[k, 1] = work[rows.PLACE, k], work[rows.PLACE, z + k]
     ring_force(table, scalars[ring.TILT_ARM], work, DIRECTION, CARRIED, f)
     if K.size == 0 and not elastic_bodies:
         return 0

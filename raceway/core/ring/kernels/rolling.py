@@ -1,49 +1,31 @@
-"""Balls that roll: gyroscopic moments, traction at the contacts, and the linear balance of a ball with its contacts."""
+"""Balls that roll: gyroscopic moments, traction at the contacts, Coulomb friction, and the linear balance of a ball with its contacts."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
 from numba import float64, int64, types, void
+from numba.extending import register_jitable
 
 from raceway.core.jit import jit
+from raceway.core.lanes import LANES, LIVE, angle_of, larger, root, spread, take, where
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.kernels.tensors import PAIR, TENSOR, Pair, Tensor
+from raceway.core.ring.kernels.tensors import LANES_PAIR, LANES_TENSOR, Pair, Tensor, pair_of, put_pair
 from raceway.core.signatures import MATRIX, VECTOR
 
-#: Rows of ``work`` beyond the law's, 2 Z long: index k is a ball's inner contact or axial component, Z + k its outer contact or
-#: radial component.  Where a row holds two quantities of a ball, the second one begins at Z + k.
-#: Vectors (axial, radial): groove centre e [m] and its velocity [m/s], last step of the ball [m], directions of its contacts.
-CENTRE, VELOCITY, STEP = 5, 6, 7
-
-
-INNER, OUTER = 9, 10
-#: Imbalance along the last step [N m], then what a ball is doing.
-SLOPE, STATE = 8, 8
+#: Rows of ``work`` beyond the law's and those of ``layout.approach``, two quantities of a ball each: the second one begins at Z + k.
+#: Last step of the ball [m]; imbalance along it [N m], then what the ball is doing.
+STEP, SLOPE, STATE = 7, 8, 8
 #: Values of STATE: it moves, it has settled, it lies between the races without forces.
 MOVES, SETTLED, LOOSE = 0.0, 1.0, 2.0
-#: Distance of the ball from the groove's centre [m].
-LENGTH = 11
 #: Of settled balls, since the law is called again for others: normal force [N], its derivatives by gap and gap rate.
 KEPT_FORCE, KEPT_BY_GAP, KEPT_BY_RATE = 12, 13, 14
-#: cos and sin of the azimuth.
-DIRECTION = 16
-#: Tangential force h of a contact [N] with its derivatives by the contact's length [N/m], its angle [N] and its shift [N/m].
-TANGENTIAL, BY_LENGTH, BY_ANGLE, BY_SHIFT = 15, 17, 18, 24
-#: Derivative of the inner h by the outer angle [N], then of the outer h by the inner angle [N].
-BY_OTHER_ANGLE = 19
-#: Couple on the ring's section [N m], then its derivative by the inner length [N].
-COUPLE, COUPLE_BY_LENGTH = 20, 20
-#: Its derivatives by the inner angle, then by the outer angle [N m].
-COUPLE_BY_ANGLE = 21
-#: Its derivative by the section's turn [N m], then that of the inner h [N].
-COUPLE_BY_TURN, BY_TURN = 22, 22
-#: Derivative of the outer h by the inner length [N/m], then the size of the imbalance at the last step [N].
-OUTER_BY_INNER_LENGTH, MERIT = 23, 23
-#: Derivative of the couple by the inner shift [N], then how far the section's turn moves the inner groove [m].
-COUPLE_BY_SHIFT, TURNED = 25, 25
+#: cos and sin of the azimuth; centrifugal force [N], then how far the section's turn moves the inner groove [m]; size of the imbalance
+#: at the last step [N]; slips of the inner and the outer contact, now and committed [m].
+DIRECTION, CENTRIFUGAL, TURNED, MERIT, SLIP, COMMITTED = 16, 17, 17, 18, 19, 20
+#: Of settled balls, what ``Tangential`` has, two each.
+TANGENTIAL = 33
 
 
 class BallContact(NamedTuple):
@@ -56,9 +38,46 @@ class BallContact(NamedTuple):
     stiffness: float
 
 
-CONTACT = types.NamedUniTuple(float64, 5, BallContact)
-#: Inner and outer contact of a ball.
+#: Inner and outer contact of balls.
+CONTACT = types.NamedUniTuple(LANES, 5, BallContact)
 CONTACTS = types.UniTuple(CONTACT, 2)
+
+
+class Tangential(NamedTuple):
+    """Tangential forces h of the inner and the outer contact [N], and the couple on the ring's section [N m].
+
+    Derivatives by_length by the contact's own length [N/m], by_angle and by_other by its own and the other contact's angle [N], by_shift by its
+    shift [N/m], by_turn by the section's turn; ``grows`` of the outer h by the inner length [N/m].
+    """
+
+    inner: float
+    outer: float
+    inner_by_length: float
+    outer_by_length: float
+    inner_by_angle: float
+    outer_by_angle: float
+    inner_by_other: float
+    outer_by_other: float
+    inner_by_shift: float
+    outer_by_shift: float
+    couple: float
+    couple_by_length: float
+    couple_by_inner: float
+    couple_by_outer: float
+    couple_by_turn: float
+    inner_by_turn: float
+    grows: float
+    couple_by_shift: float
+
+
+TANGENTIALS = types.NamedUniTuple(LANES, 18, Tangential)
+
+
+@jit(TANGENTIALS())
+def free_rolling():
+    """No tangential forces and no couple."""
+    o = spread(0.0)
+    return Tangential(o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o)
 
 
 class Moment(NamedTuple):
@@ -69,7 +88,7 @@ class Moment(NamedTuple):
     by_outer: float
 
 
-@jit(types.NamedUniTuple(float64, 3, Moment)(PAIR, PAIR, float64, float64), inline=True)
+@register_jitable
 def gyroscopic_moment(inner, outer, ratio, scale):
     """M at the directions n = (sin a, cos a) of the contacts; ratio r = D / d_m, scale = J * (inner ring's speed) * w_c.
 
@@ -86,7 +105,55 @@ def gyroscopic_moment(inner, outer, ratio, scale):
     return Moment(part * so * rest, part * so * (ratio * si + rest * sine), part * rest * (co - so * sine))
 
 
-class _Traction(NamedTuple):
+@jit(void(MATRIX, int64, LIVE, TANGENTIALS), inline=True)
+def put_tangential(work, k, live, h):
+    """Keep the tangential forces of balls from k on."""
+    put_pair(work, TANGENTIAL, k, live, h.inner, h.outer)
+    put_pair(work, TANGENTIAL + 1, k, live, h.inner_by_length, h.outer_by_length)
+    put_pair(work, TANGENTIAL + 2, k, live, h.inner_by_angle, h.outer_by_angle)
+    put_pair(work, TANGENTIAL + 3, k, live, h.inner_by_other, h.outer_by_other)
+    put_pair(work, TANGENTIAL + 4, k, live, h.inner_by_shift, h.outer_by_shift)
+    put_pair(work, TANGENTIAL + 5, k, live, h.couple, h.couple_by_length)
+    put_pair(work, TANGENTIAL + 6, k, live, h.couple_by_inner, h.couple_by_outer)
+    put_pair(work, TANGENTIAL + 7, k, live, h.couple_by_turn, h.inner_by_turn)
+    put_pair(work, TANGENTIAL + 8, k, live, h.grows, h.couple_by_shift)
+
+
+@jit(TANGENTIALS(MATRIX, int64, LIVE), inline=True)
+def tangential_of(work, k, live):
+    """The tangential forces of balls from k on that were kept."""
+    inner, outer = pair_of(work, TANGENTIAL, k, live)
+    inner_by_length, outer_by_length = pair_of(work, TANGENTIAL + 1, k, live)
+    inner_by_angle, outer_by_angle = pair_of(work, TANGENTIAL + 2, k, live)
+    inner_by_other, outer_by_other = pair_of(work, TANGENTIAL + 3, k, live)
+    inner_by_shift, outer_by_shift = pair_of(work, TANGENTIAL + 4, k, live)
+    couple, couple_by_length = pair_of(work, TANGENTIAL + 5, k, live)
+    couple_by_inner, couple_by_outer = pair_of(work, TANGENTIAL + 6, k, live)
+    couple_by_turn, inner_by_turn = pair_of(work, TANGENTIAL + 7, k, live)
+    grows, couple_by_shift = pair_of(work, TANGENTIAL + 8, k, live)
+    return Tangential(
+        inner,
+        outer,
+        inner_by_length,
+        outer_by_length,
+        inner_by_angle,
+        outer_by_angle,
+        inner_by_other,
+        outer_by_other,
+        inner_by_shift,
+        outer_by_shift,
+        couple,
+        couple_by_length,
+        couple_by_inner,
+        couple_by_outer,
+        couple_by_turn,
+        inner_by_turn,
+        grows,
+        couple_by_shift,
+    )
+
+
+class Traction(NamedTuple):
     """Traction of a contact [N], its derivatives by what is asked of it and by the contact's normal force."""
 
     force: float
@@ -94,20 +161,19 @@ class _Traction(NamedTuple):
     by_normal: float
 
 
-@jit(types.NamedUniTuple(float64, 3, _Traction)(float64, float64, float64))
+@jit(types.NamedUniTuple(LANES, 3, Traction)(LANES, LANES, float64), inline=True)
 def traction_within(demand, normal, limit):
     """demand / sqrt(1 + (demand / (limit normal))^2): all of a small part, never more than ``limit`` times the normal force."""
     most = limit * normal
-    size = np.sqrt(demand * demand + most * most)
-    if not size > 0.0:
-        return _Traction(0.0, 0.0, 0.0)
-    a, m = demand / size, most / size
-    return _Traction(most * a, m**3, limit * a**3)
+    size = root(demand * demand + most * most)
+    inverse = where(size > 0.0, 1.0 / size, 0.0)
+    a, m = demand * inverse, most * inverse
+    return Traction(most * a, m * m * m, limit * (a * a * a))
 
 
-@jit(void(int64, CONTACTS, VECTOR, MATRIX), inline=True)
-def add_gyroscopic(k, contacts, scalars, work):
-    """Add what ball k's moment does to its tangential forces and to the couple on the ring's section.
+@jit(TANGENTIALS(int64, LIVE, CONTACTS, TANGENTIALS, VECTOR, MATRIX), inline=True)
+def with_gyroscopic(k, live, contacts, rub, scalars, work):
+    """Add what the moments of the balls from k on do to their tangential forces and to the couples on the ring's section.
 
     T = share * M / D with M = J w_R w_c sin(beta): ``gyroscopic_moment``. The inner race carries no more than its
     normal force, the outer one the rest: so it fades continuously where the inner contact opens.  With TRACTION both carry
@@ -115,45 +181,55 @@ def add_gyroscopic(k, contacts, scalars, work):
 
     Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapters 2 and 3 (control of the outer race).
     """
-    z = work.shape[1] // 2
+    inner, outer = contacts
     diameter, ratio, scale = scalars[ring.DIAMETER], scalars[ring.BALL_OVER_PITCH], scalars[ring.GYROSCOPIC]
-    groove, limit = scalars[ring.OFFSET_INNER] + 0.5 * diameter, scalars[ring.TRACTION]
-    force, stiffness = contacts[0].force, contacts[0].stiffness
-    inner, outer = Pair(contacts[0].axial, contacts[0].radial), Pair(contacts[1].axial, contacts[1].radial)
-    share_i, share_o = scalars[ring.SHARE_INNER] / diameter, scalars[ring.SHARE_OUTER] / diameter
-    moment, by_i, by_o = gyroscopic_moment(inner, outer, ratio, scale)
-    traction, rest, grows, coupling = share_i * moment, share_o * moment, 0.0, 0.0
+    groove, limit, whole = scalars[ring.OFFSET_INNER] + 0.5 * diameter, scalars[ring.TRACTION], 2.0 / diameter
+    share_i, share_o, own = (
+        spread(scalars[ring.SHARE_INNER] / diameter),
+        spread(scalars[ring.SHARE_OUTER] / diameter),
+        spread(0.0),
+    )
+    moment, by_i, by_o = gyroscopic_moment(Pair(inner.axial, inner.radial), Pair(outer.axial, outer.radial), ratio, scale)
     if limit > 0.0:
         # Dashpots carry no traction: it is limited by the elastic forces, and rates of gaps leave it alone.
-        force -= work[rows.FORCE_BY_RATE, k] * work[rows.GAP_RATE, k]
-        outer_force = contacts[1].force - work[rows.FORCE_BY_RATE, z + k] * work[rows.GAP_RATE, z + k]
-        at_i = traction_within(traction, max(force, 0.0), limit)
-        at_o = traction_within(2.0 / diameter * moment - at_i.force, max(outer_force, 0.0), limit)
+        (rate_i, rate_o), (by_rate_i, by_rate_o) = (
+            pair_of(work, rows.GAP_RATE, k, live),
+            pair_of(work, rows.FORCE_BY_RATE, k, live),
+        )
+        by_gap_i, by_gap_o = pair_of(work, rows.FORCE_BY_GAP, k, live)
+        at_i = traction_within(share_i * moment, larger(inner.force - by_rate_i * rate_i, 0.0), limit)
+        at_o = traction_within(whole * moment - at_i.force, larger(outer.force - by_rate_o * rate_o, 0.0), limit)
         traction, rest, share_i = at_i.force, at_o.force, share_i * at_i.by_asked
-        share_o = at_o.by_asked * (2.0 / diameter - share_i)
-        grows = at_i.by_normal * -work[rows.FORCE_BY_GAP, k]
-        coupling, own = at_o.by_asked * grows, at_o.by_normal * -work[rows.FORCE_BY_GAP, z + k]
-        work[BY_LENGTH, z + k] -= own
-        work[BY_SHIFT, z + k] += own
-    elif abs(traction) > force:
+        share_o = at_o.by_asked * (whole - share_i)
+        grows = -by_gap_i * at_i.by_normal
+        coupling, own = at_o.by_asked * grows, -by_gap_o * at_o.by_normal
+    else:
         # No more than the normal force; the outer race takes the rest.
-        sign = 1.0 if moment > 0.0 else -1.0
-        traction, grows, coupling = sign * force, sign * stiffness, sign * stiffness
-        share_i, share_o = 0.0, 2.0 / diameter
-        rest = share_o * moment - traction
-    work[TANGENTIAL, k] -= traction
-    work[BY_LENGTH, k] -= grows
-    work[BY_SHIFT, k] += grows
-    work[COUPLE_BY_SHIFT, k] -= groove * grows
-    work[BY_ANGLE, k] -= share_i * by_i
-    work[TANGENTIAL, z + k] -= rest
-    work[BY_ANGLE, z + k] -= share_o * by_o
-    work[BY_OTHER_ANGLE, k], work[BY_OTHER_ANGLE, z + k] = -share_i * by_o, -share_o * by_i
-    work[OUTER_BY_INNER_LENGTH, k] = coupling
-    work[COUPLE, k] += groove * traction
-    work[COUPLE_BY_LENGTH, z + k] += groove * grows
-    work[COUPLE_BY_ANGLE, k] += groove * share_i * by_i
-    work[COUPLE_BY_ANGLE, z + k] = groove * share_i * by_o
+        traction, sign = share_i * moment, where(moment > 0.0, 1.0, -1.0)
+        most = larger(traction, -traction) > inner.force
+        traction, grows = where(most, sign * inner.force, traction), where(most, sign * inner.stiffness, 0.0)
+        share_i, share_o, coupling = where(most, 0.0, share_i), where(most, whole, share_o), grows
+        rest = share_o * moment - where(most, traction, 0.0)
+    return Tangential(
+        rub.inner - traction,
+        rub.outer - rest,
+        rub.inner_by_length - grows,
+        rub.outer_by_length - own,
+        rub.inner_by_angle - share_i * by_i,
+        rub.outer_by_angle - share_o * by_o,
+        -share_i * by_o,
+        -share_o * by_i,
+        rub.inner_by_shift + grows,
+        rub.outer_by_shift + own,
+        rub.couple + groove * traction,
+        rub.couple_by_length + groove * grows,
+        rub.couple_by_inner + groove * share_i * by_i,
+        groove * share_i * by_o,
+        rub.couple_by_turn,
+        rub.inner_by_turn,
+        coupling,
+        rub.couple_by_shift - groove * grows,
+    )
 
 
 class _Grip(NamedTuple):
@@ -166,35 +242,24 @@ class _Grip(NamedTuple):
     stretch: float
 
 
-_GRIP = types.NamedUniTuple(float64, 5, _Grip)
-
-
-@jit(_GRIP(CONTACT, float64, float64, float64, float64), inline=True)
-def _grip(contact, reach, stretch, mu, stick):
+@jit(types.NamedUniTuple(LANES, 5, _Grip)(CONTACT, LANES, float64, LANES, float64, float64), inline=True)
+def _grip(contact, lever, reach, stretch, mu, stick):
     """The return map: what sticks at the elastic displacement ``stretch``, or slides; reach = L."""
-    lever = reach / contact.length if contact.length > 0.0 else 1.0
     tau, limit = stick * stretch * lever, mu * contact.force
-    if abs(tau) <= limit:
-        return _Grip(tau, stick * reach * lever, -tau * lever / reach, 0.0, stretch)
-    sign = 1.0 if tau > 0.0 else -1.0
+    sticks, sign = larger(tau, -tau) <= limit, where(tau > 0.0, 1.0, -1.0)
     by_shift = -sign * mu * contact.stiffness
-    return _Grip(sign * limit, 0.0, -by_shift, by_shift, sign * limit / (stick * lever))
+    return _Grip(
+        where(sticks, tau, sign * limit),
+        where(sticks, stick * reach * lever, 0.0),
+        where(sticks, -tau * lever / reach, -by_shift),
+        where(sticks, 0.0, by_shift),
+        where(sticks, stretch, sign * limit / (stick * lever)),
+    )
 
 
-@jit(void(int64, MATRIX), inline=True)
-def roll(k, work):
-    """No tangential forces of ball k and no couple."""
-    z = work.shape[1] // 2
-    work[TANGENTIAL, k], work[BY_ANGLE, k], work[BY_LENGTH, k], work[BY_SHIFT, k] = 0.0, 0.0, 0.0, 0.0
-    o = z + k
-    work[TANGENTIAL, o], work[BY_ANGLE, o], work[BY_LENGTH, o], work[BY_SHIFT, o] = 0.0, 0.0, 0.0, 0.0
-    work[COUPLE, k], work[COUPLE_BY_ANGLE, k], work[COUPLE_BY_TURN, k] = 0.0, 0.0, 0.0
-    work[BY_TURN, o], work[COUPLE_BY_LENGTH, o], work[COUPLE_BY_SHIFT, k] = 0.0, 0.0, 0.0
-
-
-@jit(void(int64, CONTACTS, VECTOR, MATRIX, MATRIX, MATRIX), inline=True)
-def rub(k, contacts, scalars, ball, ball_history, work):
-    """Tangential forces of ball k by friction, its couple on the ring's section, and its slips in ``ball``.
+@jit(types.Tuple((TANGENTIALS, LANES_PAIR))(int64, LIVE, CONTACTS, VECTOR, MATRIX), inline=True)
+def rub(k, live, contacts, scalars, work):
+    """Tangential forces of the balls from k on by friction, their couples on the ring's section, and their slips.
 
     A contact that sticks stores k_t u^2 / 2 with u = L a - slip outside, L a - r turn - slip inside: L is the distance of
     ball and groove centre at the first touch, a the contact's angle, r the groove's radius, turn that of the ring's section
@@ -203,32 +268,38 @@ def rub(k, contacts, scalars, ball, ball_history, work):
     have. The couple on the section is -r k_t u.
     """
     z, mu, stick = work.shape[1] // 2, scalars[ring.FRICTION], scalars[ring.STICK]
-    li, lo = scalars[ring.OFFSET_INNER], scalars[ring.OFFSET_OUTER]
-    inner, outer = contacts
-    at_i = li * np.arctan2(inner.axial, inner.radial) - work[TURNED, z + k]
-    at_o = lo * np.arctan2(outer.axial, outer.radial)
-    gi = _grip(inner, li, at_i - ball_history[k, ring.SLIPS], mu, stick)
-    go = _grip(outer, lo, at_o - ball_history[k, ring.SLIPS + 1], mu, stick)
-    ball[k, ring.SLIPS], ball[k, ring.SLIPS + 1] = at_i - gi.stretch, at_o - go.stretch
-    work[TANGENTIAL, k], work[TANGENTIAL, z + k] = gi.force, go.force
-    work[BY_ANGLE, k], work[BY_ANGLE, z + k] = gi.by_angle, go.by_angle
-    work[BY_LENGTH, k], work[BY_LENGTH, z + k] = gi.by_length, go.by_length
-    work[BY_SHIFT, k], work[BY_SHIFT, z + k] = gi.by_shift, go.by_shift
-    z, stick, reach = work.shape[1] // 2, scalars[ring.STICK], scalars[ring.OFFSET_INNER]
-    groove = reach + 0.5 * scalars[ring.DIAMETER]
-    lever = reach / inner.length if inner.length > 0.0 else 1.0
-    work[COUPLE, k] = -groove * stick * gi.stretch
-    if gi.by_angle != 0.0:
-        work[COUPLE_BY_ANGLE, k], work[COUPLE_BY_TURN, k] = -groove * stick * reach, groove * groove * stick
-        work[BY_TURN, z + k], work[COUPLE_BY_LENGTH, z + k] = -stick * groove * lever, 0.0
-        work[COUPLE_BY_SHIFT, k] = 0.0
-    else:
-        work[COUPLE_BY_ANGLE, k], work[COUPLE_BY_TURN, k], work[BY_TURN, z + k] = 0.0, 0.0, 0.0
-        work[COUPLE_BY_LENGTH, z + k] = -groove * (gi.by_length / lever + gi.force / reach)
-        work[COUPLE_BY_SHIFT, k] = -groove * gi.by_shift / lever
+    reach, lo = scalars[ring.OFFSET_INNER], scalars[ring.OFFSET_OUTER]
+    (inner, outer), groove, o = contacts, reach + 0.5 * scalars[ring.DIAMETER], spread(0.0)
+    slip_i, slip_o = pair_of(work, COMMITTED, k, live)
+    at_i = reach * angle_of(inner.axial, inner.radial) - take(work, TURNED, z + k, live)
+    at_o = lo * angle_of(outer.axial, outer.radial)
+    lever, lever_o = where(inner.length > 0.0, reach / inner.length, 1.0), where(outer.length > 0.0, lo / outer.length, 1.0)
+    gi, go = _grip(inner, lever, reach, at_i - slip_i, mu, stick), _grip(outer, lever_o, lo, at_o - slip_o, mu, stick)
+    sticks = ~(gi.by_angle == 0.0)
+    forces = Tangential(
+        gi.force,
+        go.force,
+        gi.by_length,
+        go.by_length,
+        gi.by_angle,
+        go.by_angle,
+        o,
+        o,
+        gi.by_shift,
+        go.by_shift,
+        -groove * stick * gi.stretch,
+        where(sticks, 0.0, -groove * (gi.by_length / lever + gi.force / reach)),
+        where(sticks, -groove * stick * reach, 0.0),
+        o,
+        where(sticks, groove * groove * stick, 0.0),
+        where(sticks, -stick * groove * lever, o),
+        o,
+        where(sticks, 0.0, -groove * gi.by_shift / lever),
+    )
+    return forces, Pair(at_i - gi.stretch, at_o - go.stretch)
 
 
-class _Balance(NamedTuple):
+class Balance(NamedTuple):
     """A settled ball, linearised: E, P, X and J, M the damping by the velocity of e.
 
     by_turn : derivative of the ball's force by the turn of its section [N]
@@ -245,37 +316,33 @@ class _Balance(NamedTuple):
     by_turn: Pair
 
 
-BALANCE = types.NamedTuple((*(TENSOR,) * 5, PAIR), _Balance)
+BALANCE = types.NamedTuple((*(LANES_TENSOR,) * 5, LANES_PAIR), Balance)
 
 
-@jit(BALANCE(int64, CONTACTS, MATRIX), inline=True)
-def linear_balance(k, contacts, work):
-    """Ball k at its balance."""
-    z = work.shape[1] // 2
+@jit(BALANCE(CONTACTS, LANES, LANES, TANGENTIALS), inline=True)
+def linear_balance(contacts, elastic, viscous, h):
+    """Balls at their balance; elastic, viscous : stiffness and damping of their inner contacts."""
     inner, outer = contacts
-    elastic, viscous = -work[rows.FORCE_BY_GAP, k], -work[rows.FORCE_BY_RATE, k]
     na, nr, to_a, to_r = inner.axial, inner.radial, outer.radial, -outer.axial
-    wi, wo = 1.0 / inner.length, 1.0 / outer.length
+    wi, wo = where(inner.length > 0.0, 1.0 / inner.length, 0.0), 1.0 / outer.length
     # Inner and outer tangential force by the angle, the outer one also by the length, of the other contact.
-    cross_o, grows = work[BY_OTHER_ANGLE, z + k], work[OUTER_BY_INNER_LENGTH, k]
-    ii_a, ii_r = work[BY_OTHER_ANGLE, k] * nr, work[BY_OTHER_ANGLE, k] * -na
-    oi_a, oi_r = cross_o * nr * wi + grows * na, cross_o * -na * wi + grows * nr
-    e = contact_matrix(BallContact(na, nr, inner.length, inner.force, elastic), k, work)
-    g, o = contact_matrix(inner, k, work), contact_matrix(outer, z + k, work)
-    p = Tensor(-g.aa + ii_a * to_a * wo, -g.ar + ii_a * to_r * wo, -g.ra + ii_r * to_a * wo, -g.rr + ii_r * to_r * wo)
+    ii_a, ii_r = h.inner_by_other * nr, -h.inner_by_other * na
+    oi_a, oi_r = h.outer_by_other * nr * wi + h.grows * na, -h.outer_by_other * na * wi + h.grows * nr
+    e = contact_matrix(BallContact(na, nr, inner.length, inner.force, elastic), h.inner, h.inner_by_length, h.inner_by_angle)
+    g = contact_matrix(inner, h.inner, h.inner_by_length, h.inner_by_angle)
+    o = contact_matrix(outer, h.outer, h.outer_by_length, h.outer_by_angle)
+    p = Tensor(ii_a * to_a * wo - g.aa, ii_a * to_r * wo - g.ar, ii_r * to_a * wo - g.ra, ii_r * to_r * wo - g.rr)
     j = Tensor(p.aa - o.aa + to_a * oi_a, p.ar - o.ar + to_a * oi_r, p.ra - o.ra + to_r * oi_a, p.rr - o.rr + to_r * oi_r)
     x = Tensor(e.aa - to_a * oi_a, e.ar - to_a * oi_r, e.ra - to_r * oi_a, e.rr - to_r * oi_r)
-    m = Tensor(viscous * na**2, viscous * na * nr, viscous * na * nr, viscous * nr**2)
-    turn = work[BY_TURN, z + k]
-    return _Balance(e, p, x, j, m, Pair(turn * nr, turn * -na))
+    m = Tensor(viscous * na * na, viscous * na * nr, viscous * na * nr, viscous * nr * nr)
+    return Balance(e, p, x, j, m, Pair(h.inner_by_turn * nr, -h.inner_by_turn * na))
 
 
-@jit(TENSOR(CONTACT, int64, MATRIX), inline=True)
-def contact_matrix(contact, c, work):
-    """d(f n + h t)/dx of contact c for x = s n."""
+@jit(LANES_TENSOR(CONTACT, LANES, LANES, LANES), inline=True)
+def contact_matrix(contact, h, h_s, h_a):
+    """d(f n + h t)/dx of a contact for x = s n; h by the length and by the angle."""
     k, f = contact.stiffness, contact.force
-    h, h_s, h_a = work[TANGENTIAL, c], work[BY_LENGTH, c], work[BY_ANGLE, c]
-    w = 1.0 / contact.length if contact.length > 0.0 else 0.0
+    w = where(contact.length > 0.0, 1.0 / contact.length, 0.0)
     na, nr = contact.axial, contact.radial
     ta, tr = nr, -na
     tt, nt = (f + h_a) * w, -h * w

@@ -12,251 +12,260 @@ import numpy as np
 from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
+from raceway.core.lanes import LANES, LIVE, WIDTH, any_of, larger, live_of, put, root, spread, take, where
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels import rolling as at
 from raceway.core.ring.kernels import tensors
-from raceway.core.ring.kernels.layout import SEAT, Seat, add_ball, add_couple, move_centres, normal_forces, offsets_of, place
-from raceway.core.ring.kernels.rolling import BallContact, add_gyroscopic, contact_matrix, linear_balance, roll, rub
+from raceway.core.ring.kernels.layout import (
+    BALL_CENTRE,
+    BALL_VELOCITY,
+    add_couples,
+    approach,
+    move_centres,
+    normal_forces,
+    offsets_of,
+    place,
+    ring_force,
+    ring_tangent,
+)
+from raceway.core.ring.kernels.rolling import BallContact, free_rolling, linear_balance, rub, with_gyroscopic
+from raceway.core.ring.kernels.tensors import pair_of, put_pair, put_tensors
 from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
-
-
-@jit(at.CONTACTS(int64, float64, MATRIX), inline=True)
-def _contacts_of(k, ball_gain, work):
-    """Both contacts of ball k as the law has left them."""
-    z = work.shape[1] // 2
-    inner = -work[rows.FORCE_BY_GAP, k] - ball_gain * work[rows.FORCE_BY_RATE, k]
-    outer = -work[rows.FORCE_BY_GAP, z + k] - ball_gain * work[rows.FORCE_BY_RATE, z + k]
-    return (
-        BallContact(work[at.INNER, k], work[at.INNER, z + k], work[at.LENGTH, k], work[rows.CONTACT_FORCE, k], inner),
-        BallContact(
-            work[at.OUTER, k], work[at.OUTER, z + k], work[at.LENGTH, z + k], work[rows.CONTACT_FORCE, z + k], outer
-        ),
-    )
-
 
 #: Steps after which a ball begins anew; after twice as many its imbalance has to shrink at every step.
 PATIENCE = 60
+_ITERATIONS = 300
+#: Rows that the iteration has done with, used again for what goes to the ring: force [N], its derivatives by e and its velocity
+#: [N/m, N s/m] (two rows each); what ``layout.add_couples`` reads, of forces and of dampings (three rows each).
+_CARRIED, _STIFF, _VISCOUS, _COUPLES, _VISCOUS_COUPLES = 8, 5, 21, 33, 36
 
 
-@jit(boolean(int64, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX), inline=True)
-def _first_guess(k, q, scalars, table, ball, work):
+@jit(boolean(int64, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
+def _first_guess(k, q, scalars, table, ball, ball_history, work):
     """Begin with ball k; False where nothing presses it on either race: it then lies midway, without forces."""
     z = table.shape[0]
     li, lo = offsets_of(k, scalars, table)
-    ea, er, shift = work[at.CENTRE, k], work[at.CENTRE, z + k], work[rows.SHIFT, z + k]
+    ea, er, shift = work[BALL_CENTRE, k], work[BALL_CENTRE, z + k], work[rows.SHIFT, z + k]
     turn = q[3] * work[at.DIRECTION, z + k] - q[4] * work[at.DIRECTION, k]
     turn_arc = (scalars[ring.OFFSET_INNER] + 0.5 * scalars[ring.DIAMETER]) * table[k, ring.SIDE] * turn
     length = np.sqrt(ea * ea + er * er)
     room = li + lo + work[rows.SHIFT, k] + shift
-    work[at.TURNED, z + k] = turn_arc
-    work[at.SLOPE, k], work[at.STATE, z + k], work[at.MERIT, z + k] = 0.0, at.MOVES, np.inf
-    work[at.STEP, k], work[at.STEP, z + k] = 0.0, 0.0
-    # Of gyroscopic moments alone.
-    work[at.BY_OTHER_ANGLE, k], work[at.BY_OTHER_ANGLE, z + k] = 0.0, 0.0
-    work[at.COUPLE_BY_ANGLE, z + k], work[at.OUTER_BY_INNER_LENGTH, k] = 0.0, 0.0
+    work[at.CENTRIFUGAL, k], work[at.TURNED, z + k] = table[k, ring.CENTRIFUGAL], turn_arc
+    work[rows.OFFSET, k], work[rows.OFFSET, z + k] = li, lo
+    work[at.STATE, z + k], work[rows.PLACE, k], work[rows.PLACE, z + k] = at.MOVES, ball[k, 0], ball[k, 1]
+    for c in range(2):
+        work[rows.HISTORY, k + c * z], work[at.COMMITTED, k + c * z] = ball_history[k, c], ball_history[k, ring.SLIPS + c]
+        work[at.SLIP, k + c * z] = ball[k, ring.SLIPS + c]
+    _forget(k, z, work)
     if table[k, ring.CENTRIFUGAL] == 0.0 and length <= room:
         scale, angle = (lo + shift + 0.5 * (length - room)) / length, np.arctan2(ea, er)
-        ball[k, 0], ball[k, 1] = scale * ea, scale * er
+        work[rows.PLACE, k], work[rows.PLACE, z + k] = scale * ea, scale * er
         at_i, at_o = scalars[ring.OFFSET_INNER] * angle, scalars[ring.OFFSET_OUTER] * angle
-        ball[k, ring.SLIPS], ball[k, ring.SLIPS + 1] = at_i - turn_arc, at_o
+        work[at.SLIP, k], work[at.SLIP, z + k] = at_i - turn_arc, at_o
         work[at.STATE, z + k] = at.LOOSE
         return False
     if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 or ball[k, 0] ** 2 + ball[k, 1] ** 2 <= lo * lo:
         if length > li + lo:
             scale = (lo + table[k, ring.OUTER_SHARE] * (length - li - lo)) / length
-            ball[k, 0], ball[k, 1] = scale * ea, scale * er
+            work[rows.PLACE, k], work[rows.PLACE, z + k] = scale * ea, scale * er
         else:
-            _seat_outside(k, scalars, table, ball, work)
+            _seat_outside(k, table, work)
     return True
 
 
-@jit(void(int64, VECTOR, MATRIX, MATRIX, MATRIX))
-def _seat_outside(k, scalars, table, ball, work):
+@jit(void(int64, int64, MATRIX))
+def _forget(k, z, work):
+    """Begin with the steps of ball k anew."""
+    work[at.SLOPE, k], work[at.MERIT, z + k], work[at.STEP, k], work[at.STEP, z + k] = 0.0, np.inf, 0.0, 0.0
+
+
+@jit(void(int64, MATRIX, MATRIX))
+def _seat_outside(k, table, work):
     """Put ball k where its centrifugal force alone holds it, on the outer race, and forget its steps."""
     z = table.shape[0]
     depth = (table[k, ring.CENTRIFUGAL] / table[k, ring.OUTER_FACTOR]) ** (2.0 / 3.0)
-    ball[k, 0], ball[k, 1] = 0.0, offsets_of(k, scalars, table)[1] + depth
-    work[at.SLOPE, k], work[at.MERIT, z + k] = 0.0, np.inf
-    work[at.STEP, k], work[at.STEP, z + k] = 0.0, 0.0
+    work[rows.PLACE, k], work[rows.PLACE, z + k] = 0.0, work[rows.OFFSET, z + k] + depth
+    _forget(k, z, work)
 
 
-@jit(void(int64, VECTOR, MATRIX, MATRIX, float64, MATRIX, MATRIX), inline=True)
-def _approach(k, scalars, table, ball, ball_gain, ball_history, work):
-    """Directions, lengths, gaps and gap rates of both contacts of ball k."""
-    z = ball.shape[0]
-    pa, pr = ball[k, 0], ball[k, 1]
-    xa, xr = work[at.CENTRE, k] - pa, work[at.CENTRE, z + k] - pr
-    so, si = np.sqrt(pa * pa + pr * pr), np.sqrt(xa * xa + xr * xr)
-    no_a, no_r = pa / so, pr / so
-    ni_a, ni_r = (xa / si, xr / si) if si > 0.0 else (no_a, no_r)
-    own_a, own_r = ball_gain * pa + ball_history[k, 0], ball_gain * pr + ball_history[k, 1]
-    rate_i = -(ni_a * (work[at.VELOCITY, k] - own_a) + ni_r * (work[at.VELOCITY, z + k] - own_r))
-    rate_o = -(no_a * own_a + no_r * own_r)
-    li, lo = offsets_of(k, scalars, table)
-    gap_i, gap_o = li - si + work[rows.SHIFT, k], lo - so + work[rows.SHIFT, z + k]
-    rate_i, rate_o = rate_i + work[rows.SHIFT_RATE, k], rate_o + work[rows.SHIFT_RATE, z + k]
-    work[at.LENGTH, k], work[at.LENGTH, z + k] = si, so
-    work[at.INNER, k], work[at.INNER, z + k] = ni_a, ni_r
-    work[at.OUTER, k], work[at.OUTER, z + k] = no_a, no_r
-    work[rows.GAP, k], work[rows.GAP, z + k] = gap_i, gap_o
-    work[rows.GAP_RATE, k], work[rows.GAP_RATE, z + k] = rate_i, rate_o
-
-
-@jit(tensors.PAIR(int64, at.CONTACTS, float64, float64, float64, MATRIX), inline=True)
-def _ball_step(k, contacts, ra, rr, longest, work):
+@jit(tensors.LANES_PAIR(at.CONTACTS, at.TANGENTIALS, LANES, LANES, LANES), inline=True)
+def _ball_step(contacts, h, ra, rr, longest):
     """-J^-1 R [m], regular where J is not, and no longer than ``longest``.
 
     J = dR/dp = -G_i - G_o + cross terms through the moment's dependence on both angles.
     """
-    z = work.shape[1] // 2
-    inner, outer = contacts
-    ti_a, ti_r, to_a, to_r = inner.radial, -inner.axial, outer.radial, -outer.axial
-    wi, wo = (1.0 / inner.length if inner.length > 0.0 else 0.0), 1.0 / outer.length
-    cross_i, cross_o = work[at.BY_OTHER_ANGLE, k], work[at.BY_OTHER_ANGLE, z + k]
-    grows = work[at.OUTER_BY_INNER_LENGTH, k]
-    oi_a, oi_r = cross_o * ti_a * wi + grows * inner.axial, cross_o * ti_r * wi + grows * inner.radial
-    gi, go = contact_matrix(inner, k, work), contact_matrix(outer, z + k, work)
-    jaa = -gi.aa - go.aa + cross_i * ti_a * to_a * wo + to_a * oi_a
-    jar = -gi.ar - go.ar + cross_i * ti_a * to_r * wo + to_a * oi_r
-    jra = -gi.ra - go.ra + cross_i * ti_r * to_a * wo + to_r * oi_a
-    jrr = -gi.rr - go.rr + cross_i * ti_r * to_r * wo + to_r * oi_r
-    det = jaa * jrr - jar * jra
-    if not abs(det) > 1e-14 * (jaa + jrr) ** 2:
-        shift = -1e-7 * abs(jaa + jrr) - 1.0
-        jaa += shift
-        jrr += shift
-        det = jaa * jrr - jar * jra
-    axial, radial = -(jrr * ra - jar * rr) / det, -(jaa * rr - jra * ra) / det
-    size = np.sqrt(axial * axial + radial * radial)
-    scale = longest / size if size > longest else 1.0
+    j = linear_balance(contacts, contacts[0].stiffness, spread(0.0), h).j
+    trace, det = j.aa + j.rr, j.aa * j.rr - j.ar * j.ra
+    shift = where(larger(det, -det) > 1e-14 * trace * trace, 0.0, -1e-7 * larger(trace, -trace) - 1.0)
+    jaa, jrr = j.aa + shift, j.rr + shift
+    inverse = -1.0 / (jaa * jrr - j.ar * j.ra)
+    axial, radial = (jrr * ra - j.ar * rr) * inverse, (jaa * rr - j.ra * ra) * inverse
+    size = root(axial * axial + radial * radial)
+    scale = where(size > longest, longest / size, 1.0)
     return tensors.Pair(axial * scale, radial * scale)
 
 
-@jit(boolean(int64, int64, at.CONTACTS, float64, MATRIX, MATRIX, MATRIX), inline=True)
-def _settles(k, attempt, contacts, lo, table, ball, work):
-    """Move ball k by one step; whether that was the last one, small enough to leave nothing but second order.
+@jit(at.CONTACTS(int64, LIVE, tensors.LANES_PAIR, tensors.LANES_PAIR, tensors.LANES_PAIR, float64, MATRIX), inline=True)
+def _contacts_of(k, live, force, by_gap, by_rate, ball_gain, work):
+    """Both contacts of the balls from k on, of forces and their derivatives of the inner and the outer one."""
+    (ia, ir), (oa, orr) = pair_of(work, ring.INNER, k, live), pair_of(work, ring.OUTER, k, live)
+    si, so = pair_of(work, ring.LENGTH, k, live)
+    inner, outer = -by_gap.axial - ball_gain * by_rate.axial, -by_gap.radial - ball_gain * by_rate.radial
+    return BallContact(ia, ir, si, force.axial, inner), BallContact(oa, orr, so, force.radial, outer)
+
+
+@jit(LIVE(int64, LIVE, int64, float64, VECTOR, MATRIX), inline=True)
+def _moving(k, live, attempt, ball_gain, scalars, work):
+    """Move the balls from k on that have not settled by one step; those that go on.
 
     With n = (sin a, cos a) the direction of a contact at its angle a and t = (cos a, -sin a), the imbalance of a ball at p
     is R = f_i n_i + h_i t_i - f_o n_o - h_o t_o + F_c. It has no potential: a step that goes beyond the balance is halved,
     balls that run in circles begin anew, and those that fail again have to come closer at every step.
     """
-    z = table.shape[0]
-    inner, outer = contacts
-    hi, ho = work[at.TANGENTIAL, k], work[at.TANGENTIAL, z + k]
-    ra = inner.force * inner.axial + hi * inner.radial - outer.force * outer.axial - ho * outer.radial
-    rr = inner.force * inner.radial - hi * inner.axial - outer.force * outer.radial + ho * outer.axial
-    rr += table[k, ring.CENTRIFUGAL]
-    size = np.sqrt(ra * ra + rr * rr)
-    da, dr, slope = work[at.STEP, k], work[at.STEP, z + k], work[at.SLOPE, k]
-    too_far = slope > 0.0 and -(ra * da + rr * dr) > 0.9 * slope
-    if attempt > 2 * PATIENCE and np.sqrt(da * da + dr * dr) > 1e-13:
-        # Twice in circles: descend at every step instead.
-        too_far = size > 0.9999 * work[at.MERIT, z + k]
-    if too_far:
-        # Beyond the balance along the last step by more than it began with: go half-way back.
-        da, dr = 0.5 * da, 0.5 * dr
-        work[at.STEP, k], work[at.STEP, z + k], work[at.SLOPE, k] = da, dr, 0.5 * slope
-        ball[k, 0] -= da
-        ball[k, 1] -= dr
-        return False
-    da, dr = _ball_step(k, contacts, ra, rr, 0.2 * lo, work)
-    ball[k, 0] += da
-    ball[k, 1] += dr
-    work[at.STEP, k], work[at.STEP, z + k], work[at.SLOPE, k] = da, dr, ra * da + rr * dr
-    work[at.MERIT, z + k] = size
-    if not np.sqrt(da * da + dr * dr) <= 1e-10 * max(-work[rows.GAP, k], -work[rows.GAP, z + k], 1e-12):
-        return False
-    # Forces and tangents are kept from before this step, which ``_add_settled`` adds to the forces.
-    work[at.KEPT_FORCE, k], work[at.KEPT_FORCE, z + k] = inner.force, outer.force
-    work[at.KEPT_BY_GAP, k], work[at.KEPT_BY_GAP, z + k] = work[rows.FORCE_BY_GAP, k], work[rows.FORCE_BY_GAP, z + k]
-    work[at.KEPT_BY_RATE, k], work[at.KEPT_BY_RATE, z + k] = work[rows.FORCE_BY_RATE, k], work[rows.FORCE_BY_RATE, z + k]
-    work[at.STATE, z + k] = at.SETTLED
-    return True
-
-
-@jit(boolean(int64, float64, SEAT, MATRIX, VECTOR, MATRIX, MATRIX), inline=True)
-def _add_settled(k, ball_gain, seat, work, f, K, C):
-    """Add ball k to f (5,), K and C (5, 5), and keep for elastic bodies what they ask for; False where J has no inverse."""
     z = work.shape[1] // 2
-    contacts = _contacts_of(k, ball_gain, work)
-    inner, outer = contacts
+    slope, state = pair_of(work, at.SLOPE, k, live)
+    active = live & (state == at.MOVES)
+    force, (gap_i, gap_o) = pair_of(work, rows.CONTACT_FORCE, k, live), pair_of(work, rows.GAP, k, live)
+    by_gap, by_rate = pair_of(work, rows.FORCE_BY_GAP, k, live), pair_of(work, rows.FORCE_BY_RATE, k, live)
+    contacts = _contacts_of(k, live, force, by_gap, by_rate, ball_gain, work)
+    (inner, outer), (fi, fo) = contacts, force
+    h, slips = free_rolling(), pair_of(work, at.SLIP, k, live)
+    if scalars[ring.FRICTION] != 0.0:
+        h, slips = rub(k, live, contacts, scalars, work)
+    if scalars[ring.GYROSCOPIC] != 0.0:
+        h = with_gyroscopic(k, live, contacts, h, scalars, work)
+    ra = fi * inner.axial + h.inner * inner.radial - fo * outer.axial - h.outer * outer.radial
+    rr = fi * inner.radial - h.inner * inner.axial - fo * outer.radial + h.outer * outer.axial
+    rr = rr + take(work, at.CENTRIFUGAL, k, live)
+    size, (da, dr) = root(ra * ra + rr * rr), pair_of(work, at.STEP, k, live)
+    # Beyond the balance along the last step by more than it began with: go half-way back.
+    too_far = (slope > 0.0) & (-(ra * da + rr * dr) > 0.9 * slope)
+    if attempt > 2 * PATIENCE:
+        # Twice in circles: descend at every step instead.
+        long = root(da * da + dr * dr) > 1e-13
+        too_far = (long & (size > 0.9999 * take(work, at.MERIT, z + k, live))) | (~long & too_far)
+    back, (pa, pr) = active & too_far, pair_of(work, rows.PLACE, k, live)
+    sa, sr = _ball_step(contacts, h, ra, rr, 0.2 * take(work, rows.OFFSET, z + k, live))
+    ends = active & ~back & (root(sa * sa + sr * sr) <= 1e-10 * larger(larger(-gap_i, -gap_o), 1e-12))
+    da, dr = where(back, 0.5 * da, sa), where(back, 0.5 * dr, sr)
+    put_pair(work, rows.PLACE, k, active, where(back, pa - da, pa + da), where(back, pr - dr, pr + dr))
+    put_pair(work, at.STEP, k, active, da, dr)
+    put_pair(work, at.SLOPE, k, active, where(back, 0.5 * slope, ra * da + rr * dr), where(ends, at.SETTLED, at.MOVES))
+    put(work, at.MERIT, z + k, active & ~back, size)
+    if any_of(ends):
+        # Forces and tangents are kept from before this step, which ``_without_tangent`` adds to the forces.
+        put_pair(work, at.KEPT_FORCE, k, ends, fi, fo)
+        put_pair(work, at.KEPT_BY_GAP, k, ends, by_gap.axial, by_gap.radial)
+        put_pair(work, at.KEPT_BY_RATE, k, ends, by_rate.axial, by_rate.radial)
+        put_pair(work, at.SLIP, k, ends, slips.axial, slips.radial)
+        at.put_tangential(work, k, ends, h)
+    return active & ~ends
+
+
+@jit(LIVE(int64, LIVE, float64, MATRIX), inline=True)
+def _without_tangent(k, live, ball_gain, work):
+    """What the balls from k on do to the ring, and what elastic bodies ask for; those balls that have no tangent."""
+    state, kept = take(work, at.STATE, work.shape[1] // 2 + k, live), pair_of(work, at.KEPT_FORCE, k, live)
+    by_gap, by_rate = pair_of(work, at.KEPT_BY_GAP, k, live), pair_of(work, at.KEPT_BY_RATE, k, live)
+    pressed = live & (state == at.SETTLED) & ~((kept.axial == 0.0) & (by_gap.axial == 0.0))
+    contacts = _contacts_of(k, live, kept, by_gap, by_rate, ball_gain, work)
+    (inner, outer), h, none = contacts, at.tangential_of(work, k, live), spread(0.0)
     # Forces are those before the ball's last step: with what that changes they are off by its square.
-    b, h, da, dr = linear_balance(k, contacts, work), work[at.TANGENTIAL, k], work[at.STEP, k], work[at.STEP, z + k]
-    force = tensors.Pair(
-        inner.force * inner.axial + h * inner.radial + b.p.aa * da + b.p.ar * dr,
-        inner.force * inner.radial + h * -inner.axial + b.p.ra * da + b.p.rr * dr,
-    )
-    inner_closing, outer_closing = inner.axial * da + inner.radial * dr, outer.axial * da + outer.radial * dr
-    work[rows.CONTACT_FORCE, k] = max(inner.force - inner.stiffness * inner_closing, 0.0)
-    work[rows.CONTACT_FORCE, z + k] = max(outer.force + outer.stiffness * outer_closing, 0.0)
+    b, (da, dr) = linear_balance(contacts, -by_gap.axial, -by_rate.axial, h), pair_of(work, at.STEP, k, live)
+    force_a = inner.force * inner.axial + h.inner * inner.radial + b.p.aa * da + b.p.ar * dr
+    force_r = inner.force * inner.radial - h.inner * inner.axial + b.p.ra * da + b.p.rr * dr
+    closed_i = inner.force - inner.stiffness * (inner.axial * da + inner.radial * dr)
+    closed_o = outer.force + outer.stiffness * (outer.axial * da + outer.radial * dr)
+    # Balls that the inner race does not press keep their outer force, loose ones have none.
+    closed_o = where(pressed, larger(closed_o, 0.0), where(state == at.SETTLED, kept.radial, 0.0))
+    put_pair(work, rows.CONTACT_FORCE, k, live, where(pressed, larger(closed_i, 0.0), 0.0), closed_o)
     det = b.j.aa * b.j.rr - b.j.ar * b.j.ra
-    if det == 0.0:
-        return False
+    inverse = where(det == 0.0, 0.0, 1.0 / det)
     t = tensors.times_adjugate(b.p, b.j)
-    t = tensors.Tensor(t.aa / det, t.ar / det, t.ra / det, t.rr / det)
+    t = tensors.Tensor(t.aa * inverse, t.ar * inverse, t.ra * inverse, t.rr * inverse)
     # The couple by e, and by the ball's place; turning the section moves both forces alike.
-    stretch, angle = work[at.COUPLE_BY_LENGTH, z + k], work[at.COUPLE_BY_ANGLE, k] * (1.0 / inner.length)
-    by_e = tensors.Pair(stretch * inner.axial + angle * inner.radial, stretch * inner.radial + angle * -inner.axial)
-    angle = work[at.COUPLE_BY_ANGLE, z + k] * (1.0 / outer.length)
-    by_place = tensors.Pair(angle * outer.radial - by_e.axial, angle * -outer.axial - by_e.radial)
-    u, couple = tensors.row_times_adjugate(by_place, b.j), work[at.COUPLE, k] + by_place.axial * da + by_place.radial * dr
-    u = tensors.Pair(u.axial / det, u.radial / det)
-    force_by_turn, couple_by_centre = tensors.less_column(b.by_turn, t, b.by_turn), tensors.less_row(by_e, u, b.x)
-    couple_by_turn = work[at.COUPLE_BY_TURN, k] - u.axial * b.by_turn.axial - u.radial * b.by_turn.radial
-    add_couple(seat, couple, force_by_turn, couple_by_centre, couple_by_turn, f, K)
-    add_couple(seat, 0.0, tensors.NOTHING, tensors.less_row(tensors.NOTHING, u, b.m), 0.0, f, C)
-    by_centre, by_speed = tensors.less(b.e, t, b.x), tensors.less(b.m, t, b.m)
+    stretch, angle = h.couple_by_length, h.couple_by_inner / where(inner.length > 0.0, inner.length, 1.0)
+    by_e = tensors.Pair(stretch * inner.axial + angle * inner.radial, stretch * inner.radial - angle * inner.axial)
+    angle = h.couple_by_outer / outer.length
+    by_place = tensors.Pair(angle * outer.radial - by_e.axial, -angle * outer.axial - by_e.radial)
+    u, couple = tensors.row_times_adjugate(by_place, b.j), h.couple + by_place.axial * da + by_place.radial * dr
+    u = tensors.Pair(u.axial * inverse, u.radial * inverse)
+    by_turn, by_centre = tensors.less_column(b.by_turn, t, b.by_turn), tensors.less_row(by_e, u, b.x)
+    couple_by_turn = h.couple_by_turn - u.axial * b.by_turn.axial - u.radial * b.by_turn.radial
+    by_velocity = tensors.less_row(tensors.Pair(none, none), u, b.m)
+    stiffness, damping = tensors.less(b.e, t, b.x), tensors.less(b.m, t, b.m)
+    for row in (_CARRIED, _STIFF, _STIFF + 1, _VISCOUS, _VISCOUS + 1):
+        put_pair(work, row, k, live, none, none)
+    for row in range(_COUPLES, _VISCOUS_COUPLES + 3):
+        put_pair(work, row, k, live, none, none)
+    put_pair(work, _CARRIED, k, pressed, force_a, force_r)
+    put_tensors(work, _STIFF, k, pressed, stiffness)
+    put_tensors(work, _VISCOUS, k, pressed, damping)
+    put_pair(work, _COUPLES, k, pressed, couple, couple_by_turn)
+    put_pair(work, _COUPLES + 1, k, pressed, by_turn.axial, by_turn.radial)
+    put_pair(work, _COUPLES + 2, k, pressed, by_centre.axial, by_centre.radial)
+    put_pair(work, _VISCOUS_COUPLES + 2, k, pressed, by_velocity.axial, by_velocity.radial)
     if work.shape[0] > rows.WORK_ROWS:
-        work[rows.FORCE, k], work[rows.FORCE, z + k] = force
-        tensors.put_tensor(by_centre, work, rows.FORCE_BY_CENTRE, k)
-        tensors.put_tensor(by_speed, work, rows.FORCE_BY_SPEED, k)
-        work[rows.FORCE_BY_TURN, k], work[rows.FORCE_BY_TURN, z + k] = force_by_turn
-        work[rows.COUPLE_BY_CENTRE, k], work[rows.COUPLE_BY_CENTRE, z + k] = couple_by_centre
-        _keep_for_bodies(k, contacts, b, t, u, work)
-    add_ball(seat, force, by_centre, by_speed, f, K, C)
-    return True
+        for row in range(rows.WORK_ROWS, rows.WORK_ROWS + rows.KERNEL_ROWS):
+            put_pair(work, row, k, live, none, none)
+        put_pair(work, rows.FORCE, k, pressed, force_a, force_r)
+        put_tensors(work, rows.FORCE_BY_CENTRE, k, pressed, stiffness)
+        put_tensors(work, rows.FORCE_BY_SPEED, k, pressed, damping)
+        put_pair(work, rows.FORCE_BY_TURN, k, pressed, by_turn.axial, by_turn.radial)
+        put_pair(work, rows.COUPLE_BY_CENTRE, k, pressed, by_centre.axial, by_centre.radial)
+        _keep_for_bodies(k, pressed, contacts, h, -by_gap.axial, -by_rate.axial, b, t, u, inverse, work)
+    return pressed & (det == 0.0)
 
 
-@jit(void(int64, at.CONTACTS, at.BALANCE, tensors.TENSOR, tensors.PAIR, MATRIX))
-def _keep_for_bodies(k, contacts, b, t, u, work):
-    """Contact forces by e, its velocity, shifts and turn; the ball's force on the ring and its couple by shifts.
+@jit(
+    void(
+        int64,
+        LIVE,
+        at.CONTACTS,
+        at.TANGENTIALS,
+        LANES,
+        LANES,
+        at.BALANCE,
+        tensors.LANES_TENSOR,
+        tensors.LANES_PAIR,
+        LANES,
+        MATRIX,
+    )
+)
+def _keep_for_bodies(k, pressed, contacts, h, elastic, viscous, b, t, u, inverse, work):
+    """Contact forces by e, its velocity, shifts and turn; the balls' forces on the ring and their couples by shifts.
 
     Both contacts have dQ = g (dR), g = dQ/dp J^-1, on top of what they feel at a ball that stays where it is.
     """
-    z = work.shape[1] // 2
-    det = b.j.aa * b.j.rr - b.j.ar * b.j.ra
     (na, nr, _, _, ki), (oa, orr, _, _, ko) = contacts
     gi, go = tensors.row_times_adjugate(tensors.Pair(na, nr), b.j), tensors.row_times_adjugate(tensors.Pair(oa, orr), b.j)
-    gi, go = (
-        tensors.Pair(-ki * gi.axial / det, -ki * gi.radial / det),
-        tensors.Pair(ko * go.axial / det, ko * go.radial / det),
-    )
-    elastic, viscous = -work[rows.FORCE_BY_GAP, k], -work[rows.FORCE_BY_RATE, k]
-    work[rows.BY_AXIAL, k], work[rows.BY_RADIAL, k] = tensors.less_row(tensors.Pair(elastic * na, elastic * nr), gi, b.x)
-    work[rows.BY_AXIAL, z + k], work[rows.BY_RADIAL, z + k] = tensors.less_row(tensors.NOTHING, go, b.x)
-    work[rows.BY_AXIAL_SPEED, k], work[rows.BY_RADIAL_SPEED, k] = tensors.less_row(
-        tensors.Pair(viscous * na, viscous * nr), gi, b.m
-    )
-    work[rows.BY_AXIAL_SPEED, z + k], work[rows.BY_RADIAL_SPEED, z + k] = tensors.less_row(tensors.NOTHING, go, b.m)
+    gi = tensors.Pair(-ki * gi.axial * inverse, -ki * gi.radial * inverse)
+    go, none = tensors.Pair(ko * go.axial * inverse, ko * go.radial * inverse), tensors.Pair(spread(0.0), spread(0.0))
+    inner, outer = tensors.less_row(tensors.Pair(elastic * na, elastic * nr), gi, b.x), tensors.less_row(none, go, b.x)
+    put_pair(work, rows.BY_AXIAL, k, pressed, inner.axial, outer.axial)
+    put_pair(work, rows.BY_RADIAL, k, pressed, inner.radial, outer.radial)
+    inner, outer = tensors.less_row(tensors.Pair(viscous * na, viscous * nr), gi, b.m), tensors.less_row(none, go, b.m)
+    put_pair(work, rows.BY_AXIAL_SPEED, k, pressed, inner.axial, outer.axial)
+    put_pair(work, rows.BY_RADIAL_SPEED, k, pressed, inner.radial, outer.radial)
     # The ring's force and R by the inner shift, R by the outer one.
-    hi, ho, grows = work[at.BY_SHIFT, k], work[at.BY_SHIFT, z + k], work[at.OUTER_BY_INNER_LENGTH, k]
-    by_shift = tensors.Pair(-ki * na + hi * nr, -ki * nr + hi * -na)
-    ri = tensors.Pair(by_shift.axial + grows * orr, by_shift.radial + grows * -oa)
-    ro = tensors.Pair(ko * oa - ho * orr, ko * orr - ho * -oa)
-    work[rows.BY_OWN, k] = -ki - gi.axial * ri.axial - gi.radial * ri.radial
-    work[rows.BY_OTHER, k] = -gi.axial * ro.axial - gi.radial * ro.radial
-    work[rows.BY_OTHER, z + k] = -go.axial * ri.axial - go.radial * ri.radial
-    work[rows.BY_OWN, z + k] = -ko - go.axial * ro.axial - go.radial * ro.radial
-    work[rows.BY_TURN, k] = -gi.axial * b.by_turn.axial - gi.radial * b.by_turn.radial
-    work[rows.BY_TURN, z + k] = -go.axial * b.by_turn.axial - go.radial * b.by_turn.radial
-    work[rows.AXIAL_BY_SHIFT, k], work[rows.RADIAL_BY_SHIFT, k] = tensors.less_column(by_shift, t, ri)
-    work[rows.AXIAL_BY_SHIFT, z + k], work[rows.RADIAL_BY_SHIFT, z + k] = tensors.less_column(tensors.NOTHING, t, ro)
-    work[rows.COUPLE_BY_SHIFT, k] = work[at.COUPLE_BY_SHIFT, k] - u.axial * ri.axial - u.radial * ri.radial
-    work[rows.COUPLE_BY_SHIFT, z + k] = -u.axial * ro.axial - u.radial * ro.radial
-
-
-_ITERATIONS = 300
+    by_shift = tensors.Pair(h.inner_by_shift * nr - ki * na, -h.inner_by_shift * na - ki * nr)
+    ri = tensors.Pair(by_shift.axial + h.grows * orr, by_shift.radial - h.grows * oa)
+    ro = tensors.Pair(ko * oa - h.outer_by_shift * orr, ko * orr + h.outer_by_shift * oa)
+    own_i, own_o = -ki - gi.axial * ri.axial - gi.radial * ri.radial, -ko - go.axial * ro.axial - go.radial * ro.radial
+    put_pair(work, rows.BY_OWN, k, pressed, own_i, own_o)
+    by_o, by_i = -gi.axial * ro.axial - gi.radial * ro.radial, -go.axial * ri.axial - go.radial * ri.radial
+    put_pair(work, rows.BY_OTHER, k, pressed, by_o, by_i)
+    turn_i, turn_o = (
+        gi.axial * b.by_turn.axial + gi.radial * b.by_turn.radial,
+        go.axial * b.by_turn.axial + go.radial * b.by_turn.radial,
+    )
+    put_pair(work, rows.BY_TURN, k, pressed, -turn_i, -turn_o)
+    inner, outer = tensors.less_column(by_shift, t, ri), tensors.less_column(none, t, ro)
+    put_pair(work, rows.AXIAL_BY_SHIFT, k, pressed, inner.axial, outer.axial)
+    put_pair(work, rows.RADIAL_BY_SHIFT, k, pressed, inner.radial, outer.radial)
+    couple = h.couple_by_shift - u.axial * ri.axial - u.radial * ri.radial
+    put_pair(work, rows.COUPLE_BY_SHIFT, k, pressed, couple, -u.axial * ro.axial - u.radial * ro.radial)
 
 
 @jit(SYSTEM)
@@ -265,58 +274,42 @@ def rigid_tangential(t, q, v, balls, contacts, constants, response):
     ball, ball_gain, ball_history = balls
     scalars, table = constants
     f, K, C, work = response
-    force = work[rows.CONTACT_FORCE]
-    by_gap, by_rate = work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE]
-    elastic_bodies = work.shape[0] > rows.WORK_ROWS
-    z = table.shape[0]
-    place(t, q, v, constants, work, (at.DIRECTION, at.CENTRE, at.VELOCITY))
+    z, arm, elastic_bodies = table.shape[0], scalars[ring.TILT_ARM], work.shape[0] > rows.WORK_ROWS
+    place(t, q, v, constants, work, (at.DIRECTION, BALL_CENTRE, BALL_VELOCITY))
     if elastic_bodies:
-        move_centres(work, at.CENTRE, at.VELOCITY)
-    moving = 0
+        move_centres(work, BALL_CENTRE, BALL_VELOCITY)
+    moving = False
     for k in range(z):
-        moving += _first_guess(k, q, scalars, table, ball, work)
+        moving |= _first_guess(k, q, scalars, table, ball, ball_history, work)
     for attempt in range(_ITERATIONS):
         for k in range(z):
             if attempt == PATIENCE and work[at.STATE, z + k] == at.MOVES:
                 # Forces without a potential can lead in circles: once more from the seat on the outer race.
-                _seat_outside(k, scalars, table, ball, work)
+                _seat_outside(k, table, work)
+        for k in range(0, z, WIDTH):
             # Directions of balls that have settled are those before their last step, as their forces are.
-            if work[at.STATE, z + k] != at.SETTLED:
-                _approach(k, scalars, table, ball, ball_gain, ball_history, work)
+            live = live_of(k, z)
+            approach(k, live & ~(take(work, at.STATE, z + k, live) == at.SETTLED), ball_gain, work)
         normal_forces(contacts, scalars, work)
-        for k in range(z):
-            if work[at.STATE, z + k] == at.MOVES:
-                sides = _contacts_of(k, ball_gain, work)
-                if scalars[ring.FRICTION] != 0.0:
-                    rub(k, sides, scalars, ball, ball_history, work)
-                else:
-                    roll(k, work)
-                if scalars[ring.GYROSCOPIC] != 0.0:
-                    add_gyroscopic(k, sides, scalars, work)
-                moving -= _settles(k, attempt, sides, scalars[ring.OFFSET_OUTER], table, ball, work)
-        if moving == 0:
+        moving = False
+        for k in range(0, z, WIDTH):
+            moving |= any_of(_moving(k, live_of(k, z), attempt, ball_gain, scalars, work))
+        if not moving:
             break
-    if moving > 0:
+    if moving:
         return 1
-    f[:], K[:], C[:] = 0.0, 0.0, 0.0
+    singular = False
+    for k in range(0, z, WIDTH):
+        singular |= any_of(_without_tangent(k, live_of(k, z), ball_gain, work))
+    if singular:
+        return 1
     for k in range(z):
-        if elastic_bodies:
-            for i in range(rows.WORK_ROWS, rows.WORK_ROWS + rows.KERNEL_ROWS):
-                work[i, k], work[i, z + k] = 0.0, 0.0
-        if work[at.STATE, z + k] == at.LOOSE:
-            force[k], force[z + k] = 0.0, 0.0
-            continue
-        for c in (k, z + k):
-            force[c], by_gap[c], by_rate[c] = work[at.KEPT_FORCE, c], work[at.KEPT_BY_GAP, c], work[at.KEPT_BY_RATE, c]
-        if force[k] == 0.0 and by_gap[k] == 0.0:
-            continue
-        seat = Seat(
-            work[at.DIRECTION, k],
-            work[at.DIRECTION, z + k],
-            scalars[ring.TILT_ARM],
-            table[k, ring.SIDE],
-            table[k, ring.LEVER],
-        )
-        if not _add_settled(k, ball_gain, seat, work, f, K, C):
-            return 1
+        for c in range(2):
+            ball[k, c], ball[k, ring.SLIPS + c] = work[rows.PLACE, k + c * z], work[at.SLIP, k + c * z]
+    ring_force(table, arm, work, at.DIRECTION, _CARRIED, f)
+    if K.size > 0:
+        ring_tangent(table, arm, work, at.DIRECTION, _STIFF, K)
+        ring_tangent(table, arm, work, at.DIRECTION, _VISCOUS, C)
+        add_couples(table, arm, work, at.DIRECTION, _VISCOUS_COUPLES, f, C)
+    add_couples(table, arm, work, at.DIRECTION, _COUPLES, f, K)
     return 0
