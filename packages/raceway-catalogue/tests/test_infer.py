@@ -100,6 +100,14 @@ def test_balls_of_whole_millimetres_are_found_where_no_inch_size_fits():
     assert "11 mm" in found.ball_diameter.reason
 
 
+def test_grooves_that_a_maker_grinds_tell_balls_apart():
+    """S 619/5 of GMN: nine balls would fit its ratings in grooves of 0.537 D, which GMN has nowhere; it prints eight."""
+    (one,) = (one for one in lines_by_size(printed_by("gmn")) if one.names[0] == "S 619/5 C TA")
+    found = infer_printed(one)
+    assert found.ball_count.value == one.internals.ball_count == 8
+    assert found.other is not None and found.other["share"] < 0.01
+
+
 def test_a_conformity_is_fitted_to_printed_stiffnesses():
     table = {"bearing": {"preset": "7014C", "conformity_inner": 0.53, "conformity_outer": 0.53, "arrangement": "DB"}}
     pairs = []
