@@ -300,7 +300,7 @@ def rub(k, live, contacts, scalars, work):
 
 
 class Balance(NamedTuple):
-    """A settled ball, linearised: E, P, X and J, M the damping by the velocity of e.
+    """Balls at their balance, linearised: E, P, X and J, M the damping by the velocity of e.
 
     by_turn : derivative of the ball's force by the turn of its section [N]
 
