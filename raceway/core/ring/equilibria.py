@@ -100,11 +100,12 @@ def _definiteness(K, linear, arm, factor, scale):
 def _slow_damping(kernels, contacts, constants, q, places, response, history):
     """C of the response, of a ring that moves while the balls stay, to that of slow motions in which they move, too: see
     ``raceway.core.ring.system.System.damping_at``; ``history`` (Z, b) holds the slips."""
-    stiffest, most_damping, ball, C = 0.0, 0.0, places.copy(), response.C
+    stiffest, most_damping, C = 0.0, 0.0, response.C
     for i in range(3):
         stiffest, most_damping = max(stiffest, response.K[i, i]), max(most_damping, C[i, i])
     if most_damping == 0.0:
         return
+    ball = places.copy()
     rate, columns, still = SLOW * stiffest / most_damping, ball.shape[1], np.zeros(5)
     probe = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), response.work)
     C[:] = 0.0

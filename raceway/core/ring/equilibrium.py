@@ -30,7 +30,7 @@ from raceway.core.contact.damping import stored_energy
 from raceway.core.jit import jit
 from raceway.core.ring.elimination import cholesky_solve, copy_matrix, solve
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP, STORED
-from raceway.core.ring.kernels.layout import CENTRIFUGAL, REST_AXIAL, REST_RADIAL, TILT_ARM, keep_slips, stop
+from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, REST_AXIAL, REST_RADIAL, TILT_ARM, keep_slips, stop
 from raceway.core.signatures import (
     CONSTANTS,
     CONTACTS,
@@ -51,6 +51,8 @@ from raceway.core.signatures import (
 @jit(CONSTANTS(CONSTANTS, float64), allocates=True)
 def at_rest(constants, t):
     """The constants of balls that stand where they are at a time."""
+    if constants.scalars[CAGE] == 0.0:
+        return constants
     scalars, table = constants.scalars.copy(), constants.table.copy()
     stop(t, scalars, table)
     return Constants(scalars, table)
@@ -239,8 +241,6 @@ def solve_equilibrium(forces, linear, tolerance, t, state, response, report):
         for i in range(5):
             trial.q[i] = q[i] + step[i] * scale[i]
         copy_matrix(ball, trial.ball)
-        if np.isnan(potential):
-            potential = _potential_energy(contacts, constants, linear, q, ball, work, energies)
         if forces.system(t, trial.q, still, Balls(trial.ball, 0.0, zeros), contacts, constants, new) != 0:
             radius *= 0.25
             if radius < 1e-18:
@@ -250,6 +250,10 @@ def solve_equilibrium(forces, linear, tolerance, t, state, response, report):
         if _gradient(linear, new.f, trial.q, scale, g_new) < 0.25 * norm:
             potential, radius = np.nan, max(radius, 3.0 * size)
         else:
+            if np.isnan(potential):  # it is seldom asked for: the state before is evaluated again
+                forces.system(t, q, still, Balls(ball, 0.0, zeros), contacts, constants, now)
+                potential = _potential_energy(contacts, constants, linear, q, ball, work, energies)
+                forces.system(t, trial.q, still, Balls(trial.ball, 0.0, zeros), contacts, constants, new)
             energy = _potential_energy(contacts, constants, linear, trial.q, trial.ball, work, energies)
             ratio = _decrease_ratio(potential, energy, H, g, g_new, step)
             radius = _next_radius(ratio, radius, size)
