@@ -474,7 +474,7 @@ def workload(design: Design, processes: int, kept: Path | None, registry: Regist
     seconds, refusal = run_times(len(points), lambda n: design.point(*points[n], registry), registry)
     return Workload(
         str(design.tables["title"]), size, seconds / max(processes, 1), runs=len(points) - refusal, refused=refusal,
-        stored=size - len(points), why_runs="steady orbits, each from its neighbour",
+        stored=size - len(points), why_runs="at most: a compiled loop takes steady motions that are stable and nearly linear",
     )  # fmt: skip
 
 
