@@ -116,12 +116,10 @@ def _moving(k, live, ball_gain, work):
         put_pair(work, KEPT_BY_GAP, k, ends, by_gap_i, by_gap_o)
         put_pair(work, KEPT_BY_RATE, k, ends, by_rate_i, by_rate_o)
         put_pair(work, KEPT_NORMAL, k, ends, ia - (sa - ia * inner) * by_si, ir - (sr - ir * inner) * by_si)
-    half = where(back, 0.5, 0.0)
-    slope = where(back, 0.5 * search, ga * sa + gr * sr)
-    sa, sr = where(back, -half * da, sa), where(back, -half * dr, sr)
-    put_pair(work, rows.PLACE, k, active, pa + sa, pr + sr)
-    put_pair(work, STEP, k, active, where(back, -sa, sa), where(back, -sr, sr))
-    put_pair(work, SEARCH, k, active, slope, where(ends, 1.0, 0.0))
+    da, dr = where(back, 0.5 * da, sa), where(back, 0.5 * dr, sr)
+    put_pair(work, rows.PLACE, k, active, where(back, pa - da, pa + da), where(back, pr - dr, pr + dr))
+    put_pair(work, STEP, k, active, da, dr)
+    put_pair(work, SEARCH, k, active, where(back, 0.5 * search, ga * sa + gr * sr), where(ends, 1.0, 0.0))
     return active & ~ends
 
 
