@@ -151,7 +151,9 @@ def test_columns_have_the_derivatives_of_models(name):
                 for one in both
             ]  # fmt: skip
     first, other = np.array(list(numbers.values())).transpose(1, 0, 2)
-    assert np.abs(first - other).max() <= 1e-6 * np.abs(other).max()
+    # Rounding over the steps of the differences; searches of preloads and of rates of dashpots end earlier.
+    limit = 1e-6 if name in ("a pair", "a pitch, dashpots by stiffness") else 2e-9
+    assert np.abs(first - other).max() <= limit * np.abs(other).max()
 
 
 @pytest.mark.parametrize(
