@@ -84,7 +84,7 @@ class ColumnBearing:
         return contact_pairs(self.problem, self.basis)
 
     def under(self, problem: Problem) -> ColumnBearing | None:
-        """Of the bearing at one point that at n points of a problem in which loads alone differ; None where its preload hangs on them."""
+        """Of the bearing at one point that at n points of a problem in which loads alone differ; None where its preload depends on them."""
         n, z, (axial, ball_load) = problem.points[0], len(self.basis.row), problem.axial_approach
         basis = attrs.evolve(self.basis, axial=axial, ball_load=largest(ball_load, 1.0))
         reference = np.repeat(np.broadcast_to(basis.ball_load, n), 2 * z)
