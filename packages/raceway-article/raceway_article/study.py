@@ -150,7 +150,7 @@ class _Trend:
         return {name: table.pop(name) for name in ("tilt", "load", "inertia", "why")} | numbers | table
 
 
-def _secants(case: tuple[str, float, bool], registry: Registry) -> list[Tables]:
+def secants(case: tuple[str, float, bool], registry: Registry) -> list[Tables]:
     """Secant stiffness [N/m] at the five speeds of a case: tilt, axial load, ball inertia."""
     tilt, load, inertia = case
     article, speeds = article_tables(), np.array(SOLVER_SPEEDS)
@@ -160,7 +160,7 @@ def _secants(case: tuple[str, float, bool], registry: Registry) -> list[Tables]:
         "bearing": article["bearing"],
         "supports": {"tilt": tilt},
         "load": {"axial": load, "radial": [0.0, 0.0]},
-        "kinematics": {"ball_inertia": inertia, "spin_speed_rpm": speeds[0]},
+        "kinematics": {**article["kinematics"], "ball_inertia": inertia, "spin_speed_rpm": speeds[0]},
     }
     keys = ("load.radial[0]", "kinematics.spin_speed_rpm")
     answer = function(scene_from_dict(tables, registry), keys, ["displacement"], threads=1)(force, speeds)
@@ -169,8 +169,8 @@ def _secants(case: tuple[str, float, bool], registry: Registry) -> list[Tables]:
     return [without_nan({"k": k, "reason": " ".join(str(reason).split())}) for k, reason in rows]
 
 
-def _trend(case: tuple[str, float, bool], rows: Sequence[Tables]) -> _Trend:
-    """The printed numbers of a case beside the rows of ``_secants``."""
+def trend(case: tuple[str, float, bool], rows: Sequence[Tables]) -> _Trend:
+    """The printed numbers of a case beside the rows of ``secants``."""
     first, ratios = TRENDS[case]
     missing = [row["reason"] for row in rows if row["k"] is None]
     k = [row["k"] for row in rows]
@@ -447,7 +447,7 @@ def _items(design: Design, registry: Registry) -> list[Item]:
         return [design.point(setting, load, speed, registry) for load in loads for speed in speeds]
 
     tasks: list[_Task] = [("static verification", _static_pressures, _STATIC)]
-    tasks += [("quasi-static trends", _secants, list(case)) for case in TRENDS]
+    tasks += [("quasi-static trends", secants, list(case)) for case in TRENDS]
     for load in _scan_loads(design):
         ends = points(_base("shaft", design.bodies), [load], [design.speeds[0], design.speeds[-1]])
         scan = [with_value(tables, "supports.tilt", stiffness) for stiffness in STIFFNESSES for tables in ends]
@@ -503,7 +503,7 @@ def solve_curves(
         answers, reused = work_through(_rows, items, store, local(registry, processes), registry, plugins, on_progress)
     results = iter([row["rows"] for row in answers])
     static = [Verified(**row) for row in next(results)]
-    trends = [_trend(case, next(results)) for case in TRENDS]
+    trends = [trend(case, next(results)) for case in TRENDS]
     scan = {load: next(results) for load in _scan_loads(design)}
     rig = [{"tilt": s.tilt, "bodies": s.bodies, **row} for s in _rig_settings(design) for row in next(results)]
     curves = Curves(design, dict(zip(design.tasks(), results, strict=True)))

@@ -27,6 +27,13 @@ def quick(monkeypatch):
     monkeypatch.setattr(driver, "TRENDS", dict(list(driver.TRENDS.items())[-1:]))
 
 
+@pytest.mark.parametrize("case", driver.TRENDS)
+def test_quasi_static_trends_are_those_of_an_independent_solver(case):
+    """To its printed digits, in the article's model: no gyroscopic moments, no growth of the rings."""
+    trend = driver.trend(case, driver.secants(case, default_registry()))
+    assert trend.holds, trend
+
+
 @pytest.mark.slow
 def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, quick, monkeypatch):
     done = []
