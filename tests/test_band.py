@@ -154,7 +154,8 @@ def test_compiled_loops_give_what_samples_one_by_one_give(tables, tolerances, mo
         a, b = (getattr(one, name) for one in (looped, single))
         assert list(a) == list(b)
         for key, number in a.items():
-            assert number == pytest.approx(b[key], rel=1e-6, abs=1e-6 if name in ("first", "total") else 0.0), (name, key)
+            # Of a K that moves by 1e-11 of itself, the last scene's, shares of variance are those of rounding.
+            assert number == pytest.approx(b[key], rel=1e-6, abs=1e-5 if name in ("first", "total") else 0.0), (name, key)
 
 
 @pytest.mark.parametrize("count", [3, 1])

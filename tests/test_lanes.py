@@ -86,6 +86,19 @@ def test_every_lane_is_the_arithmetic_of_its_numbers(n):
     assert single[0] == columns[:, 1].sum() and single[1] == 0.0
 
 
+def test_no_number_is_less_more_or_equal():
+    """Beside NaN the second one is larger and smaller, as kernels have it of single numbers."""
+    x, y, nan = np.array([np.nan, 1.0, np.nan, np.inf]), np.array([1.0, np.nan, np.nan, np.inf]), np.nan
+    out = np.zeros((len(ROWS) + 1, 4))
+    _operations(np.array([x, y]), np.zeros((4, 2)), out, np.zeros(2))
+    found = dict(zip(ROWS, out, strict=False))
+    for name in ("larger", "smaller"):
+        np.testing.assert_array_equal(found[name], [1.0, nan, nan, np.inf])
+    for name, last in (("less", 0.0), ("more", 0.0), ("not more", 1.0), ("not less", 1.0), ("equal", 1.0)):
+        np.testing.assert_array_equal(found[name], [0.0, 0.0, 0.0, last])
+    np.testing.assert_array_equal(found["chosen"], [2.0, nan, nan, np.inf])
+
+
 def test_sums_add_neighbours_first_and_one_lane_is_enough_to_be_found():
     out, single = np.zeros((len(ROWS) + 1, 4)), np.zeros(2)
     columns = np.array([[0.0, value] for value in (1e16, 1.0, -1e16, 1.0)])

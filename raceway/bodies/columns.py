@@ -285,14 +285,16 @@ class Builder:
         if own.traits.contacts_alone and all(getattr(problem, name) is getattr(own, name) for name in _BUILT):
             speeds = ((p.spin_speed, p.time_constant) for p in (own, problem))
             if problem.excitation is own.excitation or all(np.all(a == b) for a, b in zip(*speeds, strict=True)):
-                bearing = self._unloaded.under(problem)
+                bearing = self._unloaded and self._unloaded.under(problem)
         return problem.body_kind.columns(self.plan) if bearing is None else bearing
 
     @cached_property
-    def _unloaded(self) -> ColumnBearing:
+    def _unloaded(self) -> ColumnBearing | None:
+        """At one point; None where a plug-in has changed what the law makes of its contacts."""
         one = attrs.evolve(self.plan.problem, points=(1,))
         bearing: ColumnBearing = one.body_kind.columns(self.plan)
-        return bearing
+        params = law_params(one.contact.law, bearing.pairs)
+        return bearing if np.array_equal(params.ravel(), bearing.points.params.ravel()) else None
 
 
 def _running(bearing: ColumnBearing) -> ColumnBearing:

@@ -1,4 +1,4 @@
-"""Four numbers of four balls at a time: a type for kernels, which vector units add and multiply as fast as one number.
+"""One number of each of four balls at a time: a type for kernels, which vector units add and multiply as fast as one number.
 
 Kernels call these functions without the first arguments, ``context`` and ``builder``: their bodies write machine code.
 
@@ -52,8 +52,8 @@ class _Lanes(types.Type):
     """A type of ``WIDTH`` values side by side."""
 
 
-#: Numbers, and truths, side by side.
-LANES, LIVE = _Lanes(f"float64x{WIDTH}"), _Lanes(f"booleanx{WIDTH}")
+#: Numbers, and truths of conditions, side by side.
+LANES, MASK = _Lanes(f"float64x{WIDTH}"), _Lanes(f"booleanx{WIDTH}")
 _NUMBERS, _TRUTHS = ir.VectorType(ir.DoubleType(), WIDTH), ir.VectorType(ir.IntType(1), WIDTH)
 _INTEGER, _INDEX = ir.IntType(64), ir.IntType(32)
 
@@ -115,11 +115,11 @@ for _operator, _name in (
 for _operator, _name in (
     (operator.lt, "<"), (operator.gt, ">"), (operator.le, "<="), (operator.ge, ">="), (operator.eq, "==")
 ):  # fmt: skip
-    _lanewise(LIVE, *_TWO, of=_operator)(lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y))
+    _lanewise(MASK, *_TWO, of=_operator)(lambda builder, x, y, name=_name: builder.fcmp_ordered(name, x, y))
 _lanewise(LANES, (LANES,), of=operator.neg)(lambda builder, x: builder.fneg(x))
-_lanewise(LIVE, (LIVE, LIVE), of=operator.and_)(lambda builder, x, y: builder.and_(x, y))
-_lanewise(LIVE, (LIVE, LIVE), of=operator.or_)(lambda builder, x, y: builder.or_(x, y))
-_lanewise(LIVE, (LIVE,), of=operator.invert)(lambda builder, x: builder.not_(x))
+_lanewise(MASK, (MASK, MASK), of=operator.and_)(lambda builder, x, y: builder.and_(x, y))
+_lanewise(MASK, (MASK, MASK), of=operator.or_)(lambda builder, x, y: builder.or_(x, y))
+_lanewise(MASK, (MASK,), of=operator.invert)(lambda builder, x: builder.not_(x))
 
 
 def _call(builder: _Numba, name: str, answer: _Numba, *args: _Numba) -> _Numba:
@@ -157,7 +157,7 @@ def smaller(builder: _Numba, x: _Numba, y: _Numba) -> _Numba:
     return builder.select(builder.fcmp_ordered("<", x, y), x, y)
 
 
-@_lanewise(LANES, *((LIVE, *case) for case in (*_TWO, (float64, float64))))
+@_lanewise(LANES, *((MASK, *case) for case in (*_TWO, (float64, float64))))
 def where(builder: _Numba, condition: _Numba, x: _Numba, y: _Numba) -> _Numba:
     """x in lanes where the condition holds, else y."""
     return builder.select(condition, x, y)
@@ -169,13 +169,13 @@ def spread(_builder: _Numba, x: _Numba) -> _Numba:
     return x
 
 
-@_lanewise(LIVE, (int64, int64))
+@_lanewise(MASK, (int64, int64))
 def live_of(builder: _Numba, first: _Numba, end: _Numba) -> _Numba:
     """Which lanes of the block that begins at ``first`` lie before ``end``."""
     return builder.icmp_signed("<", builder.add(first, ir.Constant(first.type, list(range(WIDTH)))), end)
 
 
-@_lanewise(boolean, (LIVE,))
+@_lanewise(boolean, (MASK,))
 def any_of(builder: _Numba, live: _Numba) -> _Numba:
     """Whether any lane is true."""
     bits = builder.bitcast(live, ir.IntType(WIDTH))
@@ -198,20 +198,20 @@ def _place(context: _Numba, builder: _Numba, matrix: _Numba, row: _Numba, column
     return builder.gep(array.data, [builder.add(builder.mul(row, columns), column)])
 
 
-_ENTRIES = MATRIX, int64, int64, LIVE
+_ENTRIES = MATRIX, int64, int64, MASK
 
 
 @_machine_code(LANES, _ENTRIES)
 def take(context: _Numba, builder: _Numba, matrix: _Numba, row: _Numba, column: _Numba, live: _Numba) -> _Numba:
     """Entries [row, column], [row, column + 1] and so on in the live lanes, 0 in the others."""
-    place = _place(context, builder, matrix, row, column)
+    place = builder.bitcast(_place(context, builder, matrix, row, column), _NUMBERS.as_pointer())
     return _call(builder, f"masked.load.v{WIDTH}f64.p0", _NUMBERS, place, _INDEX(8), live, ir.Constant(_NUMBERS, None))
 
 
 @_machine_code(types.none, (*_ENTRIES, LANES), (*_ENTRIES, float64))
 def put(context: _Numba, builder: _Numba, matrix: _Numba, row: _Numba, column: _Numba, live: _Numba, x: _Numba) -> _Numba:
     """The live lanes to the entries [row, column], [row, column + 1] and so on."""
-    place = _place(context, builder, matrix, row, column)
+    place = builder.bitcast(_place(context, builder, matrix, row, column), _NUMBERS.as_pointer())
     _call(builder, f"masked.store.v{WIDTH}f64.p0", ir.VoidType(), _spread(builder, x), place, _INDEX(8), live)
     return context.get_dummy_value()
 

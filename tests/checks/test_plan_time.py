@@ -39,7 +39,7 @@ def test_every_step_costs():
 
 def test_the_time_is_the_work_at_the_machine_s_own_speed(monkeypatch):
     cost.slowness.cache_clear()
-    monkeypatch.setattr(cost, "_seconds", lambda: 3.0 * cost._REFERENCE_S)
+    monkeypatch.setattr(cost, "timed", lambda: 3.0)
     plan = make_plan(load_scene(ARTICLE))
     cost.slowness.cache_clear()
     assert plan.predicted_wall_s == pytest.approx(3.0 * plan.predicted_work_s)

@@ -104,6 +104,18 @@ def test_the_inner_race_carries_no_more_than_its_load_can(built, hypothesis):
     assert steps.max() < 5.0 * steps[:100].max()
 
 
+def test_balls_that_the_inner_race_does_not_press_are_held_by_the_outer_one(built):
+    """Under a radial load above the axial one, with more clearance than balls on the far side can close."""
+    system = built(
+        load={"axial": 50.0, "radial": [400.0, 0.0]}, kinematics={"gyroscopic": "shared", "spin_speed_rpm": 30000.0}
+    ).system
+    q, ball, _ = system.solve_equilibrium(np.array([2e-5, 0.0, 0.0, 0.0, 0.0]))
+    inner, outer = system.evaluate(q, ball=ball).contact_force.reshape(2, -1)
+    free = inner == 0.0
+    assert 0 < free.sum() < len(free)
+    np.testing.assert_allclose(outer[free], system.table[free, ring.CENTRIFUGAL], rtol=1e-8)
+
+
 def test_the_effect_is_tens_of_percent_at_high_speed_and_light_load(built):
     """40 000 r/min, 100 N (physics.md, section 3): against 1 % at 12 000 r/min and 1000 N."""
 

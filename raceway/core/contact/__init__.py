@@ -1,5 +1,6 @@
 """Contact of two bodies, and the geometry of a ball bearing.
 
+axial      balls on springs under an axial load alone
 geometry   groove curvatures, groove centres, contact angle, cage speed
 hertz      exact elliptic Hertz contact, the half-space around it, stresses below it
 damping    normal damping, and the energy that a contact stores

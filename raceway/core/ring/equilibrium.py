@@ -251,9 +251,11 @@ def solve_equilibrium(forces, linear, tolerance, t, state, response, report):
             potential, radius = np.nan, max(radius, 3.0 * size)
         else:
             if np.isnan(potential):  # it is seldom asked for: the state before is evaluated again
-                forces.system(t, q, still, Balls(ball, 0.0, zeros), contacts, constants, now)
+                if forces.system(t, q, still, Balls(ball, 0.0, zeros), contacts, constants, now) != 0:
+                    return BALLS_FAILED
                 potential = _potential_energy(contacts, constants, linear, q, ball, work, energies)
-                forces.system(t, trial.q, still, Balls(trial.ball, 0.0, zeros), contacts, constants, new)
+                if forces.system(t, trial.q, still, Balls(trial.ball, 0.0, zeros), contacts, constants, new) != 0:
+                    return BALLS_FAILED
             energy = _potential_energy(contacts, constants, linear, trial.q, trial.ball, work, energies)
             ratio = _decrease_ratio(potential, energy, H, g, g_new, step)
             radius = _next_radius(ratio, radius, size)

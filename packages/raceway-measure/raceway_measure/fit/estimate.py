@@ -313,7 +313,10 @@ def estimate(problem: Residuals, free: Sequence[Free], stated: bool) -> Estimate
     if search.status <= 0:
         why = f"no minimum of the sum of squares after {search.nfev} evaluations of the model: start closer with --set, or free fewer keys"
         raise _at_an_end(free, search.x * sizes, ConvergenceError(why))
-    return judged(tuple(free), search.x * sizes, search.fun, search.jac / sizes, stated, int(search.nfev))
+    answer = judged(tuple(free), search.x * sizes, search.fun, search.jac / sizes, stated, int(search.nfev))
+    if any(key.name in answer.at_limit and not np.isfinite(half) for key, half in zip(free, answer.half, strict=True)):
+        raise _at_an_end(free, answer.values, ConvergenceError("the data determine nothing"))
+    return answer
 
 
 def _at_an_end(free: Sequence[Free], values: np.ndarray, why: RacewayError) -> RacewayError:

@@ -25,7 +25,7 @@ import attrs
 import numpy as np
 
 from raceway.core.fem.patches.pressure import Contact, ContactState, SlipState
-from raceway.core.ring.kernels.rolling import Traction, gyroscopic_moment
+from raceway.core.ring.kernels.rolling import TractionForce, gyroscopic_moment
 from raceway.core.ring.kernels.tensors import Pair
 from raceway.errors import ConvergenceError
 
@@ -56,7 +56,7 @@ class Gyroscopic:
 
     Notes
     -----
-    ``raceway.core.ring.kernels.rolling`` (``add_gyroscopic``) has the equations: T = share M / D at both contacts along the grooves, M a
+    ``raceway.core.ring.kernels.rolling`` (``with_gyroscopic``) has the equations: T = share M / D at both contacts along the grooves, M a
     function of both contact angles; the inner race takes no more than its normal force, the outer one the rest, or both what
     ``traction_within`` leaves.
     """
@@ -103,11 +103,11 @@ class Gyroscopic:
         return _Turned(force, stiffness, self.groove * pull[0], self.groove * by_place[0])
 
 
-def traction_within(demand: float, normal: float, limit: float) -> Traction:
+def traction_within(demand: float, normal: float, limit: float) -> TractionForce:
     """As ``raceway.core.ring.kernels.rolling`` has it in lanes."""
     most = limit * normal
     size = float(np.hypot(demand, most)) or np.inf
-    return Traction(most * demand / size, (most / size) ** 3, limit * (demand / size) ** 3)
+    return TractionForce(most * demand / size, (most / size) ** 3, limit * (demand / size) ** 3)
 
 
 _LIMIT = 60

@@ -21,7 +21,7 @@ outer loads are linear and belong to ``raceway.core.ring.system``.  Z counts the
 
 rigid_weightless   balls without mass: the two races in series
 rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential
-tangential         the same with gyroscopic moments or friction: no potential;  rolling: these at one ball
+tangential         the same with gyroscopic moments or friction: no potential;  rolling: these at four balls, in lanes
 structural         each of these on elastic rings and balls: contacts and structural compliances in series
 between            balls that act on each other through elastic rings
 layout             constants of a model, columns of ``ball``, rows of ``work``; a ball's seat on the ring;  tensors: vectors of its meridian plane
@@ -32,9 +32,9 @@ impact             one mass against one contact, for the published impacts and t
 #: Rows of ``work`` that the law fills or reads, of every contact: gap [m], its rate [m/s], force [N], its derivatives by both.
 GAP, GAP_RATE, CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE = range(5)
 #: Rows of rigid bodies in all.  Those of the ball solvers (5 to 25 and from 33 on) stand with the kernels; between them what the
-#: bodies' elasticity adds to each gap [m], its rate [m/s] and the energy it stores [J]: zeros for rigid bodies; the gap that a
+#: bodies' elasticity adds to each gap [m], its rate [m/s] and the energy it stores [J], zeros for rigid bodies; the gap that a
 #: damped contact answers to [m]; place of the ball [m] and the known part of its rate [m/s]; offsets of both grooves [m].
-WORK_ROWS = 44
+WORK_ROWS = 42
 SHIFT, SHIFT_RATE, STORED, AHEAD, PLACE, HISTORY, OFFSET = range(26, 33)
 #: Rows that condensed bodies have beyond these.  Kernels fill them with the derivatives of both contact forces of a ball by
 #: the vector e, its velocity, the shifts (own and the other contact's) and the turn of the section; of its force on the

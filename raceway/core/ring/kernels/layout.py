@@ -17,7 +17,7 @@ from numba.extending import register_jitable
 
 from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
-from raceway.core.lanes import LIVE, WIDTH, column_of, live_of, root, spread, sum_of, where
+from raceway.core.lanes import MASK, WIDTH, column_of, live_of, root, spread, sum_of, where
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels.tensors import PAIR, TENSOR, pair_of, put_pair
 from raceway.core.signatures import CONSTANTS, CONTACTS, MATRIX, VECTOR
@@ -229,7 +229,7 @@ def add_couples(table, arm, work, direction, row, f, K):
 BALL_CENTRE, BALL_VELOCITY, INNER, OUTER, LENGTH = 5, 6, 9, 10, 11
 
 
-@jit(void(int64, LIVE, float64, MATRIX), inline=True)
+@jit(void(int64, MASK, float64, MATRIX), inline=True)
 def approach(k, live, ball_gain, work):
     """Directions, lengths, gaps and gap rates of both contacts of balls from k on."""
     (pa, pr), (ea, er) = pair_of(work, rows.PLACE, k, live), pair_of(work, BALL_CENTRE, k, live)
@@ -407,12 +407,13 @@ SEAT = types.NamedUniTuple(float64, 5, Seat)
 @jit(SEAT(int64, float64, MATRIX, MATRIX, int64), inline=True)
 def seat_of(k, arm, table, work, direction):
     """The seat of ball k, whose azimuth is in the row ``direction`` of ``work``."""
-    return Seat(work[direction, k], work[direction, table.shape[0] + k], arm, table[k, SIDE], table[k, LEVER])
+    reach = arm + table[k, OWN_TILT_ARM]
+    return Seat(work[direction, k], work[direction, table.shape[0] + k], reach, table[k, SIDE], table[k, LEVER])
 
 
-@jit(void(SEAT, PAIR, TENSOR, TENSOR, VECTOR, MATRIX, MATRIX))
-def add_ball(seat, force, stiffness, damping, f, K, C):
-    """Add one ball's force [N] and its derivatives by e and by its velocity to the ring's f (5,), K and C (5, 5).
+@jit(void(SEAT, PAIR, TENSOR, VECTOR, MATRIX))
+def add_ball(seat, force, stiffness, f, K):
+    """Add one ball's force [N] and its derivatives by e to the ring's f (5,) and K (5, 5) or (0, 0).
 
     Notes
     -----
@@ -429,11 +430,6 @@ def add_ball(seat, force, stiffness, damping, f, K, C):
         ga, gr = stiffness.aa * ja[j] + stiffness.ar * jr[j], stiffness.ra * ja[j] + stiffness.rr * jr[j]
         for i in range(5):
             K[i, j] += ja[i] * ga + jr[i] * gr
-    if damping.aa != 0.0 or damping.rr != 0.0:
-        for j in range(5):
-            ga, gr = damping.aa * ja[j] + damping.ar * jr[j], damping.ra * ja[j] + damping.rr * jr[j]
-            for i in range(5):
-                C[i, j] += ja[i] * ga + jr[i] * gr
 
 
 @jit(void(SEAT, PAIR, float64, MATRIX, int64, int64))

@@ -12,16 +12,11 @@ import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.lanes import LANES, LIVE, WIDTH, any_of, larger, live_of, root, smaller, spread, take, where
+from raceway.core.lanes import LANES, MASK, WIDTH, any_of, larger, live_of, root, smaller, spread, take, where
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels import tensors
-from raceway.core.ring.kernels.layout import BALL_CENTRE as CENTRE
-from raceway.core.ring.kernels.layout import BALL_VELOCITY as VELOCITY
 from raceway.core.ring.kernels.layout import (
-    INNER,
-    LENGTH,
-    OUTER,
     approach,
     move_centres,
     normal_forces,
@@ -52,9 +47,9 @@ def _first_guess(k, scalars, table, ball, ball_history, work):
     z = table.shape[0]
     li, lo = offsets_of(k, scalars, table)
     pa, pr, centrifugal = ball[k, 0], ball[k, 1], table[k, ring.CENTRIFUGAL]
-    if pa * pa + pr * pr <= lo * lo:
+    if not pa * pa + pr * pr > lo * lo:
         # A guess off the outer race: on its seat there, or, where nothing is known, on the line of the groove centres.
-        ea, er = work[CENTRE, k], work[CENTRE, z + k]
+        ea, er = work[ring.BALL_CENTRE, k], work[ring.BALL_CENTRE, z + k]
         length = np.sqrt(ea * ea + er * er)
         if pa == 0.0 and pr == 0.0 and length > li + lo:
             scale = (lo + table[k, ring.OUTER_SHARE] * (length - li - lo)) / length
@@ -75,12 +70,12 @@ def _of_contact(na, nr, k, w):
     return tensors.Tensor(along * na * na + w, across, across, along * nr * nr + w)
 
 
-@jit(LIVE(int64, LIVE, float64, MATRIX), inline=True)
+@jit(MASK(int64, MASK, float64, MATRIX), inline=True)
 def _moving(k, live, ball_gain, work):
     """Move the balls from k on that have not settled by one step of Newton's method on their potentials; those that go on."""
     z = work.shape[1] // 2
     (fi, fo), (gap_i, gap_o) = pair_of(work, rows.CONTACT_FORCE, k, live), pair_of(work, rows.GAP, k, live)
-    (ia, ir), (oa, orr) = pair_of(work, INNER, k, live), pair_of(work, OUTER, k, live)
+    (ia, ir), (oa, orr) = pair_of(work, ring.INNER, k, live), pair_of(work, ring.OUTER, k, live)
     (pa, pr), (da, dr) = pair_of(work, rows.PLACE, k, live), pair_of(work, STEP, k, live)
     search, done = pair_of(work, SEARCH, k, live)
     active = live & (done == 0.0)
@@ -91,7 +86,7 @@ def _moving(k, live, ball_gain, work):
     by_gap_i, by_gap_o = pair_of(work, rows.FORCE_BY_GAP, k, live)
     by_rate_i, by_rate_o = pair_of(work, rows.FORCE_BY_RATE, k, live)
     ki, ko = -by_gap_i - ball_gain * by_rate_i, -by_gap_o - ball_gain * by_rate_o
-    (si, so), lo = pair_of(work, LENGTH, k, live), take(work, rows.OFFSET, z + k, live)
+    (si, so), lo = pair_of(work, ring.LENGTH, k, live), take(work, rows.OFFSET, z + k, live)
     by_si = where(si > 0.0, 1.0 / si, 0.0)
     a, b = _of_contact(ia, ir, ki, fi * by_si), _of_contact(oa, orr, ko, fo / so)
     haa, har, hrr = a.aa + b.aa, a.ar + b.ar, a.rr + b.rr
@@ -123,11 +118,11 @@ def _moving(k, live, ball_gain, work):
     return active & ~ends
 
 
-@jit(LIVE(int64, LIVE, float64, MATRIX), inline=True)
-def _without_tangent(k, live, ball_gain, work):
-    """Tangents of the balls from k on to the ring, and what elastic bodies ask for; those balls that have none."""
-    (fi, fo), (si, so) = pair_of(work, rows.CONTACT_FORCE, k, live), pair_of(work, LENGTH, k, live)
-    (na, nr), (oa, orr) = pair_of(work, KEPT_NORMAL, k, live), pair_of(work, OUTER, k, live)
+@jit(MASK(int64, MASK, float64, MATRIX), inline=True)
+def _condense(k, live, ball_gain, work):
+    """Tangents of the balls from k on to the ring, and what elastic bodies ask for; returns the balls that have none."""
+    (fi, fo), (si, so) = pair_of(work, rows.CONTACT_FORCE, k, live), pair_of(work, ring.LENGTH, k, live)
+    (na, nr), (oa, orr) = pair_of(work, KEPT_NORMAL, k, live), pair_of(work, ring.OUTER, k, live)
     (by_gap_i, by_gap_o), (by_rate_i, by_rate_o) = pair_of(work, KEPT_BY_GAP, k, live), pair_of(work, KEPT_BY_RATE, k, live)
     pressed = live & ~((fi == 0.0) & (by_gap_i == 0.0))
     elastic, viscous = where(pressed, -by_gap_i, 0.0), where(pressed, -by_rate_i, 0.0)
@@ -177,9 +172,9 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
     scalars, table = constants
     f, K, C, work = response
     z, elastic_bodies = table.shape[0], work.shape[0] > rows.WORK_ROWS
-    place(t, q, v, constants, work, (DIRECTION, CENTRE, VELOCITY))
+    place(t, q, v, constants, work, (DIRECTION, ring.BALL_CENTRE, ring.BALL_VELOCITY))
     if elastic_bodies:
-        move_centres(work, CENTRE, VELOCITY)
+        move_centres(work, ring.BALL_CENTRE, ring.BALL_VELOCITY)
     for k in range(z):
         _first_guess(k, scalars, table, ball, ball_history, work)
     moving = True
@@ -212,7 +207,7 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
         return 0
     singular = False
     for k in range(0, z, WIDTH):
-        singular |= any_of(_without_tangent(k, live_of(k, z), ball_gain, work))
+        singular |= any_of(_condense(k, live_of(k, z), ball_gain, work))
     if singular:
         return 1
     if K.size > 0:

@@ -8,7 +8,7 @@ from numba import float64, int64, types, void
 from numba.extending import register_jitable
 
 from raceway.core.jit import jit
-from raceway.core.lanes import LANES, LIVE, angle_of, larger, root, spread, take, where
+from raceway.core.lanes import LANES, MASK, angle_of, larger, root, spread, take, where
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.tensors import LANES_PAIR, LANES_TENSOR, Pair, Tensor, pair_of, put_pair
@@ -73,13 +73,6 @@ class Tangential(NamedTuple):
 TANGENTIALS = types.NamedUniTuple(LANES, 18, Tangential)
 
 
-@jit(TANGENTIALS())
-def free_rolling():
-    """No tangential forces and no couple."""
-    o = spread(0.0)
-    return Tangential(o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o)
-
-
 class Moment(NamedTuple):
     """A ball's gyroscopic moment [N m], and its derivatives by the inner and the outer contact angle."""
 
@@ -94,7 +87,7 @@ def gyroscopic_moment(inner, outer, ratio, scale):
 
     Notes
     -----
-    With tan(beta) = sin(a_o) / (cos(a_o) + r), the ball's axis under control of the outer race, its speed is the ring's over
+    Under control of the outer race the ball's axis lies at tan(beta) = sin(a_o) / (cos(a_o) + r); its spin is the ring's speed over
     r cos(beta) [(cos a_o + tan(beta) sin a_o) / (1 + r cos a_o) + (cos a_i + tan(beta) sin a_i) / (1 - r cos a_i)].  The
     first fraction is 1 / (cos a_o + r), so that M = scale sin(a_o) (1 - r cos a_i) / [r (1 + cos(a_i - a_o))]: no function
     of an angle is left.
@@ -105,7 +98,7 @@ def gyroscopic_moment(inner, outer, ratio, scale):
     return Moment(part * so * rest, part * so * (ratio * si + rest * sine), part * rest * (co - so * sine))
 
 
-@jit(void(MATRIX, int64, LIVE, TANGENTIALS), inline=True)
+@jit(void(MATRIX, int64, MASK, TANGENTIALS), inline=True)
 def put_tangential(work, k, live, h):
     """Keep the tangential forces of balls from k on."""
     put_pair(work, TANGENTIAL, k, live, h.inner, h.outer)
@@ -119,7 +112,7 @@ def put_tangential(work, k, live, h):
     put_pair(work, TANGENTIAL + 8, k, live, h.grows, h.couple_by_shift)
 
 
-@jit(TANGENTIALS(MATRIX, int64, LIVE), inline=True)
+@jit(TANGENTIALS(MATRIX, int64, MASK), inline=True)
 def tangential_of(work, k, live):
     """The tangential forces of balls from k on that were kept."""
     inner, outer = pair_of(work, TANGENTIAL, k, live)
@@ -153,7 +146,7 @@ def tangential_of(work, k, live):
     )
 
 
-class Traction(NamedTuple):
+class TractionForce(NamedTuple):
     """Traction of a contact [N], its derivatives by what is asked of it and by the contact's normal force."""
 
     force: float
@@ -161,17 +154,17 @@ class Traction(NamedTuple):
     by_normal: float
 
 
-@jit(types.NamedUniTuple(LANES, 3, Traction)(LANES, LANES, float64), inline=True)
+@jit(types.NamedUniTuple(LANES, 3, TractionForce)(LANES, LANES, float64), inline=True)
 def traction_within(demand, normal, limit):
     """demand / sqrt(1 + (demand / (limit normal))^2): all of a small part, never more than ``limit`` times the normal force."""
     most = limit * normal
     size = root(demand * demand + most * most)
     inverse = where(size > 0.0, 1.0 / size, 0.0)
     a, m = demand * inverse, most * inverse
-    return Traction(most * a, m * m * m, limit * (a * a * a))
+    return TractionForce(most * a, m * m * m, limit * (a * a * a))
 
 
-@jit(TANGENTIALS(int64, LIVE, CONTACTS, TANGENTIALS, VECTOR, MATRIX), inline=True)
+@jit(TANGENTIALS(int64, MASK, CONTACTS, TANGENTIALS, VECTOR, MATRIX), inline=True)
 def with_gyroscopic(k, live, contacts, rub, scalars, work):
     """Add what the moments of the balls from k on do to their tangential forces and to the couples on the ring's section.
 
@@ -257,7 +250,7 @@ def _grip(contact, lever, reach, stretch, mu, stick):
     )
 
 
-@jit(types.Tuple((TANGENTIALS, LANES_PAIR))(int64, LIVE, CONTACTS, VECTOR, MATRIX), inline=True)
+@jit(types.Tuple((TANGENTIALS, LANES_PAIR))(int64, MASK, CONTACTS, VECTOR, MATRIX), inline=True)
 def rub(k, live, contacts, scalars, work):
     """Tangential forces of the balls from k on by friction, their couples on the ring's section, and their slips.
 

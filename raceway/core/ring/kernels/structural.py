@@ -202,7 +202,11 @@ def _follow_linearly(k, scalars, table, ball_gain, work, f):
         turn += work[rows.COUPLE_BY_CENTRE, k] * da + work[rows.COUPLE_BY_CENTRE, z + k] * dr
     work[rows.CONTACT_FORCE, k], work[rows.CONTACT_FORCE, z + k] = max(inner, 0.0), max(outer, 0.0)
     axial *= table[k, ring.SIDE]
-    couple = scalars[ring.TILT_ARM] * axial - table[k, ring.LEVER] * radial + table[k, ring.SIDE] * turn
+    couple = (
+        (scalars[ring.TILT_ARM] + table[k, ring.OWN_TILT_ARM]) * axial
+        - table[k, ring.LEVER] * radial
+        + table[k, ring.SIDE] * turn
+    )
     cosine, sine = work[ring.DIRECTION, k], work[ring.DIRECTION, z + k]
     f[0] += axial
     f[1] += radial * cosine
@@ -243,8 +247,8 @@ def _correct(scalars, table, ball, ball_gain, work, f):
     return SETTLED
 
 
-@jit(void(int64, float64, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX))
-def _add_turning(k, arm, table, work, f, K, C):
+@jit(void(int64, float64, MATRIX, MATRIX, VECTOR, MATRIX))
+def _add_turning(k, arm, table, work, f, K):
     """Add what ball k's compliances, which change with the angle, do to the ring: force and tangent."""
     z = table.shape[0]
     ga, gr = work[ring.TURNING, k], work[ring.TURNING, z + k]
@@ -259,7 +263,7 @@ def _add_turning(k, arm, table, work, f, K, C):
     cross = twice * ga * gr + by_angle * har
     stiffness = Tensor(twice * ga * ga + by_angle * haa, cross, cross, twice * gr * gr - by_angle * haa)
     seat = seat_of(k, arm, table, work, ring.DIRECTION)
-    add_ball(seat, Pair(by_angle * ga, by_angle * gr), stiffness, Tensor(0.0, 0.0, 0.0, 0.0), f, K, C)
+    add_ball(seat, Pair(by_angle * ga, by_angle * gr), stiffness, f, K)
 
 
 @jit(float64(int64, float64, MATRIX, MATRIX))
@@ -293,7 +297,7 @@ def _tangents(scalars, table, ball_gain, work, f, K, C):
     """
     z, arm, rates = table.shape[0], scalars[ring.TILT_ARM], 0.0
     for k in range(z):
-        _add_turning(k, arm, table, work, f, K, C)
+        _add_turning(k, arm, table, work, f, K)
     if K.size == 0:
         return
     for k in range(z):

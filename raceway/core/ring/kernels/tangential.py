@@ -9,10 +9,10 @@ the gyroscopic moment, tau from friction; both put the couple -r h, h = tau - T,
 """
 
 import numpy as np
-from numba import boolean, float64, int64, void
+from numba import float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.lanes import LANES, LIVE, WIDTH, any_of, larger, live_of, put, root, spread, take, where
+from raceway.core.lanes import LANES, MASK, WIDTH, any_of, larger, live_of, put, root, spread, take, where
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels import rolling as at
@@ -29,7 +29,7 @@ from raceway.core.ring.kernels.layout import (
     ring_force,
     ring_tangent,
 )
-from raceway.core.ring.kernels.rolling import BallContact, free_rolling, linear_balance, rub, with_gyroscopic
+from raceway.core.ring.kernels.rolling import BallContact, linear_balance, rub, with_gyroscopic
 from raceway.core.ring.kernels.tensors import pair_of, put_pair, put_tensors
 from raceway.core.signatures import MATRIX, SYSTEM, VECTOR
 
@@ -41,9 +41,9 @@ _ITERATIONS = 300
 _CARRIED, _STIFF, _VISCOUS, _COUPLES, _VISCOUS_COUPLES = 8, 5, 21, 33, 36
 
 
-@jit(boolean(int64, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
+@jit(void(int64, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
 def _first_guess(k, q, scalars, table, ball, ball_history, work):
-    """Begin with ball k; False where nothing presses it on either race: it then lies midway, without forces."""
+    """Begin with ball k; where nothing presses it on either race it lies midway, without forces."""
     z = table.shape[0]
     li, lo = offsets_of(k, scalars, table)
     ea, er, shift = work[BALL_CENTRE, k], work[BALL_CENTRE, z + k], work[rows.SHIFT, z + k]
@@ -64,14 +64,12 @@ def _first_guess(k, q, scalars, table, ball, ball_history, work):
         at_i, at_o = scalars[ring.OFFSET_INNER] * angle, scalars[ring.OFFSET_OUTER] * angle
         work[at.SLIP, k], work[at.SLIP, z + k] = at_i - turn_arc, at_o
         work[at.STATE, z + k] = at.LOOSE
-        return False
-    if ball[k, 0] == 0.0 and ball[k, 1] == 0.0 or ball[k, 0] ** 2 + ball[k, 1] ** 2 <= lo * lo:
+    elif ball[k, 0] == 0.0 and ball[k, 1] == 0.0 or ball[k, 0] ** 2 + ball[k, 1] ** 2 <= lo * lo:
         if length > li + lo:
             scale = (lo + table[k, ring.OUTER_SHARE] * (length - li - lo)) / length
             work[rows.PLACE, k], work[rows.PLACE, z + k] = scale * ea, scale * er
         else:
             _seat_outside(k, table, work)
-    return True
 
 
 @jit(void(int64, int64, MATRIX))
@@ -106,7 +104,7 @@ def _ball_step(contacts, h, ra, rr, longest):
     return tensors.Pair(axial * scale, radial * scale)
 
 
-@jit(at.CONTACTS(int64, LIVE, tensors.LANES_PAIR, tensors.LANES_PAIR, tensors.LANES_PAIR, float64, MATRIX), inline=True)
+@jit(at.CONTACTS(int64, MASK, tensors.LANES_PAIR, tensors.LANES_PAIR, tensors.LANES_PAIR, float64, MATRIX), inline=True)
 def _contacts_of(k, live, force, by_gap, by_rate, ball_gain, work):
     """Both contacts of the balls from k on, of forces and their derivatives of the inner and the outer one."""
     (ia, ir), (oa, orr) = pair_of(work, ring.INNER, k, live), pair_of(work, ring.OUTER, k, live)
@@ -115,7 +113,7 @@ def _contacts_of(k, live, force, by_gap, by_rate, ball_gain, work):
     return BallContact(ia, ir, si, force.axial, inner), BallContact(oa, orr, so, force.radial, outer)
 
 
-@jit(LIVE(int64, LIVE, int64, float64, VECTOR, MATRIX), inline=True)
+@jit(MASK(int64, MASK, int64, float64, VECTOR, MATRIX), inline=True)
 def _moving(k, live, attempt, ball_gain, scalars, work):
     """Move the balls from k on that have not settled by one step; those that go on.
 
@@ -130,7 +128,8 @@ def _moving(k, live, attempt, ball_gain, scalars, work):
     by_gap, by_rate = pair_of(work, rows.FORCE_BY_GAP, k, live), pair_of(work, rows.FORCE_BY_RATE, k, live)
     contacts = _contacts_of(k, live, force, by_gap, by_rate, ball_gain, work)
     (inner, outer), (fi, fo) = contacts, force
-    h, slips = free_rolling(), pair_of(work, at.SLIP, k, live)
+    o, slips = spread(0.0), pair_of(work, at.SLIP, k, live)
+    h = at.Tangential(o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o)
     if scalars[ring.FRICTION] != 0.0:
         h, slips = rub(k, live, contacts, scalars, work)
     if scalars[ring.GYROSCOPIC] != 0.0:
@@ -154,7 +153,7 @@ def _moving(k, live, attempt, ball_gain, scalars, work):
     put_pair(work, at.SLOPE, k, active, where(back, 0.5 * slope, ra * da + rr * dr), where(ends, at.SETTLED, at.MOVES))
     put(work, at.MERIT, z + k, active & ~back, size)
     if any_of(ends):
-        # Forces and tangents are kept from before this step, which ``_without_tangent`` adds to the forces.
+        # Forces and tangents are kept from before this step, which ``_condense`` adds to the forces.
         put_pair(work, at.KEPT_FORCE, k, ends, fi, fo)
         put_pair(work, at.KEPT_BY_GAP, k, ends, by_gap.axial, by_gap.radial)
         put_pair(work, at.KEPT_BY_RATE, k, ends, by_rate.axial, by_rate.radial)
@@ -163,9 +162,9 @@ def _moving(k, live, attempt, ball_gain, scalars, work):
     return active & ~ends
 
 
-@jit(LIVE(int64, LIVE, float64, MATRIX), inline=True)
-def _without_tangent(k, live, ball_gain, work):
-    """What the balls from k on do to the ring, and what elastic bodies ask for; those balls that have no tangent."""
+@jit(MASK(int64, MASK, float64, MATRIX), inline=True)
+def _condense(k, live, ball_gain, work):
+    """What the balls from k on do to the ring, and what elastic bodies ask for; returns the balls that have no tangent."""
     state, kept = take(work, at.STATE, work.shape[1] // 2 + k, live), pair_of(work, at.KEPT_FORCE, k, live)
     by_gap, by_rate = pair_of(work, at.KEPT_BY_GAP, k, live), pair_of(work, at.KEPT_BY_RATE, k, live)
     pressed = live & (state == at.SETTLED) & ~((kept.axial == 0.0) & (by_gap.axial == 0.0))
@@ -221,7 +220,7 @@ def _without_tangent(k, live, ball_gain, work):
 @jit(
     void(
         int64,
-        LIVE,
+        MASK,
         at.CONTACTS,
         at.TANGENTIALS,
         LANES,
@@ -278,14 +277,14 @@ def rigid_tangential(t, q, v, balls, contacts, constants, response):
     place(t, q, v, constants, work, (at.DIRECTION, BALL_CENTRE, BALL_VELOCITY))
     if elastic_bodies:
         move_centres(work, BALL_CENTRE, BALL_VELOCITY)
-    moving = False
     for k in range(z):
-        moving |= _first_guess(k, q, scalars, table, ball, ball_history, work)
+        _first_guess(k, q, scalars, table, ball, ball_history, work)
     for attempt in range(_ITERATIONS):
-        for k in range(z):
-            if attempt == PATIENCE and work[at.STATE, z + k] == at.MOVES:
-                # Forces without a potential can lead in circles: once more from the seat on the outer race.
-                _seat_outside(k, table, work)
+        if attempt == PATIENCE:
+            # Forces without a potential can lead in circles: once more from the seat on the outer race.
+            for k in range(z):
+                if work[at.STATE, z + k] == at.MOVES:
+                    _seat_outside(k, table, work)
         for k in range(0, z, WIDTH):
             # Directions of balls that have settled are those before their last step, as their forces are.
             live = live_of(k, z)
@@ -300,7 +299,7 @@ def rigid_tangential(t, q, v, balls, contacts, constants, response):
         return 1
     singular = False
     for k in range(0, z, WIDTH):
-        singular |= any_of(_without_tangent(k, live_of(k, z), ball_gain, work))
+        singular |= any_of(_condense(k, live_of(k, z), ball_gain, work))
     if singular:
         return 1
     for k in range(z):

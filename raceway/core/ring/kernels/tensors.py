@@ -8,7 +8,7 @@ from numba import float64, int64, types, void
 from numba.extending import register_jitable
 
 from raceway.core.jit import jit
-from raceway.core.lanes import LANES, LIVE, put, take
+from raceway.core.lanes import LANES, MASK, put, take
 from raceway.core.signatures import MATRIX
 
 
@@ -38,16 +38,13 @@ TENSOR = types.NamedUniTuple(float64, 4, Tensor)
 LANES_PAIR, LANES_TENSOR = types.NamedUniTuple(LANES, 2, Pair), types.NamedUniTuple(LANES, 4, Tensor)
 
 
-NOTHING = Pair(0.0, 0.0)
-
-
-@jit(LANES_PAIR(MATRIX, int64, int64, LIVE), inline=True)
+@jit(LANES_PAIR(MATRIX, int64, int64, MASK), inline=True)
 def pair_of(work, row, k, live):
     """Both halves of a row of ``work`` for the balls from k on."""
     return Pair(take(work, row, k, live), take(work, row, work.shape[1] // 2 + k, live))
 
 
-@jit(void(MATRIX, int64, int64, LIVE, LANES, LANES), inline=True)
+@jit(void(MATRIX, int64, int64, MASK, LANES, LANES), inline=True)
 def put_pair(work, row, k, live, first, second):
     """Lanes into both halves of a row of ``work``, for the balls from k on."""
     put(work, row, k, live, first)
@@ -115,7 +112,7 @@ def tensor_of(work, row, k):
     return Tensor(work[row, k], work[row, z + k], work[row + 1, k], work[row + 1, z + k])
 
 
-@jit(void(MATRIX, int64, int64, LIVE, LANES_TENSOR), inline=True)
+@jit(void(MATRIX, int64, int64, MASK, LANES_TENSOR), inline=True)
 def put_tensors(work, row, k, live, tensor):
     """The same of the balls from k on, in lanes."""
     put_pair(work, row, k, live, tensor.aa, tensor.ar)
