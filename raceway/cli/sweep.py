@@ -268,16 +268,20 @@ def _answer(
     refuse_large(task, pool, force)
     if choice.value is not None:
         choice.foresee(task.design, task.facts["scene"])
-    folder, stop = task.store, None
     try:
         with telling(progress, remaining=True) as report:
             if scheduler:
                 report(f"waiting for {scheduler}", 0, 0)
             fill_store(task, pool, retry_failed, report).close()
     except (KeyboardInterrupt, RacewayError) as why:
-        if not (folder / POINTS).is_file():
+        if not (task.store / POINTS).is_file():
             raise
-        stop = why
+        return _stored(task.store, csv, choice, why)  # in here: an interruption that nobody handles is sent again
+    return _stored(task.store, csv, choice, None)
+
+
+def _stored(folder: Path, csv: bool, choice: _Choice, stop: BaseException | None) -> Answer:
+    """What a store holds, with its files; stop : what ended the sweep before its last point."""
     with open_store(folder) as store:
         states, missing = store.status(), all_failed(store)
         libraries = [name for name in ("h5netcdf", "h5py") if find_spec(name) is None]
