@@ -15,12 +15,11 @@ from typing import Any
 
 import llvmlite.binding as llvm
 import numba
-from numba.core import untyped_passes
+from numba.core import runtime, untyped_passes
 from numba.core.bytecode import FunctionIdentity
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.registry import CPUDispatcher
-from numba.core.runtime import _nrt_python  # type: ignore[attr-defined]
 from numba.core.serialize import dumps
 from numba.core.targetconfig import ConfigStack
 from numba.core.typed_passes import DumpParforDiagnostics, NopythonRewrites
@@ -109,7 +108,8 @@ def resolved_once() -> Iterator[None]:
 @cache
 def name_allocator() -> None:
     """Give machine code that is read its allocator; numba would install all that it can compile, in half a second."""
-    for name, address in _nrt_python.c_helpers.items():
+    allocator: Numba = runtime
+    for name, address in allocator._nrt_python.c_helpers.items():
         llvm.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
 
 

@@ -270,7 +270,7 @@ class Kernel(Dispatcher):
         """
         self.enable_caching()
         cache_: Numba = self._cache
-        cache_.load_overload = cache_._load_overload
+        cache_.load_overload = cache_._load_overload  # numba's own installs all that it can compile first
         compiler.name_allocator()
         machine = self.targetctx.codegen().magic_tuple()
         key = self.signature, machine, self._digest
