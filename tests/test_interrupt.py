@@ -12,12 +12,14 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+import click
 import pytest
 
 from checks.validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, python, raceway
 from checks.validation.scenes import built_in
 from checks.validation.sessions import left, members
-from raceway import RacewayError
+from raceway import Answer, Command, RacewayError
+from raceway.answers.answer import Interrupted
 from raceway.cli.interrupt import Interrupts, farewell
 from raceway.extend import Store, open_store
 from raceway.framework.orphans import WATCH, deaf_to_terminals
@@ -96,6 +98,31 @@ def test_an_interruption_that_is_being_answered_is_not_raised_again():
                 time.sleep(1.3)  # it is looked for twice meanwhile
                 steps.append("in order")
     assert steps == ["in order"]
+
+
+class Slow(Answer):
+    """What is finished, which takes longer to show than an interruption is looked for."""
+
+    stem = "slow"
+
+    def report(self):
+        time.sleep(0.8)
+        yield "finished"
+
+
+def interrupted_front() -> Answer:
+    """Stopped on its way."""
+    try:
+        signal.raise_signal(signal.SIGTERM)
+    except KeyboardInterrupt as stop:
+        raise Interrupted(Slow()) from stop
+
+
+def test_what_is_finished_is_shown_in_peace_after_an_interruption(capsys):
+    command = Command("slow", interrupted_front, "", "raceway slow", folder=None, pictures=None).click()
+    with pytest.raises(click.Abort), Interrupts():
+        command.main([], standalone_mode=False)
+    assert "finished" in capsys.readouterr().out
 
 
 def test_a_handler_of_the_caller_and_other_threads_are_left_alone():

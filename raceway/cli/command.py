@@ -33,6 +33,7 @@ from raceway.cli.frame import (
     show_progress,
     tell_faults,
 )
+from raceway.cli.interrupt import answered
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
 from raceway.framework.packages import named
 
@@ -253,6 +254,7 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
                 if stop.partial is None:
                     raise
                 answer, interruption = stop.partial, stop  # what is finished is written and shown first
+                answered()
         files: list[str] = []
         fault = None if folder is None else attempt(lambda: answer.save(folder, pictures and interruption is None), files)
         fault = fault or _by_flags(about, answer.failure())

@@ -61,14 +61,20 @@ _CALLBACKS, _FINALIZER, _WEAK = "_raw_object_cache", "__del__", "weakref.py"
 _IMPORTS = ("<frozen importlib._bootstrap>", "cb")
 #: What ends a command in order, and what Python does about it when nobody asked for anything else.
 _ENDING = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL, signal.SIGHUP: signal.SIG_DFL}
-#: The first one that arrived in this command, and whether that was said.
+#: The first one that arrived in this command, whether that was said, and whether the last one was answered.
 _first: int | None = None
-_farewell_said = False
+_farewell_said = _answered = False
 
 
 def stopped_by() -> int | None:
     """Number of the signal that ended the command; None where none arrived."""
     return _first
+
+
+def answered() -> None:
+    """The interruption that arrived last was not lost: what is done from here on is not interrupted by it again."""
+    global _answered
+    _answered = True
 
 
 def farewell(say: Callable[[str], object]) -> int:
@@ -100,13 +106,13 @@ class Interrupts:
         self._looking = False
 
     def __enter__(self) -> Self:
-        global _first, _farewell_said
+        global _first, _farewell_said, _answered
         if threading.current_thread() is threading.main_thread():
             for number, usual in _ENDING.items():
                 if signal.getsignal(number) is usual:
                     self._before[number] = signal.signal(number, self._arrived)
             if self._before:  # not inside another one of this command
-                _first, _farewell_said = None, False
+                _first, _farewell_said, _answered = None, False, False
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -116,9 +122,10 @@ class Interrupts:
             self._timer.cancel()
 
     def _arrived(self, number: int, frame: FrameType | None) -> None:
-        global _first
+        global _first, _answered
         looking, self._looking = self._looking, False
-        if looking and (_farewell_said or _unwinding()):
+        _answered = _answered and looking
+        if looking and (_farewell_said or _answered or _unwinding()):
             self._later(_LOOK_S, self._look, number)
             return
         if _drops_exceptions(frame):
@@ -140,7 +147,7 @@ class Interrupts:
 
     def _look(self, number: signal.Signals) -> None:
         """See in the main thread whether the interruption is still on its way."""
-        if not _farewell_said:
+        if not (_farewell_said or _answered):
             self._looking = True
             _thread.interrupt_main(number)
 

@@ -18,6 +18,7 @@ from raceway.answers.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, 
 from raceway.answers.table import file_lines, micro
 from raceway.answers.wrapping import Words
 from raceway.cli.frame import RESULTS, require_matplotlib
+from raceway.cli.interrupt import answered
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact
@@ -268,6 +269,7 @@ def _answer(
     refuse_large(task, pool, force)
     if choice.value is not None:
         choice.foresee(task.design, task.facts["scene"])
+    stop: BaseException | None = None  # what ended the sweep before its last point
     try:
         with telling(progress, remaining=True) as report:
             if scheduler:
@@ -276,23 +278,20 @@ def _answer(
     except (KeyboardInterrupt, RacewayError) as why:
         if not (task.store / POINTS).is_file():
             raise
-        return _stored(task.store, csv, choice, why)  # in here: an interruption that nobody handles is sent again
-    return _stored(task.store, csv, choice, None)
-
-
-def _stored(folder: Path, csv: bool, choice: _Choice, stop: BaseException | None) -> Answer:
-    """What a store holds, with its files; stop : what ended the sweep before its last point."""
-    with open_store(folder) as store:
+        stop = why
+        if isinstance(why, KeyboardInterrupt):
+            answered()
+    with open_store(task.store) as store:
         states, missing = store.status(), all_failed(store)
         libraries = [name for name in ("h5netcdf", "h5py") if find_spec(name) is None]
         if libraries:
             words = f"no results.nc: it needs {', '.join(libraries)}; {extra('sweep')}; points.sqlite holds everything"
             warnings.warn(words, stacklevel=2)
         steps: list[Callable[[], object]] = [] if libraries else [lambda: write_netcdf(store)]
-        steps += [lambda: write_csv(store, folder / TABLE)] if csv else []
+        steps += [lambda: write_csv(store, task.store / TABLE)] if csv else []
         if choice.value is not None and stop is None and missing is None:
-            steps.append(lambda: choice.draw(folder)["files"][0])
-        answer = _Swept(folder, *_files(steps, folder))
+            steps.append(lambda: choice.draw(task.store)["files"][0])
+        answer = _Swept(task.store, *_files(steps, task.store))
     if isinstance(stop, RacewayError) or answer.fault is None:
         answer = attrs.evolve(answer, fault=stop if isinstance(stop, RacewayError) else missing)
     if isinstance(stop, KeyboardInterrupt):

@@ -33,10 +33,11 @@ class Decisions:
         self.kept: list[Part] = []
         self.left_out: list[Part] = []
 
-    def decide(self, need: bool, part: str, why: str, why_not: str = "") -> bool:
-        """Keep a part or leave it out, with ``why`` for both unless ``why_not`` differs; whether it is included."""
-        stays = need or part in self.force
-        (self.kept if stays else self.left_out).append(Part(part, why if need else "forced" if stays else why_not or why))
+    def decide(self, part: str, why: str, *obstacles: tuple[bool, str]) -> bool:
+        """Keep a part unless an obstacle holds, the first of which is the reason, or ``why`` for both; whether it is included."""
+        obstacle = next((words or why for holds, words in obstacles if holds), "")
+        stays = not obstacle or part in self.force
+        (self.kept if stays else self.left_out).append(Part(part, "forced" if obstacle and stays else obstacle or why))
         return stays
 
     def keeps(self, name: str) -> bool:
@@ -83,40 +84,35 @@ class PlannedMotion:
 
 def decide_tilts(problem: Problem, parts: Decisions) -> bool:
     """Whether the ring tilts."""
-    return parts.decide(problem.tilts, "tilts", problem.why("tilts"))
+    return parts.decide("tilts", problem.why("tilts"), (not problem.tilts, ""))
 
 
 def decide_balls(problem: Problem, parts: Decisions) -> Balls:
     """Forces on the balls."""
-    inertia = problem.kinematics.ball_inertia and problem.spin_speed > 0.0
-    why_not = "kinematics.ball_inertia is false" if problem.spin_speed > 0.0 else "no spin speed"
-    inertia = parts.decide(
-        inertia, "centrifugal force of the balls", "kinematics.ball_inertia at cage speed; two unknowns a ball", why_not
-    )
+    contact, kinematics = problem.contact, problem.kinematics
+    still = (not problem.spin_speed > 0.0, "no spin speed")
+    why = "kinematics.ball_inertia at cage speed; two unknowns a ball"
+    massless = (not kinematics.ball_inertia, "kinematics.ball_inertia is false")
+    inertia = parts.decide("centrifugal force of the balls", why, still, massless)
     if problem.spin_speed > 0.0 and problem.sweeps:
         part = "change of centrifugal and gyroscopic terms with the speed"
-        parts.decide(problem.spin_changes, part, problem.why("spin_changes"))
+        parts.decide(part, problem.why("spin_changes"), (not problem.spin_changes, ""))
     rates = problem.excitation is not None and (problem.integrator.method.inertial or not problem.recorded)
-    with_damping = problem.contact.dashpot > 0.0 or problem.time_constant > 0.0
-    why_not = "no motion or no rates: a series of equilibria" if with_damping else problem.said("contact.damping", "0")
-    why = "contact.damping is set" if problem.contact.dashpot > 0.0 else f"c = tau k, tau = {problem.time_constant:.3g} s"
-    parts.decide(with_damping and rates, "contact damping", why, why_not)
-    rubbing = problem.contact.friction > 0.0
-    why_not = problem.said("contact.friction", "0")
-    if rubbing and not problem.recorded and problem.traits.every_node:
-        rubbing = False
-        why_not = "equilibria and static stiffness of elastic bodies are frictionless"
-    friction = parts.decide(rubbing, "friction", "contact.friction is set", why_not)
-    turns, still = problem.spin_speed > 0.0, "no spin speed"
-    moments = problem.gyroscopic != "none"
-    part, why = "gyroscopic moments of the balls", problem.why("gyroscopic")
-    moments = parts.decide(moments and turns, part, why, still if moments else why)
-    part, why = "centrifugal growth of the inner ring", problem.why("ring_growth")
-    parts.decide(bool(problem.ring_growth) and turns, part, why, still if problem.ring_growth else why)
-    why_not = problem.said("kinematics.orbiting", "false")
-    parts.decide(problem.kinematics.orbiting, "orbiting balls", "kinematics.orbiting at cage speed", why_not)
+    undamped = not (contact.dashpot > 0.0 or problem.time_constant > 0.0)
+    why = "contact.damping is set" if contact.dashpot > 0.0 else f"c = tau k, tau = {problem.time_constant:.3g} s"
+    why_not = "no motion or no rates: a series of equilibria"
+    parts.decide("contact damping", why, (undamped, problem.said("contact.damping", "0")), (not rates, why_not))
+    smooth = (not contact.friction > 0.0, problem.said("contact.friction", "0"))
+    why_not = "equilibria and static stiffness of elastic bodies are frictionless"
+    at_rest = (not problem.recorded and problem.traits.every_node, why_not)
+    friction = parts.decide("friction", "contact.friction is set", smooth, at_rest)
+    part, none = "gyroscopic moments of the balls", problem.gyroscopic == "none"
+    moments = parts.decide(part, problem.why("gyroscopic"), (none, ""), still)
+    parts.decide("centrifugal growth of the inner ring", problem.why("ring_growth"), (not problem.ring_growth, ""), still)
+    fixed = (not kinematics.orbiting, problem.said("kinematics.orbiting", "false"))
+    parts.decide("orbiting balls", "kinematics.orbiting at cage speed", fixed)
     rows = f"bearing.arrangement is {problem.bearing.arrangement if not problem.bearing.row else problem.bearing.signs}"
-    parts.decide(len(problem.bearing.rows) > 1, "further rows of balls", rows)
+    parts.decide("further rows of balls", rows, (len(problem.bearing.rows) == 1, ""))
     kind = "tangential" if friction or moments else "inertial" if inertia else "weightless"
     return Balls(kind, inertia, moments, friction)
 
@@ -124,11 +120,10 @@ def decide_balls(problem: Problem, parts: Decisions) -> Balls:
 def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: bool) -> PlannedMotion:
     """Coordinates that move, and the turns that are integrated."""
     dynamic, integrator, identifier = problem.excitation is not None, problem.integrator, problem.identifier
-    spins = problem.inertia.polar > 0.0 and problem.spin_speed != 0.0
-    part, why = "gyroscopic moments of ring and rotor", "spin on free tilts"
-    parts.decide(spins and tilts and dynamic, part, why, "no spin on free tilts")
+    free = tilts and dynamic and problem.inertia.polar > 0.0 and problem.spin_speed != 0.0
+    parts.decide("gyroscopic moments of ring and rotor", "spin on free tilts", (not free, "no spin on free tilts"))
     form = "steady orbit" if integrator.method.steady else "time integration"
-    if not parts.decide(problem.recorded, f"{form} ({integrator.kind})", problem.why("recorded")):
+    if not parts.decide(f"{form} ({integrator.kind})", problem.why("recorded"), (not problem.recorded, "")):
         return PlannedMotion(False, 0, 0)
     turns = problem.turns
     # Only what turns alike every turn needs one turn; a window over several turns needs them.
@@ -140,7 +135,7 @@ def decide_motion(problem: Problem, parts: Decisions, tilts: bool, friction: boo
         motion = "the steady motion" if steady else "a series of equilibria without memory"
         parts.leave_out(f"{turns - 1} of {turns} turns", f"{motion} repeats every turn")
         turns = 1
-    parts.decide(problem.depends_on_start, "run from another start", problem.why("depends_on_start"))
+    parts.decide("run from another start", problem.why("depends_on_start"), (not problem.depends_on_start, ""))
     return PlannedMotion(True, turns, problem.steps_per_turn)
 
 
@@ -149,6 +144,6 @@ def decide_output(problem: Problem, parts: Decisions, motion: PlannedMotion) -> 
     every = motion.steps_per_turn
     samples = recorded_per_turn(every, motion.turns, problem.integrator.method.inertial) if motion.recorded else 0
     why_not = f"{samples} of {every} steps per turn are recorded, enough for harmonics up to some tens of 1x"
-    part, why = "history of every step", f"the {every} steps of a turn are the samples of the answer"
-    parts.decide(0 < every <= samples, part, why, why_not if every else "nothing moves")
+    why = f"the {every} steps of a turn are the samples of the answer"
+    parts.decide("history of every step", why, (every == 0, "nothing moves"), (every > samples, why_not))
     parts.leave_out("pictures", "drawn by --pictures only")

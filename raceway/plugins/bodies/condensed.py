@@ -224,12 +224,12 @@ class Condensed:
             parts.keep("pressures at surface points", why)
             moves = problem.recorded and problem.integrator.method.inertial and problem.kinematics.ball_inertia
             part, why = "inertia of the balls in their meridian planes", "two coordinates a ball, in steps of time"
-            parts.decide(moves, part, why, "their slowest mode lies at some kHz: they are quasi-static")
+            parts.decide(part, why, (not moves, "their slowest mode lies at some kHz: they are quasi-static"))
         else:
             why_not = (
                 "rings on rigid seats, thin against the distance of the balls: less than 1e-3 of a contact's compliance"
             )
-            parts.decide(self.balls_meet(problem), BETWEEN_BALLS, "soft seats or thick rings", why_not)
+            parts.decide(BETWEEN_BALLS, "soft seats or thick rings", (not self.balls_meet(problem), why_not))
             if problem.excitation is not None:
                 why = "rings and balls are quasi-static; `model.inertia` of the result states the error"
                 parts.leave_out("inertia of the bodies' deformation", why)

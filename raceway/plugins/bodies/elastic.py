@@ -288,7 +288,7 @@ class Elastic:
         why_not = (
             "contact.discretisation is resultant: one force per contact, whose law replaces the compliance of the mesh below"
         )
-        parts.decide(nodal, "pressures at surface points", why, why_not)
+        parts.decide("pressures at surface points", why, (not nodal, why_not))
         parts.keep("ideal cage", "holds each ball at its azimuth without rotation")
         why_not = "balls do not orbit: the cage holds them; their centrifugal force is a separate part"
         parts.leave_out("travel of the balls", why_not)
@@ -305,7 +305,7 @@ class Elastic:
             parts.keep("factors of equal balls and sectors", why)
         why = "along the normals of the most loaded contacts, once, at rest; `raceway view` recovers the stresses of all elements"
         why_not = "contact resultants on coarse meshes have no stresses of contacts below them"
-        parts.decide(nodal, "stress recovery", why, why_not)
+        parts.decide("stress recovery", why, (not nodal, why_not))
 
     def cost(self, problem: Problem, balls: Balls, motion: PlannedMotion, parts: Decisions) -> Cost:
         """Meshing, factors and solves; contact resultants are calibrated as the bearing's own condensed rings."""
