@@ -4,6 +4,7 @@ BIN    := $(VENV)/bin
 SCENE  ?= examples/b7206.toml
 PACKAGES := $(wildcard ./packages/*)
 # Byte code is written by the first import: most of what is installed is never imported.
+unexport PYTHONDONTWRITEBYTECODE
 INSTALL = $(BIN)/python -m pip install -q --no-compile -c constraints.txt
 
 # What a bare Debian lacks for gmsh (linked), pyvista (opened at run time, without a display), the tests of pages (a browser)
@@ -20,10 +21,10 @@ demo: $(VENV)/.base ## the main job on a fresh clone: needs python3 (3.11 or lat
 	$(BIN)/raceway run $(SCENE)
 
 test: $(VENV)/.all ## everything installed, the quick tests: some minutes
-	$(BIN)/python -m pytest -n 2 -q -m "not slow and not docs and not night and not release and not ross"
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m "not slow and not docs and not night and not release and not ross"
 
 test-all: $(VENV)/.all ## the long proofs too
-	$(BIN)/python -m pytest -n 2 -q -m "not release and not ross"
+	$(BIN)/python -m pytest -n 2 --dist worksteal -q -m "not release and not ross"
 
 lint: $(VENV)/.all ## ruff, import-linter, mypy, measures of structure
 	$(BIN)/ruff check .

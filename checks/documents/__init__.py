@@ -13,16 +13,14 @@ promises  docs/pictures/stability.svg: from its report
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
 from typing import Any
 
 import attrs
 
+from checks.validation.command_line import invoke, raceway
 from raceway.extend import Registry
 from raceway.framework.packages import named
 from raceway.scene.schema import keys
@@ -186,10 +184,9 @@ def _default(value: Any) -> str:
 def screen() -> str:
     """What ``raceway run examples/minimal.toml`` prints with warm caches, without the name of the folder."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "raceway", "run", str(SHOWN.relative_to(ROOT)), "--out", folder]
-        environment = {**os.environ, "COLUMNS": "80", "NO_COLOR": "1"}
-        for _ in range(2):
-            done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT, env=environment)
+        invoke("run", SHOWN, "--out", folder)  # compiles, where the caches are cold
+        done = raceway("run", SHOWN.relative_to(ROOT), "--out", folder, cwd=ROOT, COLUMNS=80, NO_COLOR=1)
+    done.check_returncode()
     lines = [line.rstrip() for line in done.stdout.splitlines() if not line.startswith("written:")]
     return "\n".join(lines) + "\n"
 

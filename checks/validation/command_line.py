@@ -31,9 +31,9 @@ def invoke(*words: Any) -> Result:
     return found
 
 
-def raceway(*words: Any, **environment: Any) -> subprocess.CompletedProcess[str]:
+def raceway(*words: Any, cwd: Any = None, **environment: Any) -> subprocess.CompletedProcess[str]:
     """A command in a process of its own."""
-    return python("-m", "raceway", *words, **environment)
+    return python("-m", "raceway", *words, cwd=cwd, **environment)
 
 
 def python(*words: Any, cwd: Any = None, **environment: Any) -> subprocess.CompletedProcess[str]:
