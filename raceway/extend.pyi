@@ -139,7 +139,7 @@ from .answers.table import grouped as grouped
 from .answers.table import micro as micro
 from .answers.table import rows_table as rows_table
 from .answers.table import sections as sections
-from .answers.wrapping import Words as Words
+from .answers.table import Words as Words
 from .pipeline.equilibrium import equilibrium_table as equilibrium_table
 from .pipeline.equilibrium import largest_contacts as largest_contacts
 from .pipeline.equilibrium import pressures as pressures

@@ -7,8 +7,7 @@ from scipy.optimize import minimize_scalar
 from scipy.special import ellipe
 
 from checks.validation import rolling_friction as published
-from raceway.core.contact.losses import mean_slip
-from raceway.core.elementary import exponential, logarithm
+from raceway.core.contact.losses import exponential, logarithm, mean_slip
 from raceway.core.rolling_friction import MEASURED, losses, spin_shape
 
 

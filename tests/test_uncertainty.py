@@ -12,9 +12,8 @@ from rich.console import Console
 import raceway as rw
 from checks.validation.command_line import MINIMAL, invoke
 from raceway.answers.quantities import KXX, KYY
-from raceway.bodies.elastic_change import elastic_change
 from raceway.extend import K, stated
-from raceway.pipeline.uncertainty import interval
+from raceway.pipeline.uncertainty import elastic_change, interval
 
 STATIC = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
 BEARINGS = [

@@ -6,7 +6,7 @@ import numpy as np
 
 import raceway as rw
 from checks.robustness import Row
-from raceway.bodies.elastic_change import elastic_change
+from raceway.pipeline.uncertainty import elastic_change
 
 COMMAND = "python -m checks uncertainty"
 _BEARINGS = "608 6000 6200 628 6205 6008 6310 6220 6040 61808 61820 61908 61930 7000C 7014C 7032C 7206C 7220C 7206A 7914C 7904C 7914A5 7040A"

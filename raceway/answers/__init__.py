@@ -2,7 +2,7 @@
 
 answer     what a public function answers: its screen, files and picture
 quantities  every number that the product states, declared once
-table      rows and sections on a screen;  wrapping: lines that end between words
+table      rows and sections on a screen, lines that end between words
 picture    figures of matplotlib, without a window or on a caller's axes
 page       one HTML page that opens without a network
 progress   the bar on standard error

@@ -120,8 +120,7 @@ class Answer(Shown):
         """The report on a terminal, the written files below it."""
         from rich.console import Group
 
-        from raceway.answers.table import file_lines, rows_table
-        from raceway.answers.wrapping import Words
+        from raceway.answers.table import Words, file_lines, rows_table
 
         words = [Words(part) if isinstance(part, str) else part for part in self.report()]
         parts = [rows_table(part) if isinstance(part, list) else part for part in words]

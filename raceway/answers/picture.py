@@ -6,7 +6,7 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from raceway.answers.wrapping import lines_of
+from raceway.answers.table import lines_of
 from raceway.errors import RacewayError, extra
 from raceway.framework.doors import door, reader
 from raceway.storage.files import write_whole

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import re
+import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, TypeVar
 
@@ -12,17 +13,64 @@ import attrs
 from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
 from rich.markup import escape
+from rich.measure import Measurement
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from raceway.answers.wrapping import Words, fixed
 from raceway.framework.shown import number as number
 from raceway.framework.shown import number_within as number_within
 from raceway.framework.shown import tilt_words as tilt_words
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, RenderableType
+
+
+#: A blank that no line ends at, while a text is wrapped.
+_FIXED = "\N{NO-BREAK SPACE}"
+_UNIT = r"(?:N/µm|N s/m|N m|N|mm|µm|m|µrad|rad|deg|r/min|MPa|GPa|kg|k?Hz|MiB|mJ|s|%)(?![\w/])"
+#: A number and its unit, a sign and its number, both sides of an equation, a product.
+_TOGETHER = re.compile(
+    rf"(?<=\d) (?={_UNIT})|(?<=\+-) (?=\d)|(?<=\w) (?== )|(?<==) (?=\S)|(?<=\d) (?=x \d)|(?<=\d x) (?=\d)"
+)
+
+
+def fixed(text: str) -> str:
+    """The text with blanks that stay where a line must not end."""
+    return re.sub(r"N s/m|N m\b", lambda unit: unit[0].replace(" ", _FIXED), _TOGETHER.sub(_FIXED, text))
+
+
+def lines_of(text: str, width: int) -> list[str]:
+    """The text in lines of at most ``width`` signs; a single word is broken only where it is longer than a line."""
+    lines: list[str] = []
+    for line in text.splitlines():
+        parts = textwrap.wrap(fixed(line), max(width, 1), break_on_hyphens=False) or [""]
+        lines += [piece.replace(_FIXED, " ") for piece in parts]
+    return lines
+
+
+@attrs.frozen
+class Words:
+    """A text on the screen, wrapped to the room that it is given.
+
+    Attributes
+    ----------
+    style : colour and weight, in rich's words;  indent : blanks before every line
+    """
+
+    text: str
+    style: str = ""
+    indent: int = 0
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Text]:
+        for line in lines_of(self.text, options.max_width - self.indent):
+            yield Text(" " * self.indent + line, style=self.style)
+
+    def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
+        words = fixed(self.text).split() or [""]
+        longest = max(map(len, re.split(r"[ \n]", fixed(self.text)) or words))
+        widest = max(map(len, self.text.splitlines()), default=0)
+        return Measurement(min(longest, options.max_width), min(widest, options.max_width))
 
 
 Row = tuple[str, str, str]

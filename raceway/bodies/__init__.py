@@ -6,5 +6,4 @@ mounting     preload of a pair, an axial displacement that is held
 running      contact laws at the running speed: entraining speeds, loads, parameters that fit the equilibrium
 contacts     angles, ellipses and pressures of contact resultants, edges of grooves, error of a contact law
 rigid_bearing   rigid rings and balls at one point;  columns: at many operating points at once
-elastic_change   how much elastic rings and balls change the stiffness of rigid ones, without a mesh
 """

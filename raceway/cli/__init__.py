@@ -1,8 +1,9 @@
 """The command line, the only place that prints or exits.
 
-main       the group of all commands;  console: messages and exit codes;  frame: what commands share
-commands   their table;  command: one made from a public function;  completion: of keys of a scene, by the shell
-interrupt  Ctrl-C, SIGTERM, SIGHUP, and standard streams that are closed or know ASCII only;  verbose: what -v reports
-plan       raceway plan;  failure: files of a failed run
+main       the group of all commands;  console: messages and exit codes;  frame: what commands share,
+           with what -v reports, keys that the shell completes, and files of a failed run
+commands   their table;  command: one made from a public function
+interrupt  Ctrl-C, SIGTERM, SIGHUP, and standard streams that are closed or know ASCII only
+plan       raceway plan
 sweep, study, plugins   commands that are more than a front: sweeps, studies; for developers, with caches and a first scene
 """

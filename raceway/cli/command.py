@@ -16,18 +16,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import attrs
 import click
 
-from raceway.cli.completion import OF_KEYS, scene_keys
 from raceway.cli.frame import (
     FILE,
+    OF_KEYS,
     RESULTS,
     attempt,
     changed_tables,
     common,
     has_matplotlib,
+    keep_state,
     keeping,
     load,
     out_option,
     plugin_files,
+    scene_keys,
     set_keys,
     show,
     show_progress,
@@ -110,7 +112,8 @@ class Command(NamedTuple):
         """The command, with the module of its front imported."""
         front = named(self.front) if isinstance(self.front, str) else self.front
         # Argument -> its words; several arguments of one line are parted by ``;  ``.
-        lines = re.sub(r"\n\s+", " ", _sections(front)[1])
+        before, parameter_lines = _sections(front)
+        lines = re.sub(r"\n\s+", " ", parameter_lines)
         entries = [entry for line in lines.splitlines() for entry in re.split(r";  (?=[\w, *]+ : )", line)]
         pairs = (entry.partition(" : ") for entry in entries)
         words = {name.strip(): words.strip() for names, _, words in pairs for name in names.split(",")}
@@ -122,7 +125,8 @@ class Command(NamedTuple):
         def call(**values: Value) -> int:
             return _perform(self, front, values)
 
-        help_text = f"{_summary(front)}\n\n\b\nExample:\n" + "\n".join(f"  {line}" for line in self.example.splitlines())
+        summary = before.split("\n\nReturns\n", 1)[0].replace("``", "").strip()
+        help_text = f"{summary}\n\n\b\nExample:\n" + "\n".join(f"  {line}" for line in self.example.splitlines())
         command: Callable[..., Value] = common(call)
         if "plugins" in signature.parameters:
             command = plugin_files(command)
@@ -244,8 +248,6 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
                 answer: Answer = front(*bound.args, **bound.kwargs)
             except (ConvergenceError, BeyondPlanError) as error:
                 if folder is not None and isinstance(scene := arguments.get("scene"), Scene):
-                    from raceway.cli.failure import keep_state
-
                     keep_state(error, scene, folder)
                 raise
             except SceneError as error:
@@ -291,11 +293,6 @@ def _sections(front: Callable[..., Value]) -> tuple[str, str]:
     """What stands before the parameters, and these, of a docstring in numpydoc's form."""
     before, _, after = (inspect.getdoc(front) or "").partition("\nParameters\n----------\n")
     return before, re.split(r"\n\n\w+\n-+\n", after)[0]
-
-
-def _summary(front: Callable[..., Value]) -> str:
-    before, _ = _sections(front)
-    return before.split("\n\nReturns\n", 1)[0].replace("``", "").strip()
 
 
 def _option_help(words: str) -> str:

@@ -14,8 +14,7 @@ from rich.padding import Padding
 from rich.table import Table
 
 from raceway.answers.answer import Answer, Part
-from raceway.answers.table import Row, grouped, number, sections
-from raceway.answers.wrapping import Words
+from raceway.answers.table import Row, Words, grouped, number, sections
 from raceway.errors import SceneError
 from raceway.framework.shown import duration
 from raceway.planning import parts

@@ -18,8 +18,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from raceway.answers.table import file_lines, sections
-from raceway.answers.wrapping import Words
+from raceway.answers.table import Words, file_lines, sections
 from raceway.cli.console import print_json
 from raceway.cli.frame import FILE, common, faults, plugin_files, show, show_progress
 from raceway.errors import RacewayError

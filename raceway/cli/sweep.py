@@ -15,8 +15,7 @@ import attrs
 from raceway.answers.answer import Answer, Interrupted, Part
 from raceway.answers.progress import ShowProgress, telling
 from raceway.answers.quantities import ERROR, KYY, KYY_TILTS_FOLLOW, STIFFNESS, Z_REAL, K
-from raceway.answers.table import file_lines, micro
-from raceway.answers.wrapping import Words
+from raceway.answers.table import Words, file_lines, micro
 from raceway.cli.frame import RESULTS, require_matplotlib
 from raceway.cli.interrupt import answered
 from raceway.errors import RacewayError, SceneError, extra

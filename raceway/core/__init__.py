@@ -3,7 +3,6 @@
 jit            the one decorator for compiled kernels;  compiler: what numba does otherwise for them;  wheel_kernels: those that a wheel brings;  deferred: those beside light classes
 columns        numbers that may be columns, one of each operating point
 lanes          one number of each of four balls at a time
-elementary     exponential and logarithm that loops over them are vectorised with
 signatures     types of the kernels that are passed as function pointers
 thermal        steady temperatures of a network of six nodes, and its conductances
 threads        threads that share work, and how many there are

@@ -182,14 +182,11 @@ class Registry:
                 Fault(str(path), "has no hook: write for instance @hookimpl def raceway_contact_laws(): return [MyLaw]")
             ]
         if faults:
-            self._remove(module, added)
+            if self.manager.is_registered(module):
+                self.manager.unregister(module)
+            self._forget(added)
             raise PluginError("; ".join(str(fault) for fault in faults))
         return added
-
-    def _remove(self, plugin: object, entries: list[Entry]) -> None:
-        if self.manager.is_registered(plugin):
-            self.manager.unregister(plugin)
-        self._forget(entries)
 
     def notify(self, hook: str, **arguments: object) -> None:
         """Call a life-cycle hook of every plug-in, in the order of registration.

@@ -211,10 +211,11 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
     turns = model.plan.turns if count < steps else min(model.plan.turns, max(model.plan.turns // 2, _LEAST_TURNS))
     if not fits(turns, count, model.system.ball_count):
         return Part(None, Estimate.SECOND_RUN_TOO_LARGE(steps=count)), None
+    models = [attrs.evolve(m.model, plan=attrs.evolve(m.model.plan, turns=turns)) for m in run.motions]
     try:
         again = [
-            simulate(_over(motion.model, turns), motion.equilibrium, run.on_progress, count, motion.start)
-            for motion in run.motions
+            simulate(shorter, motion.equilibrium, run.on_progress, count, motion.start)
+            for shorter, motion in zip(models, run.motions, strict=True)
         ]
     except (ConvergenceError, BeyondPlanError) as why:
         return Part(None, Estimate.SECOND_RUN_FAILED(steps=count, why=why)), None
@@ -238,10 +239,6 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
         return Part(None, Estimate.SECOND_RUN_WITHOUT_Z(steps=count)), second
     words = "half as many steps" if 2 * count == steps else f"{count} instead of {steps} steps per turn"
     return Part(float(abs(shift)), Estimate.SECOND_RUN(change=words, order=method.order), -shift), second
-
-
-def _over(model: Model, turns: int) -> Model:
-    return model if turns == model.plan.turns else attrs.evolve(model, plan=attrs.evolve(model.plan, turns=turns))
 
 
 def _sampling(run: Identified) -> Part:

@@ -150,8 +150,7 @@ def _run(
     if model.excitation is None:
         answer = _Answer(body_errors(model, equilibrium, Estimate.STATIC_SCENE()))
     else:
-        move = partial(_motions, equilibrium=equilibrium, progress=progress, near=near, stay=stay)
-        model, motions, doubts = _motion_of(model, move, allowance, registry)
+        model, motions, doubts = _motions(model, equilibrium, progress, near, stay, allowance, registry)
         answer = _answer(model, equilibrium, motions, allowance, doubts)
     end, processor = working_clock(), working_process_time() - processor
     compile_s = take_compile_seconds()
@@ -236,25 +235,22 @@ def _answer(
 
 
 def _motions(
-    model: Model, equilibrium: Equilibrium, progress: OnProgress, near: Result | None, stay: bool
-) -> list[Simulation]:
-    """The motions that the identifier needs; a similar scene's is followed where it is one by the same integrator."""
-    needs = model.problem.identifier.method.needs
-    if "speeds" in needs:
-        return simulate_speeds(model, progress)
-    if "record" not in needs:
-        return []
-    same = near is not None and near.model.problem.integrator.kind == model.problem.integrator.kind
-    return [simulate(model, equilibrium, progress, near=near.simulation if near is not None and same else None, stay=stay)]
+    model: Model, equilibrium: Equilibrium, progress: OnProgress, near: Result | None, stay: bool, allowance: Allowance,
+    registry: Registry,
+) -> tuple[Model, list[Simulation], list[str]]:  # fmt: skip
+    """The motions that the identifier needs, with their model and warnings; a similar scene's is followed by the same integrator.
 
-
-def _motion_of(
-    model: Model, move: Callable[[Model], list[Simulation]], allowance: Allowance, registry: Registry
-) -> tuple[Model, list[Simulation], list[str]]:
-    """The motions; integrated over time, with a warning, where planning chose a steady orbit that is not found or is unstable."""
+    They are integrated over time where planning chose a steady orbit that is not found or is unstable.
+    """
+    needs, motions = model.problem.identifier.method.needs, list[Simulation]()
     automatic = model.problem.integrator.method.steady and model.problem.integrator_why != ""
     try:
-        motions = move(model)
+        if "speeds" in needs:
+            motions = simulate_speeds(model, progress)
+        elif "record" in needs:
+            same = near is not None and near.model.problem.integrator.kind == model.problem.integrator.kind
+            follow = near.simulation if near is not None and same else None
+            motions = [simulate(model, equilibrium, progress, near=follow, stay=stay)]
     except (ConvergenceError, SceneError) as fault:
         if not automatic:
             raise
@@ -263,11 +259,12 @@ def _motion_of(
         if not automatic or all(motion.whole.counts["floquet"]["verdict"] != "unstable" for motion in motions):
             return model, motions, []
         why = "the steady orbit is unstable"
-    plan = plan_of(model.problem.integrated("newmark", why))
+    plan = plan_of(model.problem.integrated(why))
     registry.notify("raceway_plan_made", plan=plan)
     allowance.planned += plan.predicted_wall_s
     model = attrs.evolve(model, problem=plan.problem, plan=plan)
-    return model, move(model), [f"{why}: the motion is integrated over time instead"]
+    model, motions, _ = _motions(model, equilibrium, progress, near, stay, allowance, registry)
+    return model, motions, [f"{why}: the motion is integrated over time instead"]
 
 
 def _lines(model: Model, simulation: Simulation | None) -> list[Line]:

@@ -21,8 +21,7 @@ from raceway.answers.quantities import (
     Z,
     dry_damping_note,
 )
-from raceway.answers.table import Row, micro, sections, tilt_words
-from raceway.answers.wrapping import Words
+from raceway.answers.table import Row, Words, micro, sections, tilt_words
 from raceway.framework.duties import has_rollers
 from raceway.framework.registry import default_registry
 from raceway.pipeline.content import Content

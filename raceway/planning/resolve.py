@@ -10,7 +10,7 @@ from typing import Any, Generic, TypeVar, overload
 import attrs
 
 from raceway.core.columns import cos, log, sin, some, sqrt, with_values
-from raceway.core.contact.axial import axial_balance
+from raceway.core.contact.geometry import axial_balance
 from raceway.errors import SceneError
 from raceway.framework.contracts import Traits
 from raceway.framework.duties import BodyKind, changes_speed, duration_s, has_phase, ramp_turns, speed_rpm, steady_form
@@ -123,8 +123,9 @@ class Problem(SceneTables):
             part = part[name]
         return True
 
-    def integrated(self, kind: str, why: str) -> Problem:
-        """The same problem by another integrator, and why planning chose it."""
+    def integrated(self, why: str, steady: bool = False) -> Problem:
+        """The same problem integrated over time, or by its steady orbit, and why planning chose that."""
+        kind = AutoIntegrator.STEADY if steady else AutoIntegrator.TRANSIENT
         integrator = attrs.evolve(self.integrator, kind=kind, method=default_registry().find("integrator", kind).plugin())
         return attrs.evolve(self, integrator=integrator, integrator_why=why)
 
@@ -455,8 +456,8 @@ def resolve(scene: Scene) -> Problem:
         return problem
     why = problem.unsteady or next((words for _, words in speaking(_TRANSIENT, problem)), "")
     if why:
-        return problem.integrated("newmark", why)
-    return problem.integrated("periodic", "the force repeats every turn and contacts have no memory")
+        return problem.integrated(why)
+    return problem.integrated("the force repeats every turn and contacts have no memory", steady=True)
 
 
 def damped_step_limit(limit: float, time_constant: float) -> float:

@@ -218,11 +218,6 @@ def refuse_what_cannot_run(problem: Problem) -> None:
 _ROUGH = 2.0
 
 
-def _has_no_load(p: Problem) -> bool:
-    load = p.load.axial or any(p.load.radial) or (any(p.load.moment) and p.tilts) or p.bearing.preloaded
-    return p.supports.axial != "displacement" and not load
-
-
 def _least_steps(p: Problem) -> int:
     """Steps a turn that an explicit method needs where their number is given; 0 where nothing is known of it."""
     with_given_steps = p.recorded and not p.integrator.method.implicit and isinstance(p.integrator.steps_per_turn, int)
@@ -232,7 +227,11 @@ def _least_steps(p: Problem) -> int:
 
 #: Failures of a run that closed formulas foresee.
 _FORESEEN: tuple[Rule[Problem], ...] = (
-    Rule("load.axial", _has_no_load, "no load acts: the stiffness is undefined"),
+    Rule(
+        "load.axial", lambda p: p.supports.axial != "displacement" and not (
+            p.load.axial or any(p.load.radial) or (any(p.load.moment) and p.tilts) or p.bearing.preloaded
+        ), "no load acts: the stiffness is undefined",
+    ),
     Rule(
         "identifier.window_turns",
         lambda p: p.recorded and (getattr(p.identifier.method, "window_turns", None) or 0) > p.turns,

@@ -13,7 +13,7 @@ from raceway.answers.answer import Answer, Part
 from raceway.answers.picture import MOST_COLUMNS, new_figure, wrapped
 from raceway.answers.progress import ShowProgress, telling
 from raceway.answers.quantities import Z_IMAG, Z_REAL, C, quantity_of, read_in
-from raceway.answers.wrapping import Words
+from raceway.answers.table import Words
 from raceway.bodies.model import build_model
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.doors import KEY_VALUES, PATH, PATHS, TEXTS, door

@@ -11,7 +11,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Part
-from raceway.answers.wrapping import Words
+from raceway.answers.table import Words
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Solved
 from raceway.core.periodic.intervals import Change, forces, spread

@@ -14,7 +14,7 @@ import numpy as np
 from raceway.answers.answer import Answer, Interrupted, Part
 from raceway.answers.progress import ShowProgress, telling
 from raceway.answers.quantities import ENDS, K_ERROR, C, Quantity, Z, named
-from raceway.answers.wrapping import Words
+from raceway.answers.table import Words
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import KEY_VALUES, PATH, PATHS, door, member
 from raceway.framework.registry import Registry, registry_with
@@ -29,6 +29,7 @@ from raceway.points.effects import MOVING, Findings, Row, explain, in_few_words
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import row_key, tables_key, written
 from raceway.scene.scene import SceneSource, plain_tables, scene_from_dict
+from raceway.scene.tables import AutoIntegrator
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
 
@@ -240,31 +241,25 @@ def _item(tables: ReadTables, registry: Registry) -> Item:
     return Item(key, "runs", tables)
 
 
-def _planned_methods(scenes: list[Tables], registry: Registry) -> list[str | None]:
-    """Integrators of the scenes that record a motion; what is refused is so as it is run, too."""
-    methods = list[str | None]()
-    for tables in scenes:
-        with suppress(RacewayError):
-            problem = make_plan(scene_from_dict(tables, registry)).problem
-            methods += [problem.integrator.kind] if problem.recorded else []
-    return methods
-
-
 def _by_one_method(
-    methods: Iterable[str | None], scenes: list[Tables], registry: Registry, notes: list[str]
+    scenes: list[Tables], registry: Registry, notes: list[str], results: Iterable[ReadTables] | None = None
 ) -> list[Tables]:
     """Tables of all points with the integrator that all can take, where planning chose several; the same list where it chose one.
 
-    methods : integrator of each point; None where there is none
+    results : of the points that were run;  None: they are planned, and what is refused is so as it is run, too
     """
-    several = sorted({name for name in methods if name})
+    methods = {(result.get("plan", {}).get("integrator") or {}).get("kind") for result in results or ()}
+    for tables in scenes if results is None else ():
+        with suppress(RacewayError):
+            problem = make_plan(scene_from_dict(tables, registry)).problem
+            methods |= {problem.integrator.kind} if problem.recorded else set()
+    several = sorted(name for name in methods if name)
     automatic = all(tables.get("integrator", {}).get("kind", "auto") == "auto" for tables in scenes)
     if len(several) < 2 or not automatic:
         return scenes
-    notes.append(
-        f"integrator.kind = 'auto' would be {' at some points, '.join(several)} at others: all points take 'newmark'"
-    )
-    return [tables_at(tables, {"integrator.kind": "newmark"}, registry) for tables in scenes]
+    kind, kinds = AutoIntegrator.TRANSIENT, " at some points, ".join(several)
+    notes.append(f"integrator.kind = 'auto' would be {kinds} at others: all points take '{kind}'")
+    return [tables_at(tables, {"integrator.kind": kind}, registry) for tables in scenes]
 
 
 def _result(tables: ReadTables, registry: Registry) -> Tables:
@@ -332,7 +327,7 @@ def compare(
     axes = axes_of(vary, tables, registry)
     title, places = refuse_mistakes(tables, axes, registry), list(points(axes))
     scenes = [tables_at(tables, point, registry, notes) for point in places]
-    scenes = _by_one_method(_planned_methods(scenes, registry), scenes, registry, notes)
+    scenes = _by_one_method(scenes, registry, notes)
     items = [_item(scene, registry) for scene in scenes]
 
     def comparison(results: Iterable[Tables]) -> Comparison:
@@ -342,8 +337,7 @@ def compare(
     with telling(progress) as report, written(kept or folder) as store:
         try:
             results, _ = work_through(_result, items, store, local(registry, 0), registry, on_progress=report)
-            methods = [(result.get("plan", {}).get("integrator") or {}).get("kind") for result in results]
-            alike = _by_one_method(methods, scenes, registry, notes)
+            alike = _by_one_method(scenes, registry, notes, results)
             if alike is not scenes:  # a steady orbit was not found, or is unstable
                 items = [_item(scene, registry) for scene in alike]
                 results, _ = work_through(_result, items, store, local(registry, 0), registry, on_progress=report)

@@ -18,8 +18,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Part
-from raceway.answers.table import sections
-from raceway.answers.wrapping import Words
+from raceway.answers.table import Words, sections
 from raceway.bodies.model import build_model
 from raceway.core.ring.kernels.impact import single_contact
 from raceway.core.ring.ring import Increment

@@ -15,7 +15,7 @@ from raceway.answers.answer import Answer, Part
 from raceway.answers.picture import given_axes
 from raceway.answers.progress import ShowProgress, telling
 from raceway.answers.quantities import AXIAL_DISPLACEMENT, PRECISION, Z_REAL
-from raceway.answers.wrapping import Words
+from raceway.answers.table import Words
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.doors import DURATION, KEY_VALUES, PATH, PATHS, door, member
 from raceway.framework.options import at_least

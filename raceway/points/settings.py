@@ -43,7 +43,6 @@ _FINE_STEPS = 720
 _FEW_STEPS, _FEW_TURNS = (24, 45, 90, 180), 3
 #: Factors on the scene's element size.
 _SIZES = (2.0, 1.414, 1.0, 0.707)
-BODIES = ("rigid", "condensed", "elastic")
 #: Tables whose keys choose how the equations are solved, not which.
 _NUMERICAL = ("integrator", "mesh")
 _REASON = 160

@@ -11,8 +11,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Part
-from raceway.answers.table import Row, sections
-from raceway.answers.wrapping import Words
+from raceway.answers.table import Row, Words, sections
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.framework.shown import duration

@@ -185,6 +185,8 @@ class Contact:
 class AutoIntegrator:
     """The steady orbit where the force repeats every turn and contacts have no memory, else 'newmark': planning chooses."""
 
+    STEADY: ClassVar[str] = "periodic"
+    TRANSIENT: ClassVar[str] = "newmark"
     name: ClassVar[str] = "auto"
     implicit: ClassVar[bool] = True
     inertial: ClassVar[bool] = True

@@ -1,10 +1,10 @@
 """Conformance suites for plug-ins, one for each kind; public, for third parties' own tests.
 
-suite          what all suites share: duties, rows, expected failures, how they become pytest methods, children with limits
+suite          what all suites share: duties, rows, expected failures, how they become pytest methods, children with limits;
+               scenes, models and results of a bearing
 contact_law, integrator, bodies   one suite a file;  signals: excitations, identifiers
 kinds          suites of few duties: formats, meshers, quantities, executors, studies
 systems        small mechanical systems with known answers, compiled loops
-scenes         scenes, models and results of a bearing
 scaffold       the package of a new plug-in
 
 Subclass a suite in a test file, and pytest collects its checks::
@@ -39,7 +39,7 @@ _PUBLIC = {
     **{name: module for module, name in SUITES.values()},
     **dict.fromkeys(("Conformity", "Row", "Suite", "duty", "require"), "raceway.testing.suite"),
     # What tests of single steps need beside the public functions.
-    **dict.fromkeys(("b7206c", "model_of", "settled"), "raceway.testing.scenes"),
+    **dict.fromkeys(("b7206c", "model_of", "settled"), "raceway.testing.suite"),
     **dict.fromkeys(("Registry", "default_registry"), "raceway.framework.registry"),
     "drive": "raceway.testing.contact_law",
     "samples": "raceway.testing.signals",

@@ -37,8 +37,7 @@ from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables
 from raceway.testing.integrator import FromPython, has_both
-from raceway.testing.scenes import b7206c, settled
-from raceway.testing.suite import ConformityError, Suite, check_shape, duty, require
+from raceway.testing.suite import ConformityError, Suite, b7206c, check_shape, duty, require, settled
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import BodiesKind

@@ -18,8 +18,7 @@ from raceway.errors import ConvergenceError, RacewayError, StabilityError
 from raceway.framework.duties import finds_orbit
 from raceway.points.column_quantities import SteadyLines
 from raceway.scene.scene import scene_from_dict
-from raceway.testing.scenes import b7206c, settled
-from raceway.testing.suite import Suite, check_class, duty, require
+from raceway.testing.suite import Suite, b7206c, check_class, duty, require, settled
 from raceway.testing.systems import (
     NATURAL,
     PERIOD,

@@ -26,8 +26,7 @@ from raceway.planning.plan import make_plan
 from raceway.points.column_quantities import Computed
 from raceway.scene.scene import scene_from_dict
 from raceway.storage.tables import Tables
-from raceway.testing.scenes import b7206c
-from raceway.testing.suite import Suite, check_class, duty, require
+from raceway.testing.suite import Suite, b7206c, check_class, duty, require
 
 if TYPE_CHECKING:
     from raceway.framework.contracts import Executor, Format, Mesher, Quantities, Study

@@ -9,8 +9,8 @@ import pytest
 
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway import SceneError, make_plan, scene_from_dict
-from raceway.bodies.elastic_change import elastic_change
 from raceway.core.fem import calibration
+from raceway.pipeline.uncertainty import elastic_change
 from raceway.testing import b7206c, run, settled
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}

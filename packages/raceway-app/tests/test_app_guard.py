@@ -13,8 +13,7 @@ import time
 from pathlib import Path
 
 import pytest
-from raceway_app.form import groups
-from raceway_app.session import Session
+from raceway_app.session import Session, groups
 from raceway_app.worker import Job, News, Worker
 
 import raceway as rw

@@ -1,7 +1,6 @@
 """Contact of two bodies, and the geometry of a ball bearing.
 
-axial      balls on springs under an axial load alone
-geometry   groove curvatures, groove centres, contact angle, cage speed
+geometry   groove curvatures, groove centres, contact angle, cage speed; balls on springs under an axial load alone
 hertz      exact elliptic Hertz contact, the half-space around it, stresses below it
 damping    normal damping, and the energy that a contact stores
 losses     torque of balls that roll between races, a compiled loop over points

@@ -1,7 +1,7 @@
 """Kinds of bodies, and the bearing that each builds.
 
 rigid        rigid rings and balls: kind and cost (the ring: ``raceway.bodies.rigid_bearing``)
-rollers      rigid rings on cylindrical rollers: kind and cost;  roller_bearing: the ring;  roller_columns: at many points
+rollers      rigid rings on cylindrical rollers: kind and cost;  roller_bearing: the ring, also at many points
 condensed    finite elements reduced to contact compliances: kind and cost;  condensed_bearing: the ring
 patch_bearing   condensed bodies with pressures at surface points
 elastic      finite elements in full: kind and cost;  elastic_bearing: the ring

@@ -146,7 +146,7 @@ class CylindricalRollers:
         return build(problem, plan, self)
 
     def columns(self, problem: Problem, plan: ScenePlan) -> ColumnBearing:
-        """See ``raceway.plugins.bodies.roller_columns``."""
-        from raceway.plugins.bodies.roller_columns import roller_columns
+        """See ``raceway.plugins.bodies.roller_bearing``."""
+        from raceway.plugins.bodies.roller_bearing import roller_columns
 
         return roller_columns(problem, plan)
