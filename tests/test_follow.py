@@ -13,6 +13,7 @@ from checks.validation.command_line import invoke
 from checks.validation.followed import OVER, SCENE, by_integration
 from checks.validation.oscillators import Oscillator, Pressed, natural_frequency
 from checks.validation.reference.harmonic_balance import harmonic_balance
+from checks.validation.several import article
 from raceway import ConvergenceError, SceneError
 from raceway.answers.answer import Interrupted
 from raceway.core.periodic.branch import Branch, doubled
@@ -307,6 +308,15 @@ def test_meshes_follow_the_natural_frequencies_along_the_branch():
     """A tilt support of 1000 times the stiffness: meshes for the first value's vibrations would say 4e11 of a growth of 1."""
     found = rw.follow(SCENE, "supports.tilt=3e4:1e6")
     assert found.end == "" and {row.verdict for row in found.rows} == {"stable"} and not found.labels
+
+
+def test_a_mesh_that_an_orbit_needs_is_not_given_up():
+    """800 N, tilt free: the mesh that is fit for the ring's vibrations alone shifts the orbit by 3 r/min."""
+    tables = article(800.0, kind="periodic")
+    tables["contact"] = {"damping": 1e-3}
+    tables["excitation"] |= {"amplitude": "unbalance", "speed_rpm": 10980.0}
+    found = rw.follow(tables, "excitation.speed_rpm=10980:15000", points=10)
+    assert len(found.rows) == 10 and found.rows[-1].parameter > 10990.0, found.end
 
 
 def test_a_key_in_a_list_and_values_with_units():

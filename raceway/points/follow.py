@@ -364,6 +364,6 @@ class _Continuation:
                 again = self.branch.start(orbit, point.parameter, float(np.sign(point.tangent[-1])))
             except ConvergenceError:
                 return point
-            if float(again.tangent @ point.tangent) > 0.9:
+            if float(again.tangent @ point.tangent) > 0.9 and again.error <= max(ERROR, point.error):
                 return again
         return point

@@ -19,7 +19,7 @@ import numpy as np
 from raceway_checks.verify import study as verification
 from raceway_checks.verify.reference import Verified, reference_cases
 
-from raceway import Answer, ConvergenceError, RacewayError, function, scene_from_dict
+from raceway import Answer, ConvergenceError, Function, RacewayError, function, scene_from_dict
 from raceway.extend import (
     ERROR, FAILED, FORCE_AMPLITUDE, OF_ORBITS, Attractor, Fact, Item, K, OnProgress, Part, ReadTables, Registry, Status,
     Tables, Words, Workload, Z, attractor_beside_run, attractor_from_rest, lasting, local, processor_time, program_key, run,
@@ -207,26 +207,32 @@ def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
 
 def _looped(points: Sequence[Tables], registry: Registry) -> Sequence[Tables | None]:
     """Rows of steady orbits that a compiled loop finds, that are not unstable, and beside which there is no other one; None elsewhere."""
+    f, numbers = _loop_of(points, registry)
+    if f is None:
+        return [None] * len(points)
+    answer = f.looped(numbers)
+    multiplier, change = (answer[name] for name in OF_ORBITS)
+    return [
+        {
+            "speed_rpm": tables["excitation"]["speed_rpm"], "axial_n": tables["load"]["axial"], "status": Status.COMPLETED,
+            "reason": "", "found": "directly", "mesh_error": None, **{key: float(answer[name][point]) for key, name in _LOOPED.items()},
+        }
+        if lasting(multiplier[point]) and change[point] <= _LINEAR
+        else None
+        for point, tables in enumerate(points)
+    ]  # fmt: skip
+
+
+def _loop_of(points: Sequence[Tables], registry: Registry) -> tuple[Function | None, dict[str, np.ndarray]]:
+    """The compiled loop of a curve, None where it has none or states no error of a mesh, and what varies along the curve."""
     paths = {"load.axial": "axial", "excitation.speed_rpm": "speed_rpm", "supports.tilt": "tilt"}
     columns = {key: [tables[key.partition(".")[0]][name] for tables in points] for key, name in paths.items()}
     numbers = {key: np.array(column, dtype=float) for key, column in columns.items() if not isinstance(column[0], str)}
     try:
         f = function(scene_from_dict(points[0], registry), numbers, [*_LOOPED.values(), *OF_ORBITS], threads=1)
     except RacewayError:  # its row says why
-        return [None] * len(points)
-    if f.why_slow or not f.contacts_alone:  # the loop states no error of a mesh
-        return [None] * len(points)
-    answer = f.looped(numbers)
-    multiplier, change = (answer[name] for name in OF_ORBITS)
-    return [
-        {
-            "speed_rpm": speed, "axial_n": load, "status": Status.COMPLETED, "reason": "", "found": "directly", "mesh_error": None,
-            **{key: float(answer[name][point]) for key, name in _LOOPED.items()},
-        }
-        if lasting(multiplier[point]) and change[point] <= _LINEAR
-        else None
-        for point, (load, speed) in enumerate(zip(columns["load.axial"], columns["excitation.speed_rpm"], strict=True))
-    ]  # fmt: skip
+        return None, numbers
+    return (None if f.why_slow or not f.contacts_alone else f), numbers
 
 
 def _point_row(tables: Tables, registry: Registry) -> Tables:
@@ -470,12 +476,14 @@ def workload(design: Design, processes: int, kept: Path | None, registry: Regist
     items = _items(design, registry)[-len(curves) :]
     left = [curve for curve, item in zip(curves, items, strict=True) if not stored_rows(kept, [item.key])]
     points = [(setting, load, speed) for setting, load in left for speed in design.speeds_of(setting)]
+    starts = {setting: design.point(setting, load, speed, registry) for setting, load, speed in points}
+    loops = [setting for setting, start in starts.items() if _loop_of([start], registry)[0] is not None]
+    looped = sum(setting in loops for setting, _, _ in points)
     size = sum(len(design.speeds_of(setting)) for setting, _ in curves)
     seconds, refusal = run_times(len(points), lambda n: design.point(*points[n], registry), registry)
-    return Workload(
-        str(design.tables["title"]), size, seconds / max(processes, 1), runs=len(points) - refusal, refused=refusal,
-        stored=size - len(points), why_runs="at most: a compiled loop takes steady motions that are stable and nearly linear",
-    )  # fmt: skip
+    remark = "Points of the loop that are unstable or far from linear are run in addition; the time counts all as runs."
+    counts = size, seconds / max(processes, 1), looped, max(len(points) - looped - refusal, 0), refusal, size - len(points)
+    return Workload(str(design.tables["title"]), *counts, why_runs="no compiled loop has them", remarks=(remark,))
 
 
 def solve_curves(

@@ -68,14 +68,10 @@ def _by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolera
 
 #: Points of a branch.
 POINTS = 120
-
-
 #: Share of the force up to which the branch from rest is followed for its folds: a Duffing oscillator whose motion differs
 #: by a tenth from its linear response (``neighbour.MOST_NONLINEAR``) folds at 1.35 times the force, the internal resonances
 #: of the article's scene with tilt free at 1.6 and 1.8 times.
 _BEYOND = 2.0
-
-
 #: A branch that stays below this share of the force for so many points has become a free vibration: it is left there.
 _SMALL_SHARE, _SMALL_POINTS = 0.2, 10
 
@@ -183,8 +179,6 @@ def _at_full_force(problem: Problem, crossings: Iterable[tuple[Point, Point]], t
 
 #: Speeds, and axial loads, over the wanted one, that the motion is followed from.
 _RATIOS, _LOADS = (1.15, 1.3, 1.6, 0.85, 0.7), (1.5, 2.5)
-
-
 #: Speeds that are so near that a branch leads here through its folds, if at all.
 _NEAR = (1.02, 1.05, 0.97)
 
@@ -269,8 +263,6 @@ def _continued_to(
 
 #: Distance of two motions over their size below which they are one.
 _SAME = 1e-3
-
-
 #: Angles at which motions are compared: no harmonic of a turn hides between them.
 _COMPARED = 2.0 * np.pi * np.arange(17) / 17
 

@@ -249,10 +249,10 @@ def condense_interval(equations, mesh, samples, elimination, report, local):
         for i in range(states):
             for j in range(columns):
                 transfer[k * states + i, j] = local.transfer[i, j]
-                total = local.transfer[i, j] if j >= states else 0.0
-                for p in range(states):
-                    total += local.transfer[i, p] * span_transfer[p, j]
-                product[i, j] = total
+                product[i, j] = local.transfer[i, j] if j >= states else 0.0
+            for p in range(states):
+                for j in range(columns):
+                    product[i, j] += local.transfer[i, p] * span_transfer[p, j]
         copy_matrix(product, span_transfer)
     return m
 
@@ -324,7 +324,7 @@ def differentiate(nodes, points, speed, ball, rate):
     s = points.size
     m = nodes.size - 3
     width = s + 4
-    x, w = np.empty(width), np.empty(width)
+    x, w, weights = np.empty(width), np.empty(width), np.empty(width)
     for k in range(m):
         h, before, after = nodes[k + 2] - nodes[k + 1], nodes[k + 1] - nodes[k], nodes[k + 3] - nodes[k + 2]
         x[0], x[1] = before * (points[s - 2] - 1.0), before * (points[s - 1] - 1.0)
@@ -339,11 +339,12 @@ def differentiate(nodes, points, speed, ball, rate):
                 if i != j:
                     w[j] /= x[j] - x[i]
         for i in range(2, s + 2):
+            for j in range(width):
+                weights[j] = w[j] / w[i] / (x[i] - x[j]) if j != i else 0.0
             for ball_number in range(ball.shape[1]):
                 for c in range(ball.shape[2]):
                     total = 0.0
                     here = ball[k * s + i, ball_number, c]
                     for j in range(width):
-                        if j != i:
-                            total += w[j] / w[i] / (x[i] - x[j]) * (ball[k * s + j, ball_number, c] - here)
+                        total += weights[j] * (ball[k * s + j, ball_number, c] - here)
                     rate[k * s + i, ball_number, c] = total * speed / h

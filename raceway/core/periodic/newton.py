@@ -14,19 +14,11 @@ from raceway.core.signatures import CUBE, MATRIX, VECTOR, record
 
 #: A displacement's rounding over the displacement itself, below which no correction can come.
 ROUNDING = 1e-14
-
-
 #: Entries of ``report``: sweeps of all intervals, largest imbalance [N], last correction [m], size of the motion [m], and 1
 #: where a step had to be shortened.
 SWEEPS, WORST_IMBALANCE, CORRECTION, SIZE, SHORTENED = range(5)
-
-
 REPORT = 8
-
-
 SOLVED, STALLED, BALLS_FAILED, SINGULAR = range(4)
-
-
 #: Sweeps at the limit of rounding after which no better one comes.
 _FINE = 5
 
@@ -49,8 +41,6 @@ class Limits(NamedTuple):
 
 
 CLOSURE = record(Closure, MATRIX, intervals.INDICES, intervals.INDICES)
-
-
 LIMITS = record(Limits, float64, float64, int64, int64)
 
 

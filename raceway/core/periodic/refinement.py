@@ -18,7 +18,7 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.collocation import Path, Problem, Solved, solve
-from raceway.core.periodic.intervals import forces
+from raceway.core.periodic.intervals import Change, forces, spread
 from raceway.core.periodic.turn import integrals, rotations
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import States, responses
@@ -56,15 +56,6 @@ def _defects(problem: Problem, path: Path) -> np.ndarray:
     return defect
 
 
-def _error_path(transfer: np.ndarray, first: np.ndarray, defect: np.ndarray) -> np.ndarray:
-    """(m + 1, 2 n) changes of the states at nodes that defects (m, 2 n) and a first change (2 n,) make; ``transfer`` (m 2 n, 2 n)."""
-    out = np.empty((len(defect) + 1, len(first)))
-    out[0] = first
-    for k, (step, gain) in enumerate(zip(transfer.reshape(-1, len(first), len(first)), defect, strict=True)):
-        out[k + 1] = step @ out[k] + gain
-    return out
-
-
 @attrs.frozen(eq=False)
 class Estimate:
     """Error of a motion on one mesh.
@@ -93,11 +84,14 @@ def estimate(solution: Solved, closure: Callable[[np.ndarray], np.ndarray] | Non
     free, weight = problem.free, problem.weight
     m, s, n = path.intervals, len(problem.rule.points), len(free)
     defect = _defects(problem, path)
-    transfer, span_transfer = solution.eliminated.transfer[:, : 2 * n], solution.eliminated.span_transfer
-    end = _error_path(transfer, np.zeros(2 * n), defect)[-1]
-    first = np.linalg.solve(problem.closing - span_transfer[:, : 2 * n], end) if closure is None else closure(end)
-    dq = np.zeros_like(path.q)
-    dq[:, free] = _error_path(transfer, first, defect)[:, :n]
+    eliminated, dq = solution.eliminated, np.zeros_like(path.q)
+    transfer, change = eliminated.transfer.copy(), Change(dq, np.zeros_like(path.v), np.empty((0, 5)))
+    transfer[:, 2 * n] = defect.ravel()
+    carried = eliminated._replace(stages=np.empty((0, 2 * n + 2)), transfer=transfer)
+    spread(free, carried, np.zeros(2 * n), 0.0, change)
+    end = np.concatenate([dq[-1, free], change.v[-1, free]])
+    closed = problem.closing - eliminated.span_transfer[:, : 2 * n]
+    spread(free, carried, np.linalg.solve(closed, end) if closure is None else closure(end), 0.0, change)
     h = np.diff(path.nodes)
     legendre = np.abs(np.einsum("js,msc->mjc", problem.rule.legendre, path.a.reshape(m, s, 5))) / weight
     last, lower = legendre[:, -1], legendre[:, -3:].max(axis=1)

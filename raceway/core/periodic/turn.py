@@ -15,8 +15,6 @@ from raceway.errors import ConvergenceError
 
 #: Gauss points of an interval.
 STAGES = 4
-
-
 #: Places at which the motion's polynomial is tried against the balance of forces, besides the Gauss points.
 _TRIED = (0.0, 0.19, 0.5, 0.81, 1.0)
 

@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
-from numba import boolean, int64, void
+from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
+from raceway.core.lanes import WIDTH, live_of, put, take
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
+
+
+@jit(void(MATRIX, int64, int64, float64, int64))
+def _subtract(matrix, row, other, factor, first):
+    """matrix[row, first:] -= factor * matrix[other, first:]."""
+    width, every = matrix.shape[1], live_of(0, WIDTH)
+    whole = width - (width - first) % WIDTH
+    for k in range(first, whole, WIDTH):
+        put(matrix, row, k, every, take(matrix, row, k, every) - factor * take(matrix, other, k, every))
+    for k in range(whole, width):
+        matrix[row, k] -= factor * matrix[other, k]
 
 
 @jit(boolean(MATRIX))
@@ -26,8 +38,8 @@ def _triangulate(matrix):
         for row in range(column + 1, n):
             factor = matrix[row, column] * inverse
             if factor != 0.0:
-                for k in range(column + 1, width):
-                    matrix[row, k] -= factor * matrix[column, k]
+                # What a block changes to the left of the diagonal is not read again.
+                _subtract(matrix, row, column, factor, (column + 1) // WIDTH * WIDTH)
     return True
 
 
@@ -47,8 +59,7 @@ def eliminate(matrix):
         for above in range(row):
             factor = matrix[above, row]
             if factor != 0.0:
-                for k in range(n, width):
-                    matrix[above, k] -= factor * matrix[row, k]
+                _subtract(matrix, above, row, factor, n)
     return True
 
 
