@@ -185,7 +185,10 @@ def test_a_table_of_any_width_keeps_every_number_whole(width, columns):
         {f"quantity_{k} [N/µm]": float(made.normal() * 10.0 ** made.integers(-9, 9)) for k in range(columns)}
         for _ in range(4)
     ]
-    rows = [{"name": f"a setting of many words, the {k}th of four", **row} for k, row in enumerate(rows)]
+    rows = [
+        {"name": f"a setting of many words, the {k}th of four", "by": f"central_difference, speed of {k} m/s in film", **row}
+        for k, row in enumerate(rows)
+    ]
     text = lines(rows_table(rows), width)
     assert max(map(len, text)) <= width
     words = " ".join(text).split()

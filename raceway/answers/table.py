@@ -206,12 +206,18 @@ class _Rows:
             yield Words(self.told, "dim")
         for columns in self._blocks(options.max_width):
             table = Table(header_style="bold", box=SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
-            narrow = sum(column.most + _BETWEEN for column in columns) > options.max_width + _BETWEEN
+            room, fixed = options.max_width + _BETWEEN, list[_Column]()
+            if sum(column.most + _BETWEEN for column in columns) > room:
+                # Whole columns, and those that need more than an equal share of the rest, which rich does not know.
+                for column in sorted(columns, key=lambda each: (not each.whole, -each.least)):
+                    if column.whole or (column.least + _BETWEEN) * (len(columns) - len(fixed)) > room:
+                        fixed.append(column)
+                        room -= column.least + _BETWEEN
             for column in columns:
                 table.add_column(
                     Words(column.head, "bold"),
                     justify="right" if column.numeric else "left",
-                    width=column.least if narrow and column.whole else None,
+                    width=column.least if column in fixed else None,
                     min_width=column.least,
                 )
             for cells in zip(*(column.cells for column in columns), strict=True):

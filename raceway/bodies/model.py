@@ -78,7 +78,7 @@ class BuiltBearing(ABC):
         """
         return self.system.solve_equilibrium(self.guess)
 
-    def orbiting(self, system: Ring) -> Ring:
+    def periodic_system(self, system: Ring) -> Ring:
         """The ring whose steady orbit a motion may start on: without friction, its balls at their azimuths."""
         return system.at_standstill()
 

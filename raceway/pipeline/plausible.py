@@ -395,7 +395,7 @@ def _secant(
     first = _ORBIT_TIMES * np.fft.irfft(half, _ORBIT_TIMES, axis=0)
 
     def orbit(variant: Model, displacement: np.ndarray, limit: int) -> Orbit:
-        ring = variant.bearing.orbiting(variant.system)
+        ring = variant.bearing.periodic_system(variant.system)
         return orbit_near(ring, period, displacement, _ORBIT_TIMES, method.inertial, _TOLERANCE, limit)
 
     def value(orbit: Orbit) -> complex:
@@ -421,7 +421,7 @@ def _secant(
             from raceway.core.periodic.search import directly, problem_of
             from raceway.core.periodic.steady import synchronous_response
 
-            q, system = state.displacement, surrogate(variant.bearing.orbiting(variant.system))
+            q, system = state.displacement, surrogate(variant.bearing.periodic_system(variant.system))
             problem = problem_of(system, speed, q)
             z = synchronous_response(directly(problem, q, state.stiffness, _ROUGH).solved)[0]
         return float((z.real - base.real) / abs(base.real + model.mass_used * speed**2))

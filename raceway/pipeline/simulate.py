@@ -172,7 +172,7 @@ def start_of_motion(model: Model, equilibrium: Equilibrium, watch: Watch | None 
 
 def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None) -> Start:
     """On the motion that the search for periodic motions takes, or on the collocated one where it does not search."""
-    excitation, system = model.excitation, model.bearing.orbiting(model.system.at_speed(0.0))
+    excitation, system = model.excitation, model.bearing.periodic_system(model.system.at_speed(0.0))
     if excitation.period_s is None:
         # What changes its speed starts on the orbit of its first moment.
         steady = steady_form(excitation)

@@ -104,7 +104,7 @@ def bearing():
     scene = scene_from_dict(BEARING)
     built = build_model(scene)
     found = solve_equilibrium(built)
-    orbit = steady_orbit(built.bearing.orbiting(built.system), built.excitation.period_s, found.displacement)
+    orbit = steady_orbit(built.bearing.periodic_system(built.system), built.excitation.period_s, found.displacement)
     return built, found, from_orbit(built.system, orbit)
 
 

@@ -489,7 +489,7 @@ def elastic_article(
     with written(kept) as store:
         store.wait([item.key for item in items if store.get(item.key).content.get("status") == "refused"])
         waiting = [k for k, item in enumerate(items) if store.get(item.key).state == "waiting"]
-        seconds = _predictions([scenes[k] for k in waiting], registry)
+        seconds = _predictions([scenes[k] for k in waiting])
         kinds = {k: (runs[k].bodies, runs[k].phase) for k in waiting}
         progress = RemainingTime(dict(zip(waiting, seconds, strict=True)), kinds, on_progress)
 
@@ -515,12 +515,12 @@ def elastic_workload(design: ElasticDesign, store: Path | None, registry: Regist
     left = [scene for scene, item in zip(scenes, items, strict=True) if not stored_rows(store, [item.key])]
     memory = max((make_plan(scene).predicted_bytes for scene in left), default=0)
     return Workload(
-        scenes[0].title, len(items), sum(_predictions(left, registry)), runs=len(left), stored=len(items) - len(left),
+        scenes[0].title, len(items), sum(_predictions(left)), runs=len(left), stored=len(items) - len(left),
         bytes=memory, why_runs="bodies of finite elements, one run at a time",
     )  # fmt: skip
 
 
-def _predictions(scenes: Sequence[Scene], registry: Registry) -> list[float]:
+def _predictions(scenes: Sequence[Scene]) -> list[float]:
     """Planned time of runs one after the other [s]: what is made once for bodies at rest, or in motion, counts in the first alone."""
     seconds, models = [], set[tuple[str, bool]]()
     for scene in scenes:

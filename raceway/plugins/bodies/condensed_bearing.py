@@ -325,12 +325,20 @@ def _law_stiffness(problem: Problem, basis: Basis, law: Kernel, params: np.ndarr
 
 def elastic_parts(problem: Problem, basis: Basis, parts: Tables) -> tuple[Tables, np.ndarray]:
     """The ``contact_parts`` of n points that share condensed bodies, from those of rigid ones; (n,) whether the law is too stiff."""
-    # Loads make themselves felt in a ball's own compliance only, which contacts calibrated at surface points have in them.
     bodies = elastic_bodies(problem, attrs.evolve(basis, ball_load=float(np.min(basis.ball_load))))
-    compliance = min(bodies.at(problem.bearing.contact_angle))
+    scalars = elastic_scalars(parts["scalars"], bodies)
+    # Loads make themselves felt in a ball's own compliance only, which contacts calibrated at surface points have in them.
+    own, knots = np.zeros((2, *problem.points)), int(scalars[0, ring.KNOTS])
+    for race in (k for k, calibration in enumerate(bodies.calibrations) if calibration is None):
+        loads, place = np.unique(np.broadcast_to(basis.ball_load, problem.points), return_inverse=True)
+        ball = 0.5 * problem.bearing.ball_diameter, problem.bearing.balls.young, problem.bearing.balls.poisson
+        each = [ball_compliance(*ball, *map(float, basis.inner.semi_axes(load)))[0] for load in loads]
+        own[race] = np.array(each)[place] - bodies.ball_direct
+        scalars[:, ring.VALUES + 2 * race * knots :][:, :knots] += own[race][:, None]
+    compliance = (np.array(bodies.at(problem.bearing.contact_angle))[:, None] + own).min(axis=0)
     too_stiff = _law_stiffness(problem, basis, parts["law"], parts["law_params"]) * -compliance >= 1.0
     kernels = {name: condensed(parts[name]) for name in ("kernel", "base_kernel")}
-    return {**parts, **kernels, "scalars": elastic_scalars(parts["scalars"], bodies)}, too_stiff
+    return {**parts, **kernels, "scalars": scalars}, too_stiff
 
 
 def _refuse_dashpots(problem: Problem, plan: ScenePlan, stiff: RigidBearing, bodies: ElasticBodies) -> None:

@@ -59,7 +59,7 @@ class ElasticBodies(BuiltBearing):
                 system.condensed.on_progress = report
         return super().solve_equilibrium()
 
-    def orbiting(self, system: Ring) -> Ring:
+    def periodic_system(self, system: Ring) -> Ring:
         """The rigid one: periodic motions of all nodes would take hours."""
         return surrogate(system).at_standstill()
 
