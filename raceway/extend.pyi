@@ -159,7 +159,7 @@ from .planning.resolve import series_factor as series_factor
 from .plugins.quantities.ball_pass import ball_pass as ball_pass
 from .plugins.excitations.harmonic import HarmonicLoad as HarmonicLoad
 from .plugins.excitations.harmonic import harmonic_load as harmonic_load
-from .plugins.formats.labelled import labelled_dataset as labelled_dataset
+from .plugins.formats import labelled_dataset as labelled_dataset
 from .plugins.formats.pictures import picture as picture
 from .plugins.system_libraries import refuse_pictures as refuse_pictures
 from .plugins.system_libraries import remedy as remedy

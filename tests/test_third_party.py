@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from raceway import PluginError
+from raceway.cli.plugins import new_plugin
 from raceway.framework.contracts import KINDS
-from raceway.testing.scaffold import new_plugin
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PACKAGES = {"third_party_law": "raceway-hunt-crossley", "third_party_excitation": "raceway-two-frequency"}

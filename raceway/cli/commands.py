@@ -143,7 +143,7 @@ TRUST = (
     ),
 )
 DEVELOPERS = (
-    Later("new-plugin", "raceway.cli.plugins:new_plugin", "Write a package for a new plug-in."),
+    Later("new-plugin", "raceway.cli.plugins:new_plugin_command", "Write a package for a new plug-in."),
     Later("check-plugin", "raceway.cli.plugins:check_plugin", "Test a plug-in against its contract."),
     Command(
         "law",

@@ -311,7 +311,7 @@ class Result(Answer):
         RacewayError
             xarray is missing.
         """
-        from raceway.plugins.formats.labelled import labelled
+        from raceway.plugins.formats import labelled
 
         return labelled(self)
 

@@ -22,7 +22,7 @@ from raceway.framework.shown import Fact, number_within
 from raceway.pipeline.run import run
 from raceway.pipeline.uncertainty import interval
 from raceway.planning.plan import make_plan
-from raceway.plugins.formats.labelled import labelled_dataset
+from raceway.plugins.formats import labelled_dataset
 from raceway.points.axes import Axis, Vary, axes_of, points, refuse_mistakes, shown, tables_at
 from raceway.points.dataset import axis_labels
 from raceway.points.effects import MOVING, Findings, Row, explain, in_few_words

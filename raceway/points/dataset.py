@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from raceway.answers.quantities import COLUMNS, ERROR_BODIES, Quantity, named
 from raceway.errors import ConvergenceError, RacewayError, extra
 from raceway.framework.registry import Registry, default_registry
-from raceway.plugins.formats.labelled import labelled_dataset
+from raceway.plugins.formats import labelled_dataset
 from raceway.points.axes import Design, is_number
 from raceway.points.column_quantities import MOVING
 from raceway.points.function import PointStatus

@@ -22,7 +22,7 @@ from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import Fact
 from raceway.planning.resolve import resolve
-from raceway.plugins.formats.labelled import labelled_dataset
+from raceway.plugins.formats import labelled_dataset
 from raceway.points.axes import Vary, shown
 from raceway.points.settings import (
     Design,

@@ -5,7 +5,6 @@ suite          what all suites share: duties, rows, expected failures, how they 
 contact_law, integrator, bodies   one suite a file;  signals: excitations, identifiers
 kinds          suites of few duties: formats, meshers, quantities, executors, studies
 systems        small mechanical systems with known answers, compiled loops
-scaffold       the package of a new plug-in
 
 Subclass a suite in a test file, and pytest collects its checks::
 

@@ -7,8 +7,7 @@ import pytest
 
 from checks.validation.reference.half_space import pressed_stress
 from raceway.core.contact.hertz import largest_shear
-from raceway.core.fem.elastic.stress import StressProfile
-from raceway.core.fem.hexahedron.stress_fit import StressFit
+from raceway.core.fem.elastic.stress import StressFit, StressProfile
 from raceway.extend import axis_stresses
 
 #: Ellipse of a ball bearing's contact, and steel.

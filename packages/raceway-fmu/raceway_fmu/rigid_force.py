@@ -15,7 +15,7 @@ import numpy as np
 
 from raceway import Scene, SceneError, build_model
 from raceway.extend import CAGE, SCALARS, Model, System, compiled, renews, resolve, with_numbers
-from raceway_fmu.chebyshev import Interval, fit
+from raceway_fmu.map import Interval, fit
 from raceway.extend import DIMENSIONS
 from raceway.extend import STIFFNESS
 from raceway_fmu.unit import Unit

@@ -4,28 +4,30 @@ Notes
 -----
 The terms are those of ``raceway.core.rolling_friction``; seals and cage are given.  Each end of the band is the farther one of two: the terms'
 own bands, relative and independent of each other, torque +- sqrt(sum (band part)^2), and what bearings measured near this size and speed leave
-possible (``measured_factors``).  Palmgren's rule of thumb stands beside it (``raceway.plugins.quantities.ball_contacts``).
+possible (``measured_factors``).  Palmgren's rule of thumb stands beside it (``palmgren_torque``).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import pi
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
+import numpy as np
 
 from raceway.answers.quantities import Quantity
+from raceway.framework.duties import is_foundation
 from raceway.framework.options import at_least, between, option, word_or
 from raceway.framework.shown import number
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from raceway.core.columns import Number
-    from raceway.core.rolling_friction import Losses
+    from raceway.core.rolling_friction import BallContacts, Losses
     from raceway.framework.contracts import Problem, SolvedPoints
     from raceway.framework.shown import Fact
     from raceway.storage.tables import ReadTables, Tables
+
 
 #: Sources of friction, as results name them, and what they are.
 PARTS = {
@@ -115,7 +117,6 @@ class Friction:
     def losses(self, points: SolvedPoints) -> Losses:
         """Of every contact and ball."""
         from raceway.core.rolling_friction import losses
-        from raceway.plugins.quantities.ball_contacts import ball_contacts, oil_fraction
 
         oil = points.problem.lubricant
         assert oil is not None, "why_not says so"
@@ -128,7 +129,6 @@ class Friction:
 
     def table(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> Tables:
         """Torque, power, parts and band; the same of each row; heat by place; Palmgren's torque; oil and hypothesis."""
-        from raceway.plugins.quantities.ball_contacts import palmgren_torque
 
         lost, speed, oil = self.losses(points), float(points.speed[0]), points.problem.lubricant
         assert oil is not None, "why_not says so"
@@ -155,7 +155,6 @@ class Friction:
 
     def warnings(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> list[str]:
         """Of balls that slip sideways; of those that skid every run warns."""
-        from raceway.plugins.quantities.ball_contacts import beyond_jets
 
         ratio = float(self.losses(points).gyroscopic.max())
         mixture = beyond_jets(points) if values["torque_drag_nm"][0] > _NOTED * values["torque_nm"][0] else []
@@ -193,3 +192,103 @@ def _by_source(lost: Losses, rows: slice = slice(None)) -> dict[str, np.ndarray]
     """(n,) torque of each of ``PARTS``."""
     contacts = {name: getattr(lost, name)[:, :, rows].sum(axis=(1, 2)) for name in ("rolling", "elastic_rolling", "sliding")}
     return {**contacts, "drag": lost.drag[:, rows].sum(axis=1), "seals": lost.seals}
+
+
+#: Volume of oil over that of the space around the balls where nothing says how much there is.
+_LITTLE_OIL = 0.01
+
+
+#: Palmgren's f0 of an oil bath: deep groove and angular contact; half of it for oil and air, twice for jets.
+_BATH = (2.0, 3.3)
+
+
+#: Palmgren's f1 at a tenth of the static rating: 0.0005 0.1^0.55 and 0.001 0.1^0.33.
+_LOAD_FACTORS = (1.4e-4, 4.7e-4)
+
+
+def oil_fraction(points: SolvedPoints) -> Number:
+    """Of the space around each ball: by the flow where [heat] has one, else that of little oil."""
+    heat, rows = points.problem.heat, points.problem.bearing.of_rows
+    if heat is None or isinstance(heat.oil_flow, str):
+        return _LITTLE_OIL
+    from raceway.core.thermal import jet_oil_fraction
+
+    by_row = [jet_oil_fraction(heat.oil_flow / len(rows), points.speed, b.pitch_diameter) for b in rows]
+    return np.stack(by_row, axis=-1)[:, None, points.row]
+
+
+def beyond_jets(points: SolvedPoints) -> list[str]:
+    """Warning of an oil fraction by the flow at speeds that its correlation was not measured at."""
+    heat, oil = points.problem.heat, points.problem.lubricant
+    if heat is None or isinstance(heat.oil_flow, str) or oil is None or not isinstance(oil.oil_fraction, str):
+        return []
+    from raceway.core.thermal import JET_SPEEDS
+
+    n_dm = float(points.speed[0]) * 30e3 / pi * max(float(row.pitch_diameter) for row in points.problem.bearing.of_rows)
+    low, high = JET_SPEEDS
+    if low <= n_dm <= high:
+        return []
+    return [
+        f"the oil between the balls ('auto', Parker 1984) is of jets at n d_m = {1e-6 * low:g} to {1e-6 * high:g} million mm r/min, here "
+        f"{1e-6 * n_dm:.2g}: drag and heat are estimates. Give lubricant.oil_fraction where it is known"
+    ]
+
+
+def ball_contacts(points: SolvedPoints) -> BallContacts:
+    """The contacts of all rows as the core's friction sees them."""
+    from raceway.core.rolling_friction import BallContacts
+
+    rows = points.problem.bearing.of_rows
+
+    def of_balls(numbers: list[Number]) -> np.ndarray:
+        """(1 or n, 1, Z) of the numbers of the rows."""
+        return np.stack(np.broadcast_arrays(*(np.atleast_1d(number) for number in numbers)), axis=-1)[:, None, points.row]
+
+    diameter = of_balls([b.ball_diameter for b in rows])
+    stiff = [2.0 / sum((1.0 - m.poisson**2) / m.young for m in (b.rings, b.balls)) for b in rows]
+    races = [of_balls([getattr(b, f"conformity_{race}") for b in rows]) for race in ("inner", "outer")]
+    # Ellipses of Hertz grow with the cube root of the load, those of a foundation do not.
+    own = is_foundation(points.problem.contact.law)
+    load = np.where(points.load > 0.0, points.load, 1.0) if own else np.ones((1, *points.load.shape[1:]))
+    _, major, minor = points.ellipse(load)
+    return BallContacts(
+        points.load,
+        points.contact_angle,
+        points.row,
+        major / np.cbrt(load),
+        minor / np.cbrt(load),
+        diameter,
+        of_balls([b.pitch_diameter for b in rows]),
+        np.concatenate(races, axis=1),
+        of_balls(stiff),
+        of_balls([b.balls.density for b in rows]) * pi * diameter**5 / 60.0,
+    )
+
+
+def palmgren_torque(points: SolvedPoints) -> dict[str, float]:
+    """Palmgren's rule of thumb at one point [N m], by supply of oil.
+
+    Notes
+    -----
+    M0 = 1e-7 f0 (nu n)^(2/3) d_m^3, 160e-7 f0 d_m^3 where nu n < 2000; M1 = f1 F d_m; in N mm, mm2/s, r/min and mm.  F is the larger of
+    the radial load and 0.9 F_a cot(angle) - 0.1 F_r at the nominal angle.  Of rows the sum; a radial load is shared.
+
+    References
+    ----------
+    Palmgren, Ball and Roller Bearing Engineering, 3rd ed. (1959); Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed.,
+    chapter 10.
+    """
+    oil, rows = points.problem.lubricant, points.problem.bearing.of_rows
+    assert oil is not None, "why_not says so"
+    rpm, nu = float(points.speed[0]) * 30.0 / pi, 1e6 * float(oil.kinematic_viscosity)
+    radial = float(np.hypot(*points.problem.load.radial)) / len(rows)
+    churned = carried = 0.0
+    for row, b in enumerate(rows):
+        balls, kind = points.row == row, int(b.contact_angle > 0.1)
+        pitch = 1e3 * b.pitch_diameter
+        axial = np.nansum(points.load[0, 1, balls] * np.abs(np.sin(points.contact_angle[0, 1, balls])))
+        angle = max(b.contact_angle, float(np.nanmean(np.abs(points.contact_angle[0, 1, balls]))) if kind == 0 else 0.0, 0.1)
+        churned += 1e-7 * _BATH[kind] * max(nu * rpm, 2000.0) ** (2.0 / 3.0) * pitch**3 if rpm > 0.0 else 0.0
+        carried += _LOAD_FACTORS[kind] * max(radial, 0.9 * float(axial) / np.tan(angle) - 0.1 * radial) * pitch
+    supplies = {"oil_and_air": 0.5, "oil_bath": 1.0, "oil_jet": 2.0}
+    return {name: 1e-3 * (supply * churned + carried) for name, supply in supplies.items()}

@@ -5,5 +5,4 @@ shape        shape functions, Gauss rules, mean gradients by numpy
 strain       strain-displacement matrices of all four formulations; an element's fields as sums of its eight modes
 stiffness    stiffness matrices and their sum; internal forces, hourglass control and its energy, stresses at points
 rows         a mesh in parts: sums, central-difference update, stable step, stresses; rows of blocks times many copies
-stress_fit   stresses between the elements' centres
 """
