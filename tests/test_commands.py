@@ -68,7 +68,7 @@ COMMANDS = {
         *("precision", MINIMAL, "--vary", "integrator.steps_per_turn=45,90", "--reference", "integrator.steps_per_turn=720"),
         *("--repeats", "1", "--out", "OUT"),
     ),
-    "stability": ("stability", "--only", "chatter", "--processes", "0", "--out", "OUT"),
+    "stability": ("stability", "--only", "rubber on ceramic, elements", "--processes", "0", "--out", "OUT"),
     "sweep": ("sweep", "STATIC", *SPEEDS, "--out", "OUT"),
     "sweep, picture": ("sweep", "STORE", "--plot", "stiffness:y,y"),
     "export": ("export", "STORE", "--ross", "OUT/bearing.toml", "--at", "load.axial=1000"),

@@ -47,15 +47,15 @@ def test_whole_bearing(supports, displacement, diagonal):
 
 @pytest.mark.parametrize("tilt", [pytest.param("locked", marks=pytest.mark.slow), "free"])
 def test_resultants_on_beds_are_near_pressures_at_surface_points(tilt):
-    """1 %, of which three points along a semi-axis take a half; displacements along normals only would be 13 % off in kxx."""
-    both = {"tilt": tilt, "inner_seat": 1e11, "outer_seat": 1e11}
+    """0.4 %, of which three points along a semi-axis take a half."""
+    both = {"tilt": tilt, "inner_seat": 1e10, "outer_seat": 1e10}
     ours = at_rest(load={"axial": 1000.0}, supports=both)[1]
     theirs = at_rest(
         load={"axial": 1000.0}, supports=both, contact={"kind": "unilateral", "discretisation": "nodal"},
         mesh={"kind": "structured", "nodes_per_semi_axis": 3, "element_size": 1.2e-3},
     )[1]  # fmt: skip
-    assert np.diag(ours.stiffness)[:3] == pytest.approx(np.diag(theirs.stiffness)[:3], rel=0.01)
-    assert ours.displacement[0] == pytest.approx(theirs.displacement[0], rel=0.01)
+    assert np.diag(ours.stiffness)[:3] == pytest.approx(np.diag(theirs.stiffness)[:3], rel=0.004)
+    assert ours.displacement[0] == pytest.approx(theirs.displacement[0], rel=0.004)
 
 
 @pytest.mark.parametrize(("size", "along"), [(1e-3, 2), (0.7e-3, 3)])
