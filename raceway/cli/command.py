@@ -73,6 +73,11 @@ class Option(NamedTuple):
     default: object = None
     positional: bool = False
 
+    @classmethod
+    def metavars(cls, **words: str) -> dict[str, Option]:
+        """Of arguments of which the command line says no more than what stands for their value."""
+        return {name: cls(metavar=word) for name, word in words.items()}
+
 
 class Command(NamedTuple):
     """A line of the table of commands.

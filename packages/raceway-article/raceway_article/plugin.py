@@ -30,11 +30,7 @@ class Article:
         )
         options = {
             "bodies": Option(choices=("rigid", "condensed", "both", "elastic")),
-            "speeds": Option(metavar="LIST"),
-            "axial": Option(metavar="LIST"),
-            "shaft": Option(metavar="N·M/RAD"),
-            "friction": Option(metavar="MU"),
-            "turns": Option(metavar="N"),
+            **Option.metavars(speeds="LIST", axial="LIST", shaft="N·M/RAD", friction="MU", turns="N"),
         }
         return Command("article", "raceway_article.front:article", self.help, example, options, folder="-article").click()
 

@@ -54,12 +54,9 @@ def raceway_commands() -> dict[str, tuple[Command, ...]]:
                 '    --map "Ch 1=y_um" --map "Ch 2=z_um"',
                 {
                     "data": Option(positional=True),
-                    "free": Option(metavar="A.B,C.D"),
                     "scene": Option("scene"),
-                    "mass": Option(metavar="KG"),
-                    "slow_roll": Option(metavar="FILE.csv"),
-                    "run_out": Option(metavar="UM,DEG"),
                     "columns": Option("map", '"HEADER=NAME"'),
+                    **Option.metavars(free="A.B,C.D", mass="KG", slow_roll="FILE.csv", run_out="UM,DEG"),
                 },
                 folder="-fitted",
                 named_by="data",

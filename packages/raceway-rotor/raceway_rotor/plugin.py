@@ -29,15 +29,11 @@ def raceway_commands() -> dict[str, tuple[Command, ...]]:
                 "    --nastran bearing.bdf --ansys bearing.inp --table bearing.csv",
                 {
                     "store": Option(positional=True),
-                    "ross": Option(metavar="FILE"),
-                    "nastran": Option(metavar="FILE"),
-                    "ansys": Option(metavar="FILE"),
-                    "table": Option(metavar="FILE"),
-                    "at": Option(metavar="KEY=VALUE"),
                     "source": Option("from", choices=("rotating", "directions", "tangent")),
-                    "damping": Option(metavar="C"),
                     "ross_version": Option(choices=("2", "3")),
-                    "tag": Option(metavar="NAME"),
+                    **Option.metavars(
+                        ross="FILE", nastran="FILE", ansys="FILE", table="FILE", at="KEY=VALUE", damping="C", tag="NAME"
+                    ),
                 },
                 folder=None,
                 pictures=None,
