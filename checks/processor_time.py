@@ -1,9 +1,9 @@
 """Processor time of quick tests, a plug-in of pytest: one beyond its budget fails.
 
-It is that of set-up and call, of this process and its children that ended, without what kernels take to be compiled or read, on the
-machine of the plan's constants: others, and busy ones, take longer for the same work.  What is beyond the budget is told at the end.  A
-test that meets something first does not fail: a library that no test before it imported, or what is kept in the cache from now on.
-Another test would have paid for it.  Continuous integration, whose cache is empty, fails none.
+It is that of set-up and call, of this process and its children that ended, without what kernels take to be compiled or read and without
+fixtures that several tests share, on the machine of the plan's constants: others, and busy ones, take longer for the same work.  What is
+beyond the budget is told at the end.  A test that meets something first does not fail: a library that no test before it imported, or what
+is kept in the cache from now on.  Another test would have paid for it.  Continuous integration, whose cache is empty, fails none.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Reading:
     @classmethod
     def now(cls) -> Reading:
         kernels = clock["compile_processor_s"] + clock["load_s"]
-        return cls(sum(os.times()[:4]) - kernels, len(sys.modules), time.time())
+        return cls(sum(os.times()[:4]) - kernels - sum(_SHARED), len(sys.modules), time.time())
 
     def meets_first(self, after: Reading) -> bool:
         """Whether a library was imported or something kept since then."""
@@ -54,6 +54,17 @@ class Reading:
 
 
 _BEGUN = pytest.StashKey[Reading]()
+#: Processor time of set-ups that tests share [s]; one that asks for another is billed without it.
+_SHARED: list[float] = []
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any]) -> Iterator[Any]:
+    before = Reading.now()
+    result = yield
+    if fixturedef.scope != "function":
+        _SHARED.append(Reading.now().processor - before.processor)
+    return result
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)

@@ -11,9 +11,11 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 import raceway
 from raceway import scene_from_dict
+from raceway.cli.main import main
 from raceway.scene.tables import TABLES
 from tests.snippets import PAGES, ROOT, Listing, anchors, links, listings
 
@@ -214,6 +216,4 @@ def test_keys_and_their_words_are_completed(begun, completed):
 
 def completion(instruction: str, **words: str) -> str:
     """What the program tells a shell."""
-    start = "import sys; sys.argv[0] = 'raceway'; from raceway.__main__ import main; main()"
-    variables = {**os.environ, "PYTHONPATH": str(ROOT), "_RACEWAY_COMPLETE": instruction, **words}
-    return subprocess.run([sys.executable, "-c", start], capture_output=True, text=True, env=variables, check=False).stdout
+    return CliRunner().invoke(main, [], env={"_RACEWAY_COMPLETE": instruction, **words}).stdout

@@ -62,7 +62,7 @@ def test_a_motion_out_of_the_grooves_is_refused_with_the_likely_cause():
 
 
 def test_balls_that_unload_during_a_turn_are_told():
-    heavy = computed(excitation={**EXCITED, "unbalance": 3.2e-3})
+    heavy = computed(excitation={**EXCITED, "unbalance": 2e-3})
     assert any("balls lose contact with the inner race during a turn" in text for text in heavy.warnings)
     assert computed(excitation={**EXCITED, "unbalance": 1e-5}).warnings == ()
 

@@ -143,11 +143,11 @@ def test_a_mesh_that_includes_another_file_is_refused(line, tmp_path):
 
 
 def bomb(path):
-    """A cell whose field inflates from 4 MB to 4 GB, block by block of 64 MiB."""
+    """A cell whose field inflates from 1 MB to 1 GB, block by block of 16 MiB."""
     Vtu().write(path, block())
-    zeros = zlib.compress(bytes(2**26), 9)
+    zeros = zlib.compress(bytes(2**24), 9)
     blocks = 64
-    head = struct.pack(f"<{3 + blocks}I", blocks, 2**26, 0, *[len(zeros)] * blocks)
+    head = struct.pack(f"<{3 + blocks}I", blocks, 2**24, 0, *[len(zeros)] * blocks)
     text = base64.b64encode(head).decode() + base64.b64encode(zeros * blocks).decode()
     field = f'<PointData><DataArray type="UInt8" Name="nodes:x" format="binary">{text}</DataArray>'
     path.write_text(path.read_text().replace("</Piece>", field + "</PointData></Piece>"))
