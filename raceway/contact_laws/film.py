@@ -8,7 +8,7 @@ import attrs
 
 from raceway.contact_laws.hertz import three_halves
 from raceway.framework.contracts import LawReport
-from raceway.framework.options import between, one_of, option, optional, positive
+from raceway.framework.options import between, one_of, option, positive
 from raceway.scene.lubricant import Oil
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Film(Oil):
     )
     starvation: float = option(1.0, help="thickness over that of a flooded contact", rule=between(0.0, 1.0))
     roughness: float | None = option(
-        None, unit="m", help="rms of both surfaces together, sqrt(R1^2 + R2^2), for Lambda", rule=optional(positive())
+        None, unit="m", help="rms of both surfaces together, sqrt(R1^2 + R2^2), for Lambda", rule=positive()
     )
 
     @classmethod

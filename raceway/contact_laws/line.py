@@ -9,7 +9,7 @@ import numpy as np
 
 from raceway.core.deferred import deferred
 from raceway.errors import PluginError
-from raceway.framework.options import option, optional, positive, word_or
+from raceway.framework.options import option, positive, word_or
 
 if TYPE_CHECKING:
     from raceway.core.jit import Kernel
@@ -56,7 +56,7 @@ class Line:
         help="c: 'iso_16281', 'palmgren' or a number",
         rule=word_or(positive(), *_COEFFICIENTS),
     )
-    length: float | None = option(None, unit="m", help="L; default: that of the rollers", rule=optional(positive()))
+    length: float | None = option(None, unit="m", help="L; default: that of the rollers", rule=positive())
 
     @classmethod
     def examples(cls) -> list[Line]:

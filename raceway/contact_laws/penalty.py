@@ -9,7 +9,7 @@ import numpy as np
 
 from raceway.contact_laws.hertz import point_stiffness
 from raceway.core.deferred import deferred
-from raceway.framework.options import option, optional, positive
+from raceway.framework.options import option, positive
 
 if TYPE_CHECKING:
     from raceway.core.jit import Kernel
@@ -65,10 +65,10 @@ class Penalty:
     foundation: ClassVar[bool] = True
 
     stiffness: float | None = option(
-        None, unit="N/m3", help="pressure per penetration k_n; excludes calibrate_at", rule=optional(positive())
+        None, unit="N/m3", help="pressure per penetration k_n; excludes calibrate_at", rule=positive()
     )
     calibrate_at: float | None = option(
-        None, unit="N", help="ball load at which the approach equals Hertz's (nodal: 1 % of it)", rule=optional(positive())
+        None, unit="N", help="ball load at which the approach equals Hertz's (nodal: 1 % of it)", rule=positive()
     )
 
     @classmethod

@@ -33,7 +33,7 @@ def few_words(note: str) -> str:
 
 @unique
 class Estimate(Enum):
-    """Sentence and few words of each way to estimate an error; names in braces are filled in by a call.
+    """Sentence and few words of each way to estimate an error, by default those before its reason; a call fills names in braces in.
 
     Examples
     --------
@@ -69,7 +69,7 @@ class Estimate(Enum):
         "not estimated: the record of a second run with {steps} steps per turn would not fit",
         "no room for a second run, {steps} steps per turn",
     )
-    SECOND_RUN_FAILED = ("the run with {steps} steps per turn failed: {why}", "the run with {steps} steps per turn failed")
+    SECOND_RUN_FAILED = ("the run with {steps} steps per turn failed: {why}",)
     SECOND_RUN_WITHOUT_Z = ("the run with {steps} steps per turn gives no dynamic stiffness",)
     RESIDUAL = ("residual of each equilibrium; more of them change less", "residual of each equilibrium")
     SECOND_SERIES = (
@@ -80,10 +80,7 @@ class Estimate(Enum):
         "not estimated: the record of a second series with {count} equilibria per turn would not fit",
         "no room for a second run, {count} equilibria per turn",
     )
-    SECOND_SERIES_FAILED = (
-        "the series of {count} equilibria per turn failed: {why}",
-        "the series of {count} equilibria per turn failed",
-    )
+    SECOND_SERIES_FAILED = ("the series of {count} equilibria per turn failed: {why}",)
 
     # The transient.
     NO_MOTION = ("no motion is recorded",)
@@ -137,7 +134,7 @@ class Estimate(Enum):
         "compare with a finer mesh",
     )
     COARSER_MESH = ("largest change of a diagonal stiffness from a mesh twice as coarse",)
-    COARSER_MESH_FAILED = ("no equilibrium with the coarser mesh: {why}", "no equilibrium with the coarser mesh")
+    COARSER_MESH_FAILED = ("no equilibrium with the coarser mesh: {why}",)
     FEWER_POINTS = (
         "a third of the displacement's change from half as many points per semi-axis (order 2)",
         "a third of the displacement's change from half as many points per semi-axis",
@@ -146,7 +143,7 @@ class Estimate(Enum):
         f"{FEWER_POINTS[0]}; stiffness ripples less, by {{ripple:.2g}}, with the places of the points",
         FEWER_POINTS[1],
     )
-    FEWER_POINTS_FAILED = ("no equilibrium with half as many points: {why}", "no equilibrium with half as many points")
+    FEWER_POINTS_FAILED = ("no equilibrium with half as many points: {why}",)
     FEWEST_POINTS = ("no fewer points to compare with",)
     RIPPLE = ("ripple: radial stiffness at one place of the points over its mean over all places{change}", "ripple")
 
@@ -172,10 +169,7 @@ class Estimate(Enum):
         "the law is Hertz's: what it assumes (smooth, dry half-spaces) is not estimated",
         "Hertz's own assumptions are not judged",
     )
-    BEYOND_HERTZ = (
-        "not estimated: what law '{kind}' adds to Hertz at the running speed is no error",
-        "what law '{kind}' adds to Hertz at the running speed is no error",
-    )
+    BEYOND_HERTZ = ("not estimated: what law '{kind}' adds to Hertz at the running speed is no error",)
     LAW_UNKNOWN = (
         "law '{kind}' is calibrated to Hertz on elastic bodies, and nothing in a run measures how well: compare with "
         "contact.discretisation = 'nodal' (docs/condensed.md has both for B7206C)",
@@ -196,5 +190,6 @@ class Estimate(Enum):
     EACH_HYPOTHESIS = ("equilibria under each hypothesis and under all; K: {how}{why}", "")
 
     def __call__(self, **values: object) -> Note:
-        sentence, words = self.value[0], self.value[-1]
+        sentence = self.value[0]
+        words = self.value[1] if len(self.value) > 1 else sentence.removeprefix("not estimated: ").partition(": {why}")[0]
         return Note(sentence.format(**values), words.format(**values), self)

@@ -36,7 +36,7 @@ def option(
     default : value when the key is absent; without it the key is required
     unit : for people and for the schema, "" for a pure number
     help : one sentence
-    rule : validator, called as ``rule(None, attribute, value)``
+    rule : validator, called as ``rule(None, attribute, value)``, but for None where that is the default
     path : the value names a file, relative to the folder of the scene file
     no_list : message for a list or a table where one value is wanted
 
@@ -50,6 +50,7 @@ def option(
     >>> Law().stiffness
     1000000000.0
     """
+    rule = optional(rule) if rule is not None and default is None else rule
     metadata = {"unit": unit, "help": help, "rule": getattr(rule, "words", ""), "path": path, "no_list": no_list}
     return attrs.field(default=default, validator=rule or (lambda *_: None), metadata=metadata)
 

@@ -28,7 +28,7 @@ class Material:
         None,
         unit="1/K",
         help="linear coefficient; default where `young` is steel's (204 to 214 GPa): 12.5e-6, else required by temperatures",
-        rule=optional(at_least(0.0)),
+        rule=at_least(0.0),
     )
 
     def __attrs_post_init__(self) -> None:
@@ -50,27 +50,19 @@ class Bearing:
     ball_count: int = option(help="Z", rule=at_least(1))
     conformity_inner: float = option(help="groove radius / ball diameter, inner", rule=inside(0.5, 1.0))
     conformity_outer: float = option(help="groove radius / ball diameter, outer", rule=inside(0.5, 1.0))
-    contact_angle_deg: float | None = option(None, unit="deg", help="free contact angle", rule=optional(between(0.0, 75.0)))
+    contact_angle_deg: float | None = option(None, unit="deg", help="free contact angle", rule=between(0.0, 75.0))
     radial_clearance: float | None = option(
-        None, unit="m", help="internal radial clearance, on the diameter, as in catalogues", rule=optional(at_least(0.0))
+        None, unit="m", help="internal radial clearance, on the diameter, as in catalogues", rule=at_least(0.0)
     )
-    bore: float | None = option(None, unit="m", help="bore diameter", rule=optional(length()))
-    outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=optional(length()))
-    width: float | None = option(None, unit="m", help="width", rule=optional(length()))
-    shoulder_height: float | None = option(
-        None, unit="m", help="depth of the grooves; default 0.2 D", rule=optional(length())
-    )
+    bore: float | None = option(None, unit="m", help="bore diameter", rule=length())
+    outer_diameter: float | None = option(None, unit="m", help="outer diameter", rule=length())
+    width: float | None = option(None, unit="m", help="width", rule=length())
+    shoulder_height: float | None = option(None, unit="m", help="depth of the grooves; default 0.2 D", rule=length())
     dynamic_rating: float | None = option(
-        None,
-        unit="N",
-        help="dynamic load rating C of one row; default: the catalogue's, else ISO 281",
-        rule=optional(positive()),
+        None, unit="N", help="dynamic load rating C of one row; default: the catalogue's, else ISO 281", rule=positive()
     )
     static_rating: float | None = option(
-        None,
-        unit="N",
-        help="static load rating C0 of one row; default: the catalogue's, else ISO 76",
-        rule=optional(positive()),
+        None, unit="N", help="static load rating C0 of one row; default: the catalogue's, else ISO 76", rule=positive()
     )
     inner_profile: tuple[tuple[float, float], ...] | None = option(
         None, unit="m", help="section of the inner ring without groove, points [x, radius]; x = 0: plane of the balls"
@@ -100,7 +92,7 @@ class Bearing:
         None,
         unit="N",
         help="preload of the rows opposite to the first, if different: the difference is an axial load before mounting",
-        rule=optional(positive()),
+        rule=positive(),
     )
     preload_of: str = option(
         "set",
@@ -117,13 +109,13 @@ class Bearing:
         None,
         unit="m",
         help="travel of these rings either way from their unmounted position; default: unlimited",
-        rule=optional(travel()),
+        rule=travel(),
     )
     row_distance: float | None = option(
         None,
         unit="m",
         help="axial distance of neighbouring inner groove centres; default: the width of one bearing",
-        rule=optional(length()),
+        rule=length(),
     )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")
     maker: str | None = option(
@@ -303,19 +295,16 @@ class SetRow:
     direction: str | None = option(
         None,
         help="'+': a positive axial motion of the inner ring loads it; default: from the arrangement",
-        rule=optional(one_of("+", "-")),
+        rule=one_of("+", "-"),
     )
     position: float | None = option(
-        None,
-        unit="m",
-        help="axial position of its inner groove centres; default: rows `row_distance` apart",
-        rule=optional(finite()),
+        None, unit="m", help="axial position of its inner groove centres; default: rows `row_distance` apart", rule=finite()
     )
     preload: float | None = option(
         None,
         unit="N",
         help="preload for which this row is ground (preload_of = 'row'); default: bearing.preload",
-        rule=optional(at_least(0.0)),
+        rule=at_least(0.0),
     )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")
 

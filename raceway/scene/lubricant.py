@@ -9,7 +9,7 @@ import attrs
 
 from raceway.core.columns import Number, largest, least, log, log10, where, with_values
 from raceway.errors import Mistake
-from raceway.framework.options import at_least, between, nearest, option, optional, positive, word_or
+from raceway.framework.options import at_least, between, nearest, option, positive, word_or
 
 if TYPE_CHECKING:
     from raceway.core.rolling_friction import Lubrication
@@ -91,24 +91,24 @@ class Oil:
 
     oil: str | None = option(None, help=f"mineral oil by its grade: {', '.join(GRADES)}; needs temperature_c")
     viscosity_40: float | None = option(
-        None, unit="m2/s", help="kinematic, at 40 C (32e-6 is 32 mm2/s); with viscosity_100", rule=optional(positive())
+        None, unit="m2/s", help="kinematic, at 40 C (32e-6 is 32 mm2/s); with viscosity_100", rule=positive()
     )
-    viscosity_100: float | None = option(None, unit="m2/s", help="kinematic, at 100 C", rule=optional(positive()))
+    viscosity_100: float | None = option(None, unit="m2/s", help="kinematic, at 100 C", rule=positive())
     viscosity: float | None = option(
-        None, unit="Pa s", help="dynamic, at the running temperature; excludes oil", rule=optional(positive())
+        None, unit="Pa s", help="dynamic, at the running temperature; excludes oil", rule=positive()
     )
     temperature_c: float | None = option(
-        None, unit="°C", help="of the oil in the inlets of the contacts", rule=optional(between(-273.15, 1e3))
+        None, unit="°C", help="of the oil in the inlets of the contacts", rule=between(-273.15, 1e3)
     )
     density: float = option(870.0, unit="kg/m3", help="of the oil", rule=positive())
     pressure_viscosity: float | None = option(
         None,
         unit="1/Pa",
         help="coefficient alpha; default: Wooster's rule for mineral oils, from the viscosity",
-        rule=optional(between(1e-11, 1e-6)),
+        rule=between(1e-11, 1e-6),
     )
     temperature_viscosity: float | None = option(
-        None, unit="1/K", help="beta = -d ln(viscosity)/dT; default: the oil's, or mineral oils'", rule=optional(positive())
+        None, unit="1/K", help="beta = -d ln(viscosity)/dT; default: the oil's, or mineral oils'", rule=positive()
     )
     conductivity: float = option(0.14, unit="W/m/K", help="of the oil; mineral oils: 0.12 to 0.15", rule=positive())
 

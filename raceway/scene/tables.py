@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 import attrs
 
-from raceway.framework.options import at_least, between, finite, inside, length, one_of, option, optional, positive, word_or
+from raceway.framework.options import at_least, between, finite, inside, length, one_of, option, positive, word_or
 from raceway.framework.registry import Registry
 from raceway.scene.bearing import Bearing, Material
 from raceway.scene.lubricant import Lubricant
@@ -84,7 +84,7 @@ class Kinematics:
         None,
         unit="r/min",
         help="default: excitation.speed_rpm, which a run_up changes; 0 in a static scene",
-        rule=optional(between(0.0, 1e9)),
+        rule=between(0.0, 1e9),
     )
     radial_expansion: float = option(0.0, unit="m", help="growth of the inner raceway (fit, temperature)", rule=finite())
     ring_growth: bool | str = option(
@@ -110,7 +110,7 @@ class Mounting:
     shaft_bore: float = option(0.0, unit="m", help="diameter of the hole in the shaft; 0: solid", rule=at_least(0.0))
     housing_interference: float = option(0.0, unit="m", help="outer ring less housing, on the diameter", rule=at_least(0.0))
     housing_diameter: float | None = option(
-        None, unit="m", help="outer diameter of the housing; default: large", rule=optional(length())
+        None, unit="m", help="outer diameter of the housing; default: large", rule=length()
     )
     shaft_material: Material | None = option(None, help="a name, or a table as [bearing.rings]; default: the rings'")
     housing_material: Material | None = option(None, help="a name, or a table as [bearing.rings]; default: the rings'")
@@ -146,7 +146,7 @@ class Contact:
         None,
         unit="N/m",
         help="of a sticking contact; default: Mindlin's along the major axis, at the ball load under the axial load",
-        rule=optional(positive()),
+        rule=positive(),
     )
     damping: float | str = option(
         0.0,
@@ -155,10 +155,10 @@ class Contact:
         rule=word_or(at_least(0.0), "band"),
     )
     time_constant: float | None = option(
-        None, unit="s", help="tau of a dashpot c = tau k per contact, k its stiffness", rule=optional(positive())
+        None, unit="s", help="tau of a dashpot c = tau k per contact, k its stiffness", rule=positive()
     )
     loss_factor: float | None = option(
-        None, help="eta of a dashpot c = eta k / w per contact, w the excitation's frequency", rule=optional(positive())
+        None, help="eta of a dashpot c = eta k / w per contact, w the excitation's frequency", rule=positive()
     )
     law: Any = attrs.field(default=None, metadata={"plugin": "contact_law"})
 

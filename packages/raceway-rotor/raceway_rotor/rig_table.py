@@ -6,7 +6,7 @@ from math import pi
 
 import attrs
 
-from raceway import Mistake, Scene, SceneError, at_least, between, finite, inside, one_of, option, optional, positive, worded
+from raceway import Mistake, Scene, SceneError, at_least, between, finite, inside, one_of, option, positive, worded
 from raceway.extend import Rule, structure
 
 
@@ -55,7 +55,7 @@ class Rig:
     disc_radius: float = option(0.090, unit="m", help="radius of the disc", rule=positive())
     disc_thickness: float = option(0.020, unit="m", help="width of the disc", rule=positive())
     hub_diameter: float | None = option(
-        None, unit="m", help="bending diameter within the disc; default: the shaft's", rule=optional(positive())
+        None, unit="m", help="bending diameter within the disc; default: the shaft's", rule=positive()
     )
     young: float = option(212e9, unit="Pa", help="Young's modulus of the shaft", rule=positive())
     poisson: float = option(0.29, help="Poisson's ratio of the shaft", rule=inside(-1.0, 0.5))

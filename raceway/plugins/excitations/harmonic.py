@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from raceway.core.deferred import deferred
-from raceway.framework.options import at_least, between, finite, inside, one_of, option, optional, positive
+from raceway.framework.options import at_least, between, finite, inside, one_of, option, positive
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
@@ -44,18 +44,11 @@ class Amplitude:
         help="'unbalance': load_share * unbalance * w^2; 'constant': at every speed",
         rule=one_of("unbalance", "constant"),
     )
-    unbalance: float | None = option(
-        None, unit="kg m", help="mass times eccentricity of the rotor", rule=optional(at_least(0.0))
-    )
+    unbalance: float | None = option(None, unit="kg m", help="mass times eccentricity of the rotor", rule=at_least(0.0))
     load_share: float = option(1.0, help="share of the rotor's force that this bearing carries", rule=between(0.0, 1.0))
-    force: float | None = option(
-        None, unit="N", help="amplitude 'constant': force on this bearing", rule=optional(at_least(0.0))
-    )
+    force: float | None = option(None, unit="N", help="amplitude 'constant': force on this bearing", rule=at_least(0.0))
     reference_speed_rpm: float | None = option(
-        None,
-        unit="r/min",
-        help="amplitude 'constant' without force: unbalance force at this speed",
-        rule=optional(positive()),
+        None, unit="r/min", help="amplitude 'constant' without force: unbalance force at this speed", rule=positive()
     )
     phase_lag_deg: float = option(0.0, unit="deg", help="lag of the force behind the rotor's mark", rule=finite())
     ramp_turns: float = option(0.0, help="turns over which the force grows smoothly from zero", rule=at_least(0.0))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 
 from raceway.errors import MeshError
-from raceway.framework.options import between, option, optional, positive, word_or
+from raceway.framework.options import between, option, positive, word_or
 
 if TYPE_CHECKING:
     import numpy as np
@@ -45,7 +45,7 @@ class Structured:
         rule=word_or(between(3, 1_000_000), "auto", "graded"),
     )
     ball_load: float | None = option(
-        None, unit="N", help="ball load of the refined ellipses; default: the scene's, else 300", rule=optional(positive())
+        None, unit="N", help="ball load of the refined ellipses; default: the scene's, else 300", rule=positive()
     )
 
     def mesh(self, bearing: Bearing) -> dict[str, HexMesh]:

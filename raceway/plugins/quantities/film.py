@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 
 from raceway.answers.quantities import Quantity
-from raceway.framework.options import option, optional, positive
+from raceway.framework.options import option, positive
 from raceway.framework.shown import Fact, number
 from raceway.scene.lubricant import Oil
 
@@ -128,7 +128,7 @@ class FilmParameter(FilmThickness):
     )  # fmt: skip
 
     roughness: float | None = option(
-        None, unit="m", help="rms of both surfaces together; default: contact.roughness", rule=optional(positive())
+        None, unit="m", help="rms of both surfaces together; default: contact.roughness", rule=positive()
     )
 
     @staticmethod

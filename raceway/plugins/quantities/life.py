@@ -36,7 +36,7 @@ from raceway.core.life import (
     set_rating,
     system_life,
 )
-from raceway.framework.options import between, option, optional, positive
+from raceway.framework.options import between, option, positive
 from raceway.framework.shown import Fact, number
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class Life:
         0.5, help="factor e_C of ISO 281: 1 extremely clean, 0.5 normal, 0 severely contaminated", rule=between(0.0, 1.0)
     )
     viscosity_ratio: float | None = option(
-        None, help="kappa: viscosity over that required by ISO 281; default: from the oil", rule=optional(positive())
+        None, help="kappa: viscosity over that required by ISO 281; default: from the oil", rule=positive()
     )
 
     def why_not(self, problem: Problem) -> str:
