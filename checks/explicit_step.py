@@ -17,11 +17,10 @@ from raceway.contact_laws.penalty import linear
 from raceway.core.fem.elastic.bearing import ElasticBearing
 from raceway.core.fem.elastic.bearing_data import BearingData
 from raceway.core.fem.elastic.contact import penalty_stiffness
-from raceway.core.record import State
 from raceway.core.recorder import Recorder
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.core.time.stepped import central_difference
-from raceway.extend import Schedule, make_basis, mesh_bodies, resolve
+from raceway.extend import Schedule, State, make_basis, mesh_bodies, resolve
 
 #: The article's mesh.
 ARTICLE = "examples/b7206_article_mesh.toml"

@@ -12,13 +12,11 @@ from raceway_checks.stability.catalogue import BASE
 from checks.validation import orders
 from checks.validation.scenes import built_in, rotating
 from raceway import PluginError, SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
-from raceway.core.record import State
 from raceway.core.ring.ring import Increment
 from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.signatures import Outer
 from raceway.core.time.compiled import outer_force
-from raceway.core.time.schemes import Drivers, OneStep
-from raceway.extend import Schedule, at_rest, integrate
+from raceway.extend import Drivers, OneStep, Schedule, State, at_rest, integrate
 from raceway.testing import Registry, model_of, settled, simulate, solve_equilibrium
 
 Newmark = built_in("integrator", "newmark")

@@ -6,7 +6,6 @@ The other solver's numbers are printed with three or four digits: half a unit of
 from __future__ import annotations
 
 from contextlib import suppress
-from functools import cache
 from itertools import product
 
 import numpy as np
@@ -196,15 +195,15 @@ def test_friction_never_gives_energy_back(claim):
     claim(quantity, max(back), at_most=1e-15, unit="J", basis="closed form", source=source)
 
 
-@cache
+@pytest.fixture(scope="module")
 def at_random():
     """Tallies of random scenes, and which."""
     tallies = [solve(random_scenes(law, seed, 500)) for law, seed in (("hertz", 2026), ("penalty", 2027))]
     return tallies, f"{sum(tally.count for tally in tallies)} random scenes, 1 N to 100 kN, to 100 000 r/min, 3 to 60 balls"
 
 
-def test_random_scenes(claim):
-    tallies, where = at_random()
+def test_random_scenes(claim, at_random):
+    tallies, where = at_random
     unsolved = [words for tally in tallies for words in tally.unsolved]
     assert not unsolved, unsolved[:5]
     claim(f"{where}: unsolved", len(unsolved), at_most=0, basis="closed form", source=CONVEX)
@@ -214,8 +213,8 @@ def test_random_scenes(claim):
 
 
 @pytest.mark.night
-def test_time_of_random_scenes(claim):
-    tallies, where = at_random()
+def test_time_of_random_scenes(claim, at_random):
+    tallies, where = at_random
     median = 1e3 * max(float(np.median(tally.seconds)) for tally in tallies)
     source = "a study of 10 000 points within a minute of one core"
     claim(f"{where}: median time of an equilibrium", median, at_most=5.0, unit="ms", basis="regression", source=source)

@@ -11,8 +11,7 @@ import pytest
 from checks.validation.scenes import rotating
 from raceway.core.ring.orbit import static_orbit
 from raceway.core.ring.stepped import SteppedBearing
-from raceway.core.time.schemes import Drivers
-from raceway.extend import Schedule, at_rest, integrate
+from raceway.extend import Drivers, Schedule, at_rest, integrate
 from raceway.testing import IntegratorSuite, default_registry, settled
 
 #: Those that march in time.
