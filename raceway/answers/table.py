@@ -7,11 +7,11 @@ import io
 import re
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import attrs
 from rich.box import SIMPLE_HEAD
-from rich.console import Group, RenderableType
+from rich.console import Console, ConsoleOptions, Group, RenderableType
 from rich.markup import escape
 from rich.measure import Measurement
 from rich.padding import Padding
@@ -21,10 +21,6 @@ from rich.text import Text
 from raceway.framework.shown import number as number
 from raceway.framework.shown import number_within as number_within
 from raceway.framework.shown import tilt_words as tilt_words
-
-if TYPE_CHECKING:
-    from rich.console import Console, ConsoleOptions, RenderableType
-
 
 #: A blank that no line ends at, while a text is wrapped.
 _FIXED = "\N{NO-BREAK SPACE}"

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, changing_speed, contact_pairs, excitation, linear_parts, make_basis
-from raceway.bodies.model import BuiltBearing, Told, against_hertz
+from raceway.bodies.model import BuiltBearing, Equilibrium, Model, Told, against_hertz
 from raceway.bodies.mounting import place_ring
 from raceway.core.columns import Number, per_ball
 from raceway.core.contact.geometry import BallBearing
@@ -22,9 +20,6 @@ from raceway.framework.registry import default_registry
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from raceway.bodies.model import Equilibrium, Model
 
 #: Shares of a ball's gyroscopic moment that inner and outer race carry, by hypothesis; 2 together.
 _SHARES = {"outer_race": (0.0, 2.0), "shared": (1.0, 1.0), "traction": (1.0, 1.0)}

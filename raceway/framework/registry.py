@@ -16,8 +16,9 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache, cached_property
 from importlib import import_module
+from importlib.metadata import EntryPoint
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 import pluggy
@@ -28,9 +29,6 @@ from raceway.framework.doors import reader
 from raceway.framework.options import nearest
 from raceway.framework.packages import missing_package, named
 from raceway.framework.sources import chosen_entry_points, foreign_words, import_file, is_foreign_fault, owner
-
-if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
 
 _BUILT_IN = ("raceway.contact_laws", "raceway.integrators", "raceway.plugins")
 

@@ -15,13 +15,13 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from itertools import product
-from typing import TYPE_CHECKING, NotRequired
+from typing import NotRequired
 
 import attrs
 
 from raceway.answers.quantities import AXIAL_DISPLACEMENT, Z_IMAG, Z_REAL
 from raceway.errors import RacewayError, SceneError
-from raceway.framework.contracts import Integrator
+from raceway.framework.contracts import Integrator, Mesher
 from raceway.framework.registry import Registry
 from raceway.planning.plan import make_plan
 from raceway.points.axes import Vary, axes_of, points, refuse_mistakes, tables_at
@@ -29,10 +29,6 @@ from raceway.points.store import Store
 from raceway.points.timing import Measured, measured_once
 from raceway.scene.scene import Scene, scene_from_dict
 from raceway.storage.tables import ReadTables, Tables
-
-if TYPE_CHECKING:
-    from raceway.framework.contracts import Integrator, Mesher
-
 
 STEPS = (45, 90, 180, 360, 720, 1440)
 TURNS = (3, 6, 12, 24, 48)

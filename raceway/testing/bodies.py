@@ -10,7 +10,6 @@ import json
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -21,7 +20,7 @@ from raceway.bodies.model import BuiltBearing, Equilibrium, Model
 from raceway.core.record import Schedule
 from raceway.core.time.schemes import integrate
 from raceway.errors import Mistake, RacewayError, SceneError
-from raceway.framework.contracts import Cost, Traits
+from raceway.framework.contracts import BodiesKind, Cost, Traits
 from raceway.framework.duties import gives_columns, unused_with_bodies
 from raceway.framework.hookspecs import hookimpl
 from raceway.framework.registry import Registry
@@ -38,9 +37,6 @@ from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables
 from raceway.testing.integrator import FromPython, has_both
 from raceway.testing.suite import ConformityError, Suite, b7206c, check_shape, duty, require, settled
-
-if TYPE_CHECKING:
-    from raceway.framework.contracts import BodiesKind
 
 #: Part of the loads that an equilibrium may leave: compiled ones leave 1e-11, finite elements are iterated to 1e-7.
 _BALANCE = 1e-6

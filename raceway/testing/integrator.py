@@ -6,8 +6,6 @@ an error that holds; all others are tried on transients.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import attrs
 import numpy as np
 
@@ -15,6 +13,7 @@ from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.system import System
 from raceway.core.time.schemes import Drivers, integrate
 from raceway.errors import ConvergenceError, RacewayError, StabilityError
+from raceway.framework.contracts import Integrator
 from raceway.framework.duties import finds_orbit
 from raceway.points.column_quantities import SteadyLines
 from raceway.scene.scene import scene_from_dict
@@ -32,10 +31,6 @@ from raceway.testing.systems import (
     linear_system,
     motion,
 )
-
-if TYPE_CHECKING:
-    from raceway.framework.contracts import Integrator
-
 
 #: An error that a record states may be short of the true one by this factor; below the floor, rounding decides.
 _SHORTFALL, _FLOOR = 3.0, 1e-9

@@ -9,7 +9,7 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 import numpy as np
@@ -17,22 +17,17 @@ import numpy as np
 from raceway.answers.quantities import plugin_quantities
 from raceway.bodies.columns import Builder
 from raceway.errors import RacewayError
-from raceway.framework.contracts import Batch, Refused, SolvedPoints
+from raceway.framework.contracts import Batch, Executor, Format, Mesher, Quantities, Refused, SolvedPoints, Study
 from raceway.framework.duties import of_results, quantities_at, quantity_report, why_no_quantities
 from raceway.framework.registry import default_registry
 from raceway.pipeline.quantities import solved_point
+from raceway.pipeline.result import Result
 from raceway.pipeline.run import run
 from raceway.planning.plan import make_plan
 from raceway.points.column_quantities import Computed
-from raceway.scene.scene import scene_from_dict
+from raceway.scene.scene import Scene, scene_from_dict
 from raceway.storage.tables import Tables
 from raceway.testing.suite import Suite, b7206c, check_class, duty, require
-
-if TYPE_CHECKING:
-    from raceway.framework.contracts import Executor, Format, Mesher, Quantities, Study
-    from raceway.pipeline.result import Result
-    from raceway.scene.scene import Scene
-
 
 #: Relative difference of real numbers that a text of ten figures may make.
 _TEN_FIGURES = 1e-10

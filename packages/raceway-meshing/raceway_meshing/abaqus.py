@@ -5,20 +5,17 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Iterator
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
 
 from raceway import MeshError, one_of, option
 from raceway.extend import memory_for
+from raceway.extend import HexMesh
 from raceway_meshing import formats as exchange
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from raceway.extend import HexMesh
 
 #: Element types that both programs know, by this program's word for the hexahedron.
 _TYPES = {"one_point": "C3D8R", "full": "C3D8", "incompatible": "C3D8I"}

@@ -6,6 +6,7 @@ Nothing is opened by ``gmsh.open``: it executes the .geo language, and for a fil
 
 from __future__ import annotations
 
+from types import ModuleType
 import ctypes
 import os
 import signal
@@ -14,20 +15,16 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, TypeVar
+from typing import ClassVar, TypeVar
 
 import attrs
 import numpy as np
 
 from raceway import MeshError, one_of, option, positive
 from raceway.extend import remedy
+from raceway.extend import Bearing, HexMesh, Prediction
 from raceway_meshing.formats import readable
 from raceway_meshing.mesh_files import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
-
-if TYPE_CHECKING:
-    from types import ModuleType
-
-    from raceway.extend import Bearing, HexMesh, Prediction
 
 _SOLIDS = {4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids"}
 #: Endings of files and OpenCASCADE's readers for them.

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import attrs
 
 from raceway import MeshError, PluginError, option, positive
 from raceway.extend import blamed, nearest
-
-if TYPE_CHECKING:
-    from raceway.extend import Bearing, HexMesh, Mesher
+from raceway.extend import Bearing, HexMesh, Mesher
 
 
 BODIES = ("inner_ring", "outer_ring", "ball")

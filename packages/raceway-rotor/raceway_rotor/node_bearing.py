@@ -6,7 +6,6 @@ Independent of ROSS; x is the bearing's axis.
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -16,9 +15,7 @@ from raceway.extend import (
     Identifying, Integration, Rotor, SceneSource, as_scene, default_registry, evaluate_following, harmonic_load, simulate,
     solve_equilibrium,
 )  # fmt: skip
-
-if TYPE_CHECKING:
-    from raceway.extend import Equilibrium, Model
+from raceway.extend import Equilibrium, Model
 
 #: Below this the derivative of Z by j w stands for C [rad/s].
 _SLOW = 1e-3

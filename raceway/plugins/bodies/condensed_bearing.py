@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from math import nan
 from threading import Lock
-from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -12,13 +12,14 @@ import numpy as np
 from raceway.bodies import rigid_bearing as rigid
 from raceway.bodies.basis import Basis, seat_of
 from raceway.bodies.contacts import elasticity, rigid_rings
-from raceway.bodies.model import BuiltBearing, Told, calibration_error, untold
+from raceway.bodies.model import BuiltBearing, Equilibrium, Model, Told, calibration_error, untold
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.core.contact.hertz import ball_compliance
 from raceway.core.fem.calibration import calibrated
-from raceway.core.fem.mesh.ring_mesh import ring_shape
+from raceway.core.fem.mesh.ring_mesh import RingShape, ring_shape
 from raceway.core.fem.patches.patch import RingBody, Solid
+from raceway.core.fem.revolution.sections import Profile
 from raceway.core.fem.structural import (
     SURFACE,
     ElasticBodies,
@@ -29,6 +30,7 @@ from raceway.core.fem.structural import (
     ring_compliance,
     ring_section,
 )
+from raceway.core.jit import Kernel
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.structural import condensed
 from raceway.core.ring.system import System, surrogate
@@ -39,14 +41,6 @@ from raceway.planning.parts import BETWEEN_BALLS
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from collections.abc import Hashable
-
-    from raceway.bodies.model import Equilibrium, Model
-    from raceway.core.fem.mesh.ring_mesh import RingShape
-    from raceway.core.fem.revolution.sections import Profile
-    from raceway.core.jit import Kernel
 
 
 def inertia_table(model: Model, equilibrium: Equilibrium) -> Tables:

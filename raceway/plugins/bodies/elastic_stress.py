@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import attrs
 import numpy as np
 
-from raceway.bodies.model import Told, overlap
+from raceway.bodies.model import Equilibrium, Model, Told, overlap
 from raceway.core.contact.hertz import largest_shear
 from raceway.core.fem.elastic.contact import NodalContact, peak_at_nodes, peak_at_points
 from raceway.core.fem.elastic.ring import ElasticRing
 from raceway.core.fem.elastic.stress import ContactAxis, StressProfile, contact_axes, stress_profile
 from raceway.plugins.bodies.elastic_contacts import ElasticBodies, at_equilibrium
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from raceway.bodies.model import Equilibrium, Model
 
 #: Elements down to Hertz's depth, and along each semi-axis of the ellipse, from which a mesh counts as resolving the stresses.
 _RESOLVED = 4.0

@@ -7,14 +7,13 @@ where contacts go further than that, the patches are made wider.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, at_points, contact_pairs, make_basis
 from raceway.bodies.contacts import elasticity, rigid_rings
-from raceway.bodies.model import BuiltBearing, Told, overlap
+from raceway.bodies.model import BuiltBearing, Equilibrium, Model, Told, overlap
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import probe, rigid_system, with_hertz
 from raceway.core.fem.mesh.ring_mesh import ring_shape
@@ -45,10 +44,6 @@ from raceway.plugins.bodies.condensed_bearing import inertia_table
 from raceway.plugins.bodies.mesh import locking
 from raceway.scene.growth import load_at_edge
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from raceway.bodies.model import Equilibrium, Model
-
 
 #: Entries of the stiffness below this part of sqrt(K_ii K_jj) are ripple or cancel out: no relative difference.
 _NOTHING = 0.02

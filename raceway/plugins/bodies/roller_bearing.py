@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING, ClassVar, Protocol
+from typing import ClassVar, Protocol
 
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, changing_speed, excitation, linear_parts, make_basis
 from raceway.bodies.columns import ColumnBearing, assembled_columns
-from raceway.bodies.model import BuiltBearing, Told
+from raceway.bodies.model import BuiltBearing, Equilibrium, Model, Told
 from raceway.core.columns import Number, per_ball
 from raceway.core.ratings import STRIBECK
 from raceway.core.ring.equilibria import States
@@ -25,13 +25,8 @@ from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.scene.bearing import DIMENSIONS
+from raceway.scene.bearing import Bearing as BearingTable
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from raceway.bodies.model import Equilibrium, Model
-    from raceway.planning.plan import ScenePlan
-    from raceway.planning.resolve import Problem
-    from raceway.scene.bearing import Bearing as BearingTable
 
 
 class Rollers(Protocol):

@@ -10,17 +10,14 @@ import os
 import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import attrs
 
 from raceway.errors import PluginError
-from raceway.framework.contracts import Answer, Lost, Work
+from raceway.framework.contracts import Answer, Batch, Lost, Work
 from raceway.framework.options import between, option
 from raceway.framework.orphans import deaf_to_terminals, end_with, start_tracker
-
-if TYPE_CHECKING:
-    from raceway.framework.contracts import Batch
 
 
 @attrs.frozen

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from functools import partial
 from math import ceil, pi, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 import numpy as np
@@ -16,12 +16,10 @@ from raceway.extend import (
     SAFETY, Motion, Record, Schedule, Tables, at_time, energy_balance, from_orbit, impact_system, integrate,
     solve_equilibrium, steady_orbit, surrogate,
 )  # fmt: skip
+from raceway.extend import Integrator, System
 from raceway_checks.stability.catalogue import UNDAMPED
 from raceway_checks.stability.study import Limit, Rows
 from raceway_checks.stability.systems import Bench, Still, energy_of_contacts, inverted
-
-if TYPE_CHECKING:
-    from raceway.extend import Integrator, Motion, System
 
 
 _BLOCKS = 20

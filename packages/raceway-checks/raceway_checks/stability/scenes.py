@@ -14,12 +14,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache, partial
 from math import atan2, sin, sqrt
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import attrs
 import numpy as np
 
 from raceway import RacewayError, SceneError
+from raceway import Result
 from raceway.extend import (
     Equilibrium, Model, Motion, Record, Schedule, Tables, at_rest, drift, energy_balance, integrate, law_params,
     make_basis, reach_of, renews, resolve, running_pairs, series_factor, solve_equilibrium, standstill, surrogate,
@@ -27,10 +28,6 @@ from raceway.extend import (
 from raceway_checks.stability.catalogue import COARSE, STATIC, transient
 from raceway_checks.stability.study import FAILED, Limit, Measured, Rows, short
 from raceway_checks.stability.systems import Bench, energy_of_contacts, inverted
-
-if TYPE_CHECKING:
-    from raceway import Result
-    from raceway.extend import Equilibrium, Model
 
 #: Of the balls' loads, which push across the axis, too, and far more than along it where a film has flattened the contact angle.
 _SLOPE = 1e-5

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import attrs
 import numpy as np
 
 from raceway import Scene, build_model, scene_from_dict
+from raceway import Result
 from raceway.extend import (
     Equilibrium, Model, Motion, Registry, System, Tables, no_force, run, solve_equilibrium, stored_energy, surrogate,
     tables_at, without,
 )  # fmt: skip
-
-if TYPE_CHECKING:
-    from raceway import Result
-    from raceway.extend import ContactLaw, Integrator
+from raceway.extend import ContactLaw, Integrator
 
 #: Halvings of an interval: to the last bit of a double from any first one.
 _HALVINGS = 200

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
@@ -11,9 +10,7 @@ import numpy as np
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
 from raceway.core.fem.elastic.superelement import turn
-
-if TYPE_CHECKING:
-    from raceway.core.jit import Kernel
+from raceway.core.jit import Kernel
 
 Material = tuple[float, float, float]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 import numpy as np
@@ -16,9 +16,6 @@ from raceway.core.fem.elastic.unknowns import of_nodes
 from raceway.core.fem.hexahedron.operator import HexOperator
 from raceway.errors import MeshError
 from raceway.storage.array_cache import kept
-
-if TYPE_CHECKING:
-    from raceway.core.fem.elastic.assembly import Assembly
 
 
 class _Ring:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import attrs
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from raceway.core.fem.patches.balls import AppliedLoads, Balls, Gyroscopic, LinearisedBalls
 from raceway.core.fem.patches.friction import Traction
 from raceway.core.fem.patches.patch import Patch
-from raceway.core.fem.patches.pressure import BeyondPatch, Contact, PointLaw
+from raceway.core.fem.patches.pressure import BeyondPatch, Contact, ContactState, PointLaw
 from raceway.core.record import Record
 from raceway.core.ring.kernels import layout
 from raceway.core.ring.kernels.layout import place
@@ -20,10 +20,6 @@ from raceway.core.ring.ring import AT_ONCE, TOLERANCE, Evaluation, Increment
 from raceway.core.ring.system import SteppedRing
 from raceway.core.signatures import Constants
 from raceway.errors import ConvergenceError, MeshError
-
-if TYPE_CHECKING:
-    from raceway.core.fem.patches.pressure import ContactState
-
 
 #: Columns before the slips: energy lost, number of velocities known, the last velocity, the one before, number of the patches.
 _LOST, _VELOCITIES, _LAST, _BEFORE, _GRID, _SLIP = range(6)
