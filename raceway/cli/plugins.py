@@ -29,8 +29,11 @@ from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import KINDS, plural
 from raceway.framework.options import nearest
 from raceway.framework.registry import Registry, default_registry, registry_with
+from raceway.scene.catalogue import preset as known
+from raceway.scene.catalogue import preset_of
 from raceway.scene.reading import options_class
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
+from raceway.storage import array_cache
 from raceway.storage.files import write_whole
 from raceway.storage.tables import Tables
 
@@ -168,9 +171,6 @@ def cache(clear: bool, as_json: bool) -> int:
     Example:
       raceway dev cache --clear
     """
-    import attrs
-
-    from raceway.storage import array_cache
     from raceway.storage import kernel_cache as cache_folder
 
     with show_progress(waiting="looking through the caches"):
@@ -267,10 +267,6 @@ def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
       raceway dev new-scene 7206A-NSK --out spindle.toml
       raceway dev new-scene NU206
     """
-    from rich.text import Text
-
-    from raceway.scene.catalogue import preset as known
-
     if Path(preset).suffix == ".toml":
         raise RacewayError(f"`{preset}` is a file name; a bearing is expected: raceway dev new-scene B7206C --out {preset}")
     known(preset)
@@ -285,8 +281,6 @@ def new_scene(preset: str, out: Path | None, as_json: bool) -> int:
 
 def scene_text(preset: str, registry: Registry) -> str:
     """The scene; what its comments say of a key is the key's own declaration."""
-    from raceway.scene.catalogue import preset_of
-
     entry = preset_of(preset)
     assert entry is not None
     lines = [_HEAD, f'title = "{entry.title}"', "", "[bearing]"]

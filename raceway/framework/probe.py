@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from raceway.core.jit import Kernel
-from raceway.core.signatures import signature_words
+from raceway.core.signatures import FORCE, LAW, signature_words
 from raceway.errors import PluginError, RacewayError
 from raceway.storage.tables import Tables
 
@@ -114,8 +114,6 @@ def probe_law(
     PluginError
         Which plug-in of which distribution, what was found, and what the contract says.
     """
-    from raceway.core.signatures import LAW
-
     depths = tuple(float(depth) for depth in depths if depth > 0.0)
     if _passed_near(law, kernel, params, state, np.array(depths)):
         return
@@ -191,8 +189,6 @@ def probe_excitation(excitation: Excitation, kernel: Kernel, params: np.ndarray,
     PluginError
         As ``probe_law``.
     """
-    from raceway.core.signatures import FORCE
-
     period = excitation.period_s or 1.0 / excitation.frequency_hz
     mark = _mark(kernel, params, period)
     if mark in _PASSED:

@@ -17,6 +17,7 @@ from pathlib import Path
 import attrs
 import numpy as np
 
+from raceway import __version__
 from raceway.bodies.model import Equilibrium, Model, build_model
 from raceway.core.jit import clock, take_compile_seconds, working_clock, working_process_time, working_processor_time
 from raceway.core.record import drift, friction_lost, largest_share
@@ -346,8 +347,6 @@ def _drift(motion: Simulation) -> float | None:
 
 def _environment(problem: Problem, registry: Registry) -> Tables:
     import numba
-
-    from raceway import __version__
 
     plugins = [
         ("contact_law", problem.contact.kind),

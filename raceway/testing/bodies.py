@@ -18,6 +18,7 @@ from raceway.answers.quantities import K
 from raceway.bodies.columns import Builder
 from raceway.bodies.model import BuiltBearing, Equilibrium, Model
 from raceway.core.record import Schedule
+from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.time.schemes import integrate
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.contracts import BodiesKind, Cost, Traits
@@ -162,8 +163,6 @@ def _is_key(scene: Scene, path: str) -> bool:
 
 def _force_imbalance(model: Model, q: np.ndarray, ball: np.ndarray) -> float:
     """What is left of the loads on the free coordinates at a state (5,), (Z, k), over all forces."""
-    from raceway.core.ring.kernels.layout import CAGE
-
     system = model.system
     now = system.without(CAGE).evaluate(q, ball=ball)
     weight = np.array([1.0, 1.0, 1.0, 1.0 / system.arm, 1.0 / system.arm]) * system.free

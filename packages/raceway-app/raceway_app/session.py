@@ -11,8 +11,9 @@ from pathlib import Path
 import attrs
 
 from raceway import RacewayError, Scene, SceneError
-from raceway.extend import Given, ReadTables, Tables, default_registry, leaves, parse_value, scene_schema, slug, told
-from raceway.extend import writable, write_whole
+from raceway.extend import (
+    Given, ReadTables, Tables, default_registry, leaves, parse_value, scene_schema, slug, told, writable, write_whole,
+)  # fmt: skip
 
 #: Tables that no run of one scene reads, or that are no numbers and words.
 _WITHOUT = ("rig", "tolerances")

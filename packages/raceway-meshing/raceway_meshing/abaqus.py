@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterator
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import ClassVar
 
@@ -13,8 +12,7 @@ import attrs
 import numpy as np
 
 from raceway import MeshError, one_of, option
-from raceway.extend import memory_for
-from raceway.extend import HexMesh
+from raceway.extend import HexMesh, memory_for
 from raceway_meshing import formats as exchange
 
 #: Element types that both programs know, by this program's word for the hexahedron.

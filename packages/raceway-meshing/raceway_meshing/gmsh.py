@@ -6,7 +6,6 @@ Nothing is opened by ``gmsh.open``: it executes the .geo language, and for a fil
 
 from __future__ import annotations
 
-from types import ModuleType
 import ctypes
 import os
 import signal
@@ -15,14 +14,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.resources import files
 from pathlib import Path
+from types import ModuleType
 from typing import ClassVar, TypeVar
 
 import attrs
 import numpy as np
 
 from raceway import MeshError, one_of, option, positive
-from raceway.extend import remedy
-from raceway.extend import Bearing, HexMesh, Prediction
+from raceway.extend import Bearing, HexMesh, Prediction, remedy
 from raceway_meshing.formats import readable
 from raceway_meshing.mesh_files import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
 
@@ -96,7 +95,7 @@ class Gmsh:
         Six-sided volumes of transfinite edges are counted exactly: of the numbers of cells along twelve edges, each of the
         three directions' occurs four times.
         """
-        from raceway.extend import Prediction, ball_names, refuse_memory
+        from raceway.extend import ball_names, refuse_memory
 
         cells: dict[str, float] = {}
         prediction: Prediction | None = None
@@ -139,7 +138,6 @@ class Gmsh:
             gmsh.finalize()
 
     def _mesh_of(self, gmsh: ModuleType, path: str, scale: float) -> HexMesh:
-        from raceway.extend import HexMesh
         from raceway_meshing.formats import facets_of_quads
 
         self._set_sizes(gmsh, scale)
@@ -183,7 +181,7 @@ class Gmsh:
 
     def _cells(self, gmsh: ModuleType, path: str, scale: float) -> float:
         """Predicted number of hexahedra of the open file."""
-        from raceway.extend import Prediction, refuse_coarse, refuse_memory
+        from raceway.extend import refuse_coarse, refuse_memory
 
         volumes = {tag: gmsh.model.occ.getMass(3, tag) * scale**3 for _, tag in gmsh.model.getEntities(3)}
         box = scale * np.array(gmsh.model.getBoundingBox(-1, -1)).reshape(2, 3)

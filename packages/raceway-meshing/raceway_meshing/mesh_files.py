@@ -10,8 +10,7 @@ from typing import Any, ClassVar
 import attrs
 
 from raceway import MeshError, PluginError, option, positive
-from raceway.extend import blamed, nearest
-from raceway.extend import Bearing, HexMesh, Mesher
+from raceway.extend import Bearing, HexMesh, Mesher, blamed, nearest
 
 
 BODIES = ("inner_ring", "outer_ring", "ball")
@@ -118,7 +117,7 @@ class File:
         from raceway.extend import refuse_bad_cells, refuse_doubled
 
         # A file by the format that has its ending, of those that this process knows
-        from raceway.extend import HexMesh, default_registry
+        from raceway.extend import default_registry
 
         try:
             form = default_registry().format_of(path)

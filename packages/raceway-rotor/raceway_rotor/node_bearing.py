@@ -12,10 +12,9 @@ import numpy as np
 
 from raceway import ConvergenceError, Scene, SceneError, build_model
 from raceway.extend import (
-    Identifying, Integration, Rotor, SceneSource, as_scene, default_registry, evaluate_following, harmonic_load, simulate,
-    solve_equilibrium,
+    Equilibrium, Identifying, Integration, Model, Rotor, SceneSource, as_scene, default_registry, evaluate_following,
+    harmonic_load, simulate, solve_equilibrium,
 )  # fmt: skip
-from raceway.extend import Equilibrium, Model
 
 #: Below this the derivative of Z by j w stands for C [rad/s].
 _SLOW = 1e-3

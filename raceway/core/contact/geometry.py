@@ -132,8 +132,6 @@ def axial_balance(*numbers: Number) -> tuple[Number, Number]:
         rows: Any = [list(numbers)]
         _balance.__wrapped__(rows)
         return rows[0][0], rows[0][1]
-    import numpy as np
-
     rows = np.empty((max(map(np.size, numbers)), len(numbers)))
     for k, number in enumerate(numbers):
         rows[:, k] = number

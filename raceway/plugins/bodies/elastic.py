@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
+from raceway.core.contact.geometry import BallBearing
+from raceway.core.contact.hertz import contact_modulus
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.duties import is_constraint, is_hertzian, is_swept
@@ -139,9 +141,6 @@ def _stable_step(problem: Problem) -> float:
     patch, for the ball's core, half as wide, is thinner than its surface.  Contacts: a surface point of stiffness k_n A on
     nodes of mass rho A h / 2, both sides, by Gershgorin's theorem: 4 / dt^2 = 4.8 k_n / (rho h).
     """
-    from raceway.core.contact.geometry import BallBearing
-    from raceway.core.contact.hertz import contact_modulus
-
     b, mesh, law = problem.bearing, problem.mesh, problem.contact.law
     modulus = contact_modulus(b.rings.young, b.rings.poisson, b.balls.young, b.balls.poisson)
     carried = problem.axial_approach[1] or 300.0

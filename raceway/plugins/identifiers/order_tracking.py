@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
+from raceway.errors import ConvergenceError
 from raceway.framework.options import between, option
 
 if TYPE_CHECKING:
@@ -43,7 +44,6 @@ class OrderTracking:
         import numpy as np
 
         from raceway.core.signals import identification
-        from raceway.errors import ConvergenceError
 
         record = records[0]
         phase = model.excitation.phase(record.time)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 
 from raceway.answers.quantities import Quantity
+from raceway.core.columns import at_rows
 from raceway.framework.options import option, positive
 from raceway.framework.shown import Fact, number
 from raceway.scene.lubricant import Oil
@@ -106,8 +107,6 @@ def _oil(points: SolvedPoints) -> Oil:
 def _films(points: SolvedPoints) -> Film:
     """Of all contacts (n, 2, Z), infinite where a contact is open."""
     import numpy as np
-
-    from raceway.core.columns import at_rows
 
     oil = at_rows(_oil(points), np.repeat(np.arange(len(points.load)), points.load[0].size))
     films, closed = oil.thickness(points.running_contacts()), points.load > 0.0

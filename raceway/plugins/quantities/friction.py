@@ -89,8 +89,6 @@ class Friction:
         return ""
 
     def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:
-        import numpy as np
-
         parts = _by_source(self.losses(points))
         torque = np.asarray(sum(parts.values()))
         bands = (self.rolling_band, self.elastic_band, self.traction_band, self.drag_band, 0.0)
@@ -103,8 +101,6 @@ class Friction:
 
     def measured(self, points: SolvedPoints) -> tuple[Number, Number]:
         """Factors (n,) of the computed friction within which measured bearings lie; of rows the widest."""
-        import numpy as np
-
         from raceway.core.rolling_friction import measured_factors
 
         if not isinstance(self.measured_band, str):

@@ -13,10 +13,9 @@ import numpy as np
 
 from raceway import ConvergenceError
 from raceway.extend import (
-    SAFETY, Motion, Record, Schedule, Tables, at_time, energy_balance, from_orbit, impact_system, integrate,
-    solve_equilibrium, steady_orbit, surrogate,
+    SAFETY, Integrator, Motion, Record, Schedule, System, Tables, at_time, energy_balance, from_orbit, impact_system,
+    integrate, solve_equilibrium, steady_orbit, surrogate,
 )  # fmt: skip
-from raceway.extend import Integrator, System
 from raceway_checks.stability.catalogue import UNDAMPED
 from raceway_checks.stability.study import Limit, Rows
 from raceway_checks.stability.systems import Bench, Still, energy_of_contacts, inverted

@@ -19,8 +19,7 @@ from typing import Any, cast
 import attrs
 import numpy as np
 
-from raceway import RacewayError, SceneError
-from raceway import Result
+from raceway import RacewayError, Result, SceneError
 from raceway.extend import (
     Equilibrium, Model, Motion, Record, Schedule, Tables, at_rest, drift, energy_balance, integrate, law_params,
     make_basis, reach_of, renews, resolve, running_pairs, series_factor, solve_equilibrium, standstill, surrogate,

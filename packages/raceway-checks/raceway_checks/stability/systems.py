@@ -8,13 +8,11 @@ from typing import cast
 import attrs
 import numpy as np
 
-from raceway import Scene, build_model, scene_from_dict
-from raceway import Result
+from raceway import Result, Scene, build_model, scene_from_dict
 from raceway.extend import (
-    Equilibrium, Model, Motion, Registry, System, Tables, no_force, run, solve_equilibrium, stored_energy, surrogate,
-    tables_at, without,
+    ContactLaw, Equilibrium, Integrator, Model, Motion, Registry, System, Tables, no_force, run, solve_equilibrium,
+    stored_energy, surrogate, tables_at, without,
 )  # fmt: skip
-from raceway.extend import ContactLaw, Integrator
 
 #: Halvings of an interval: to the last bit of a double from any first one.
 _HALVINGS = 200

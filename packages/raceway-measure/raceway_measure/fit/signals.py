@@ -326,7 +326,6 @@ def read_tdms(path: Path) -> dict[str, np.ndarray]:
     ValueError
         The channel's fault and remedy.
     """
-    import numpy as np
     from nptdms import TdmsFile
 
     try:
