@@ -3,6 +3,6 @@
 picture   what a scene shows: the screen of its run, ball loads, orbit, curves over speed and load
 worker    a process of its own that computes pictures, and can be stopped
 session   one or two scenes, their changes and files; the keys of a scene as fields, from the schema
-server    the page: its state, what its buttons do, who may talk to it
-command   ``raceway app``;  plugin: what this package adds to ``raceway``;  data: the page
+server    ``raceway app`` and its page: its state, what its buttons do, who may talk to it
+plugin    what this package adds to ``raceway``;  data: the page
 """

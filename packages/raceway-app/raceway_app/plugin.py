@@ -15,7 +15,9 @@ def raceway_commands() -> dict[str, tuple[Later, ...]]:
     from raceway.extend import Later
 
     return {
-        "Answers": (Later("app", "raceway_app.command:app", "A page to look at a scene and change it, on this machine."),)
+        "Answers": (
+            Later("app", "raceway_app.server:app_command", "A page to look at a scene and change it, on this machine."),
+        )
     }
 
 

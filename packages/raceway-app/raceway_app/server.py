@@ -8,14 +8,20 @@ import logging
 import os
 import secrets
 import sys
+import webbrowser
 from collections import deque
 from collections.abc import Awaitable, Callable, Iterable, Mapping
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import click
+
 from raceway import RacewayError, SceneError
-from raceway.extend import Given, SceneSource, Tables, as_given, csv_text, writable, write_whole
+from raceway.extend import (
+    FILE, Given, SceneSource, Tables, as_given, as_scene, common, csv_text, plugin_files, print_json, registry_with, set_keys,
+    writable, write_whole,
+)  # fmt: skip
 from raceway_app.session import Session, groups, texts
 from raceway_app.worker import Job, News, Worker
 
@@ -343,8 +349,6 @@ def app(
     >>> rw.app("examples/b7206.toml", ready=lambda address: print(address[:17]))  # doctest: +SKIP
     http://127.0.0.1:
     """
-    from raceway.extend import registry_with
-
     paths = [Path(path) for path in plugins]
     registry_with(paths)
     tables = as_given(_EXAMPLE if scene is None else scene)
@@ -352,3 +356,45 @@ def app(
     if scene is None:
         session.compare(True)
     Page(session, paths).serve(port, secrets.token_urlsafe(24), ready)
+
+
+@click.command("app", short_help="A page to look at a scene and change it, on this machine.")
+@click.argument("scene", type=FILE, required=False)
+@set_keys
+@click.option("--out", type=FILE, metavar="DIR", help="Folder in which the page writes, and nowhere else [raceway-out/app].")
+@click.option("--port", type=click.IntRange(0, 65535), default=0, metavar="N", help="On 127.0.0.1 [any that is free].")
+@click.option("--browser/--no-browser", default=True, help="Open the page (default).")
+@plugin_files
+@common
+def app_command(
+    scene: Path | None,
+    changes: tuple[str, ...],
+    out: Path | None,
+    port: int,
+    browser: bool,
+    plugins: tuple[Path, ...],
+    as_json: bool,
+) -> int:
+    """A scene as a form beside its bearing, ball loads, K, C and life over speed and load; each change is computed at once.
+
+    Without SCENE the two excitation models of an example stand side by side.  The page is served to this machine alone, at an address
+    with a token, until Ctrl-C; it writes into one folder only.
+
+    \b
+    Example:
+      raceway app examples/b7206.toml
+      raceway app examples/duplex_db.toml --out spindle --no-browser
+    """
+    registry_with(plugins)
+    opened = as_scene(scene, *changes) if scene is not None and changes else scene
+
+    def ready(address: str) -> None:
+        if as_json:
+            print_json({"address": address})
+        else:
+            click.echo(f"{address}\n  the page; Ctrl-C here ends it")
+        if browser:
+            webbrowser.open(address)
+
+    app(opened, out=out, port=port, ready=ready, plugins=plugins)
+    return 0
