@@ -114,8 +114,7 @@ def groove_deck(
 ) -> str:
     """The groove case of ``checks.validation.groove`` with the approach prescribed [m]."""
     deck = Deck({"ball": ball, "race": block}, young, poisson, element)
-    middle = deck.nodes("ball", ball.nodes("middle"))
-    deck.node_set("MIDDLE", middle)
+    deck.node_set("MIDDLE", deck.nodes("ball", ball.nodes("middle")))
     deck.node_set("BASE", deck.nodes("race", block.nodes("base")))
     for side in ("side_x", "side_y"):
         deck.node_set(side.upper(), deck.nodes("ball", ball.nodes(side)) + deck.nodes("race", block.nodes(side)))

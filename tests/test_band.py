@@ -65,8 +65,7 @@ def test_results_say_where_no_band_is_known():
 
 def test_the_scenes_own_table_is_read_and_checked():
     own = LOADED | {"tolerances": {"load.axial": "±10 %", "bearing": {"contact_angle_deg": "+1 deg -0.5 deg"}}}
-    band = rw.band(own, count=2)
-    ranges = {one.key.path: (one.low, one.high) for one in band.tolerances}
+    ranges = {one.key.path: (one.low, one.high) for one in rw.band(own, count=2).tolerances}
     assert ranges["load.axial"] == pytest.approx((450.0, 550.0))
     assert ranges["bearing.contact_angle_deg"] == pytest.approx((14.5, 16.0))
     assert rw.run(own).stiffness[0, 0] == rw.run(LOADED).stiffness[0, 0]

@@ -342,8 +342,7 @@ def test_a_doubtful_row_between_the_ends_is_left_out_of_the_course():
 
 
 def test_one_inexact_corner_hides_no_large_effect():
-    exact = _synthetic(_k)
-    found = with_error(exact, 0.03, **{**ONE, "excitation.speed_rpm": 10000})
+    found = with_error(_synthetic(_k), 0.03, **{**ONE, "excitation.speed_rpm": 10000})
     assert not found.held and all(row.doubt is None for row in found.rows)
     by_term = {e["term"]: e for e in found.effects if e["quantity"] == "equivalent_stiffness"}
     assert by_term["supports.tilt",]["resolved"] and not by_term["excitation.kind",]["resolved"]

@@ -54,8 +54,7 @@ def test_a_clearance_class_is_the_middle_of_its_range():
 
 @pytest.mark.parametrize("text", ["7014C", "7206 CD/P4A", "6205", "6205-2RS/C3"])
 def test_every_part_stands_in_the_result(text):
-    result = rw.run({"bearing": {"preset": text}, "load": {"axial": 200.0}})
-    geometry = result.to_dict()["geometry"]
+    geometry = rw.run({"bearing": {"preset": text}, "load": {"axial": 200.0}}).to_dict()["geometry"]
     parts = list(text.replace("-", " ").replace("/", " ").split()[1:])
     assert all(f"{part}: " in geometry["designation"] for part in parts) if parts else "designation" not in geometry
     assert set(geometry["printed"]) >= {"bore", "outer_diameter", "width", "dynamic_rating", "static_rating"}

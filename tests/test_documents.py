@@ -119,8 +119,7 @@ def read(listing: Listing) -> None:
     """Part of a scene: its keys and values are right; of another file: it is TOML."""
     tables = tomllib.loads(listing.text)
     if set(tables) <= {*TABLES, "rig", "title"}:
-        whole = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
-        scene_from_dict({**whole, **tables})
+        scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, **tables})
 
 
 def run(command: str) -> str:

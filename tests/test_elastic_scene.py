@@ -45,8 +45,7 @@ def scene(**tables):
 
 
 def built(**tables):
-    found = scene(**tables)
-    return build_model(found)
+    return build_model(scene(**tables))
 
 
 @pytest.fixture(scope="module")

@@ -98,8 +98,7 @@ def of_precision() -> list[Figure]:
 
 
 def of_sensitivities() -> list[Figure]:
-    scene = b7206c(load={"axial": 300.0, "radial": [100.0, 0.0]})
-    answer = raceway.sensitivities(scene)
+    answer = raceway.sensitivities(b7206c(load={"axial": 300.0, "radial": [100.0, 0.0]}))
     first = answer.rows[0]
     odd = attrs.evolve(first, influence={name: share * 1e4 for name, share in first.influence.items()})
     return [answer.draw(), attrs.evolve(answer, rows=(odd,)).draw()]

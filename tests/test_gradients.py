@@ -210,8 +210,7 @@ def test_steps_pass_no_knot_of_the_tables_of_compliances():
 
 
 def test_condensed_bodies_refuse_what_changes_their_meshes():
-    tables = LOADED | {"bodies": {"kind": "condensed"}}
-    scene = scene_from_dict(tables)
+    scene = scene_from_dict(LOADED | {"bodies": {"kind": "condensed"}})
     same, other = with_number(scene, "load.axial", 500.0), with_number(scene, "bearing.ball_diameter", 0.0096)
     assert scene.bodies.same_bodies(*map(resolve, (scene, same)))
     assert not scene.bodies.same_bodies(*map(resolve, (scene, other)))

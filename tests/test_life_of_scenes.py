@@ -105,8 +105,7 @@ def test_the_oil_gives_the_viscosity_ratio():
 
 
 def test_rows_of_a_set_add_up():
-    pair = {**B7206, "bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0}}
-    found = life(pair)
+    found = life({**B7206, "bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0}})
     rings = [[ring["l10_million_revolutions"] for ring in row["rings"]] for row in found["rows"]]
     assert found["l10r_million_revolutions"] == pytest.approx(float(system_life(np.array(rings), axis=(0, 1))), rel=1e-12)
     assert found["rating_n"] == pytest.approx(2.0**0.7 * 23000.0, rel=1e-12)

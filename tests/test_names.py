@@ -189,8 +189,7 @@ def test_equal_loads_are_those_of_both_races():
 
 
 def test_the_motions_peaks_are_those_of_both_races():
-    scene = {**FAST, "excitation": EXCITED, "integrator": {"kind": "periodic"}}
-    found = rw.run(scene)
+    found = rw.run({**FAST, "excitation": EXCITED, "integrator": {"kind": "periodic"}})
     motion, loads = found.to_dict()["motion"], found.simulation.record.contact_force
     z = loads.shape[1] // 2
     assert motion["peak_ball_load_race"] == "outer" and motion["peak_ball_load_n"] == motion["peak_ball_load_outer_n"]

@@ -179,7 +179,6 @@ def test_explicit_steps_of_a_slow_turn_are_recorded_at_their_samples():
     """At 1 r/min a turn takes millions of steps, a multiple of the samples: the record fits, and the plan refuses nothing."""
     excitation = {"kind": "bidirectional", "speed_rpm": 1.0, "amplitude": "constant", "force": 400.0}
     integrator = {"kind": "central_difference", "turns": 3}
-    scene = scene_from_dict(b7206c(excitation=excitation, integrator=integrator))
-    plan = make_plan(scene)
+    plan = make_plan(scene_from_dict(b7206c(excitation=excitation, integrator=integrator)))
     assert plan.predicted_steps > 1e6
     assert recorded_per_turn(plan.predicted_steps // plan.turns, plan.turns) == 360

@@ -45,8 +45,7 @@ def _page() -> Page:
 
 
 def test_the_page_is_whole_escaped_and_asks_for_nothing(tmp_path):
-    path = _page().write(tmp_path / "page.html")
-    text = path.read_text(encoding="utf-8")
+    text = _page().write(tmp_path / "page.html").read_text(encoding="utf-8")
     seen = _Balanced(text).seen
     tags = [tag for tag, _ in seen]
     assert "script" not in tags and "b" not in tags

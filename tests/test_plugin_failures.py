@@ -202,8 +202,7 @@ def test_exact_set(site, monkeypatch):
 
 def test_trace_writes_every_hook_call(site, monkeypatch, capfd):
     monkeypatch.setenv("RACEWAY_TRACE", "1")
-    registry = Registry()
-    registry.hook.raceway_chunk_done(done=1, total=2)
+    Registry().hook.raceway_chunk_done(done=1, total=2)
     told = capfd.readouterr().err
     assert "raceway_contact_laws" in told and "raceway_chunk_done" in told and "total: 2" in told
 

@@ -217,8 +217,7 @@ def test_the_error_of_a_contact_law_is_its_distance_from_hertz():
     scene = {**static, "load": {"axial": 1000.0}, "kinematics": {"ball_inertia": False}}
     exact = run(scene_from_dict(scene)).error
     assert exact["contact"] is None and "half-spaces" in exact["how"]["contact"]
-    scaled = {"kind": "penalty", "calibrate_at": 100.0}
-    result = run(scene_from_dict({**scene, "contact": scaled}))
+    result = run(scene_from_dict({**scene, "contact": {"kind": "penalty", "calibrate_at": 100.0}}))
     load = result.equilibrium.contact_force[0]
     # Both races carry the same load: rounding of the equilibrium.
     assert result.error["contact"] == pytest.approx(4.0 / 3.0 * (load / 100.0) ** (1.0 / 2.0 - 1.0 / 3.0) - 1.0, rel=1e-6)

@@ -37,8 +37,7 @@ def found(clearance=0.0, growth=0.0, force=FORCE, bearing=None, **tables):
     """Model and equilibrium; ``growth`` [m] of the inner raceway makes a clearance of ``clearance - 2 growth``."""
     changed = {**TABLES, "bearing": {**TABLES["bearing"], "radial_clearance": clearance, **(bearing or {})}, **tables}
     changed["kinematics"] = {"ball_inertia": False, "radial_expansion": growth, **tables.get("kinematics", {})}
-    scene = scene_from_dict({**changed, "load": {"radial": [force, 0.0]}})
-    model = build_model(scene)
+    model = build_model(scene_from_dict({**changed, "load": {"radial": [force, 0.0]}}))
     return model, solve_equilibrium(model)
 
 

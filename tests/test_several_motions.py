@@ -14,10 +14,6 @@ from raceway.core.periodic import branches, search, steady
 from raceway.core.ring.orbit import differentiation
 
 
-def solved(tables):
-    return run(tables)
-
-
 def z_of(one):
     return complex(one["dynamic_stiffness"]["real"], one["dynamic_stiffness"]["imag"])
 
@@ -31,13 +27,13 @@ def by_own_turn(result, damping=0.0):
 
 def test_the_stable_motion_beyond_a_fold():
     """82 kg: the motion that grows out of rest turns back below the whole force; no transient of 12 turns finds the other."""
-    result = solved(heavy(82.0, kind="periodic", tolerance=1e-9))
+    result = run(heavy(82.0, kind="periodic", tolerance=1e-9))
     z = result.identification.dynamic_stiffness
     wanted, multiplier = by_own_turn(result, 5000.0)
     assert abs(z - wanted) < 1e-6 * abs(wanted)
     assert multiplier == pytest.approx(result.simulation.orbits[0]["multiplier"], abs=1e-6)
     assert multiplier < 1.0
-    by_time = solved(heavy(82.0))
+    by_time = run(heavy(82.0))
     assert by_time.simulation.start.kind == "orbit"
     assert abs(by_time.identification.dynamic_stiffness - z) < 2.0 * by_time.error["total"] * abs(z)
     assert by_time.error["total"] < 1e-3
@@ -46,7 +42,7 @@ def test_the_stable_motion_beyond_a_fold():
 @pytest.mark.parametrize("kind", ["periodic", "newmark"])
 def test_two_stable_motions_are_told(kind):
     """80 kg: between the folds."""
-    result = solved(heavy(80.0, kind=kind))
+    result = run(heavy(80.0, kind=kind))
     told = result.to_dict()["motion"]["orbits"]
     lasting = [one for one in told if one["stable"]]
     assert len(lasting) == 2 and len(told) == 3
@@ -62,7 +58,7 @@ def test_two_stable_motions_are_told(kind):
 
 def test_without_damping_the_branch_leads_through_no_force():
     """The motion opposite in phase is the one that the branch meets at the opposite force, half a turn later."""
-    result = solved(heavy(82.0, damping=0.0, kind="periodic", tolerance=1e-9))
+    result = run(heavy(82.0, damping=0.0, kind="periodic", tolerance=1e-9))
     wanted, _ = by_own_turn(result)
     assert wanted.real < 0.0
     assert abs(result.identification.dynamic_stiffness - wanted) < 1e-6 * abs(wanted)
@@ -81,7 +77,7 @@ def test_a_motion_that_only_another_speed_or_load_leads_to(axial, speed, amplitu
     tables = article(axial, kind="periodic", tolerance=1e-9)
     tables["excitation"] |= {"speed_rpm": speed, "amplitude": amplitude}
     tables["kinematics"] = {"ball_inertia": inertia, "gyroscopic": "none", "ring_growth": False}
-    result = solved(tables)
+    result = run(tables)
     assert result.simulation.orbits[0]["found"] == found
     z, multiplier, gap = by_integration(result)
     assert gap < 1e-6
@@ -92,7 +88,7 @@ def test_a_motion_that_only_another_speed_or_load_leads_to(axial, speed, amplitu
 @pytest.mark.slow
 def test_a_branch_that_closes_leads_to_the_stable_motion():
     """800 N: two unstable motions, and a stable one that a branch whose turns do not close passes by."""
-    result = solved(article(800.0, kind="periodic", tolerance=1e-9))
+    result = run(article(800.0, kind="periodic", tolerance=1e-9))
     assert [one["stable"] for one in result.simulation.orbits] == [True, False, False]
     assert result.identification.dynamic_stiffness.real == pytest.approx(60.11e6, rel=1e-3)
     z, multiplier, gap = by_integration(result, 0.0)
@@ -105,9 +101,9 @@ def test_a_branch_that_closes_leads_to_the_stable_motion():
 def test_the_least_damping_does_not_hide_the_stable_motion(damping):
     """800 N: a crossing of branches that any damping parts; the motion beyond it is continued from the undamped ring."""
     tables = article(800.0, kind="periodic", tolerance=1e-9)
-    alone = solved(tables).identification.dynamic_stiffness
+    alone = run(tables).identification.dynamic_stiffness
     tables["contact"] = {"damping": damping}
-    result = solved(tables)
+    result = run(tables)
     orbit, z = result.simulation.orbits[0], result.identification.dynamic_stiffness
     assert [one["stable"] for one in result.simulation.orbits] == [True, False, False]
     assert orbit["found"] == "from no damping" and orbit["multiplier"] < 1.0
@@ -119,10 +115,10 @@ def test_the_least_damping_does_not_hide_the_stable_motion(damping):
 
 @pytest.mark.slow
 def test_a_transient_on_an_unstable_orbit_says_so():
-    result = solved(article(500.0, turns=60))
+    result = run(article(500.0, turns=60))
     first = result.simulation.orbits[0]
     assert first["taken"] and first["multiplier"] == pytest.approx(
-        by_own_turn(solved(article(500.0, kind="periodic", tolerance=1e-9)))[1], abs=0.001
+        by_own_turn(run(article(500.0, kind="periodic", tolerance=1e-9)))[1], abs=0.001
     )
     assert any("unstable" in text and "1.585 times per turn" in text for text in result.warnings)
     assert result.error["transient"] >= result.identification.spread > 1e-3
@@ -135,14 +131,14 @@ def test_turns_that_do_not_repeat_after_a_failed_search_have_no_error(monkeypatc
         raise ConvergenceError("none is found")
 
     monkeypatch.setattr(steady, "starting_orbit", none)
-    result = solved(heavy(82.0))
+    result = run(heavy(82.0))
     assert result.simulation.start.kind == "ramp"
     assert result.error["total"] is None and "do not repeat" in result.error["how"]["total"]
     assert result.error["transient"] >= result.identification.spread > 0.01
 
 
 def test_a_near_linear_motion_is_told_alone():
-    result = solved(heavy(20.0))
+    result = run(heavy(20.0))
     (only,) = result.simulation.orbits
     assert only["taken"] and only["verdict"] == "stable" and only["found"] == "directly"
     assert not any("motion" in text for text in result.warnings)
@@ -160,7 +156,7 @@ def test_a_near_linear_motion_is_told_alone():
 def test_with_friction_orbits_are_no_motions_of_the_scene():
     tables = heavy(80.0)
     tables["contact"]["friction"] = 0.03
-    result = solved(tables)
+    result = run(tables)
     assert result.simulation.orbits == []
     assert any(text.startswith("without friction: 2 steady motions") for text in result.warnings)
 

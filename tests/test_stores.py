@@ -23,10 +23,6 @@ def chosen(axes, at=None, **wanted):
     return layout(select(made(axes), at or {}), **wanted)
 
 
-def drawn(picture):
-    return draw(picture)
-
-
 @pytest.mark.parametrize(
     "axes, kind, x, y, panels",
     [
@@ -42,12 +38,11 @@ def test_defaults_follow_the_axes(axes, kind, x, y, panels):
     found = chosen(axes)
     assert (found.kind, found.x, found.y, found.panels) == (kind, x, y, panels)
     assert found.name == "equivalent_stiffness"
-    drawn(found)
+    draw(found)
 
 
 def test_curves_hold_the_numbers_in_readable_units():
-    picture = chosen({SPEED: SPEEDS, LOAD: [400.0, 1000.0]})
-    axes = drawn(picture).axes[0]
+    axes = draw(chosen({SPEED: SPEEDS, LOAD: [400.0, 1000.0]})).axes[0]
     assert [line.get_label() for line in axes.lines] == ["400", "1000"]
     for line, load in zip(axes.lines, (400.0, 1000.0), strict=True):
         np.testing.assert_array_equal(line.get_xdata(), SPEEDS)
@@ -58,7 +53,7 @@ def test_curves_hold_the_numbers_in_readable_units():
 
 @pytest.mark.parametrize("kind", ["map", "surface"])
 def test_maps_and_surfaces_have_both_axes_with_units(kind):
-    axes = drawn(chosen({SPEED: SPEEDS, LOAD: MANY}, kind=kind)).axes
+    axes = draw(chosen({SPEED: SPEEDS, LOAD: MANY}, kind=kind)).axes
     assert (axes[0].get_xlabel(), axes[0].get_ylabel()) == ("excitation.speed_rpm [r/min]", "load.axial [N]")
     value = axes[0].get_zlabel() if kind == "surface" else axes[1].get_ylabel()
     assert value == "equivalent stiffness [N/µm]"
@@ -70,7 +65,7 @@ def test_chosen_values_and_points_without_result_stand_in_the_picture():
     data["status"][2, 0] = "failed"
     picture = layout(select(data, {LOAD: 400.0}))
     assert picture.remark == "load.axial = 400; without result: 1 failed"
-    figure = drawn(picture)
+    figure = draw(picture)
     assert "without result: 1 failed" in figure.get_suptitle()
     assert np.isnan(figure.axes[0].lines[0].get_ydata()[2])
 
@@ -78,7 +73,7 @@ def test_chosen_values_and_points_without_result_stand_in_the_picture():
 def test_a_list_is_drawn_as_points():
     data = as_list(made({SPEED: SPEEDS, LOAD: MANY})).isel(point=slice(0, 50))
     for kind in ("curves", "map"):
-        drawn(layout(select(data, {}), kind=kind))
+        draw(layout(select(data, {}), kind=kind))
     with pytest.raises(RacewayError, match="fill no grid, which a surface needs"):
         layout(select(data, {}), kind="surface")
 

@@ -294,8 +294,7 @@ def test_rows_of_another_store_are_computed_again(tmp_path):
 
 
 def test_damaged_facts_are_refused(tmp_path):
-    design = grid(["load.axial=500,600"])
-    swept(tmp_path / "s", design)
+    swept(tmp_path / "s", grid(["load.axial=500,600"]))
     for change in ("replace(value, '500', '501')", "substr(value, 1, 3)"):
         altered(tmp_path, f"UPDATE facts SET value = {change}")
         with pytest.raises(RacewayError, match="is damaged"):

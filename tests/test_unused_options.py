@@ -83,6 +83,5 @@ def test_a_key_without_effect_is_told_where_it_was_meant(kind, changes, idle, tm
 
 def test_a_sweep_over_kinds_tells_no_point_of_an_inherited_key(tmp_path):
     words = ("--grid", "integrator.kind=newmark,periodic", "--grid", "load.axial=900,1000", "--out", tmp_path / "store")
-    found = invoke("sweep", ARTICLE, *words, "--json")
-    rows = json.loads(found.stdout)["rows"]
+    rows = json.loads(invoke("sweep", ARTICLE, *words, "--json").stdout)["rows"]
     assert len(rows) == 4 and not any("has no effect" in text for row in rows for text in row.get("warnings", []))

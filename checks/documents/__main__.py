@@ -18,8 +18,7 @@ def main() -> None:
     documents.README.write_text(documents.with_screen(text, documents.screen()), encoding="utf-8")
     drawing.draw(documents.DRAWING)
     reading.draw()
-    reports = files.read()
-    promises.draw_stability(reports["stability"], documents.STABILITY)
+    promises.draw_stability(files.read()["stability"], documents.STABILITY)
 
 
 if __name__ == "__main__":

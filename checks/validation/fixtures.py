@@ -23,8 +23,7 @@ def built():
     """``built(load={...})``: the model of a scene on the B7206C."""
 
     def build(**tables: Any) -> Model:
-        scene = scene_from_dict(b7206c(**tables))
-        return build_model(scene)
+        return build_model(scene_from_dict(b7206c(**tables)))
 
     return build
 

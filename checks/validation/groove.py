@@ -168,8 +168,7 @@ def pressed(load: float, nodes: float, approach: float, **options: float | str) 
     """The same mesh with the approach prescribed [m]: what reaction it gives."""
     begin = time.process_time()
     found = model(load, nodes, prescribed=True, **options)  # type: ignore[arg-type]
-    state = found.system.solve_equilibrium(guess(found, approach))
-    return answer(found, state, time.process_time() - begin)
+    return answer(found, found.system.solve_equilibrium(guess(found, approach)), time.process_time() - begin)
 
 
 def answer(found: Groove, state: StaticSolution, cpu: float) -> Answer:

@@ -113,8 +113,7 @@ def rig_rotor(ross: Any, make: Any) -> Any:
     """Shaft, disc in the middle, two bearings ``make(node)``."""
     steel = ross.Material(name="steel", rho=7810.0, E=2.1e11, G_s=8.1e10)
     shaft = [ross.ShaftElement(L=SPAN / 6, idl=0.0, odl=SHAFT, material=steel) for _ in range(6)]
-    disc = ross.DiskElement(n=3, m=DISC_MASS, Id=4.1e-3, Ip=8.05e-3)
-    return ross.Rotor(shaft, [disc], [make(0), make(6)])
+    return ross.Rotor(shaft, [ross.DiskElement(n=3, m=DISC_MASS, Id=4.1e-3, Ip=8.05e-3)], [make(0), make(6)])
 
 
 def rolling(ross: Any, axial: float, damping: float = 0.0) -> Any:

@@ -71,8 +71,7 @@ def test_every_part_of_a_scene_is_decided_with_a_reason():
         assert all(part.why for part in decided)
         for words in parts:
             assert sum(part.part.startswith(words) for part in decided) == 1, words
-    condensed = make_plan(load_scene(ARTICLE, ("bodies.kind=condensed",)))
-    left_out = {part.part for part in condensed.left_out}
+    left_out = {part.part for part in make_plan(load_scene(ARTICLE, ("bodies.kind=condensed",))).left_out}
     assert {"other mirror half", "stress recovery", "a compliance per ball and contact"} <= left_out
     fine = make_plan(load_scene(ARTICLE, ("integrator.steps_per_turn=2880",)))
     assert "history of every step" in {part.part for part in fine.left_out}

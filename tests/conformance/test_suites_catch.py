@@ -305,8 +305,7 @@ def test_an_expected_failure_conforms_and_xfails_under_pytest(expecting):
     ],
 )
 def test_the_list_is_honoured_strictly(expecting, listed, found):
-    plugin = expecting("pass", listed)
-    conformity = ContactLawSuite.conformity(plugin)
+    conformity = ContactLawSuite.conformity(expecting("pass", listed))
     assert not conformity.conforms
     assert any(found in row.message for row in conformity.rows if not row.good)
 

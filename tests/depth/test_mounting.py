@@ -50,8 +50,7 @@ def test_offset_of_a_pair_stays_at_every_speed(rpm, told):
 @pytest.mark.parametrize(("growth", "told"), [(5e-6, (103.7, 494.2, 930.0)), (2e-6, None), (-2e-6, None)])
 def test_growth_loads_a_pair(built, growth, told):
     """kxx, kyy [N/um] and the preload [N]: a larger inner raceway stiffens a pair whose offset stays."""
-    model = built(**pair(kinematics={"radial_expansion": growth}))
-    now = solve_equilibrium(model)
+    now = solve_equilibrium(built(**pair(kinematics={"radial_expansion": growth})))
     grown, x = row(growth=growth), approach(row(), 300.0)
     tangent = 2.0 * np.diag(grown(np.array([x, 0.0, 0.0, 0.0, 0.0]))[1])
     assert now.stiffness[0, 0] == pytest.approx(tangent[0], rel=TOLERANCE)
@@ -148,8 +147,7 @@ def test_a_pair_that_has_lost_its_preload_says_what_took_it(bodies):
 def test_a_spring_that_the_load_overcomes_is_told():
     """On deep grooves nothing stops a ring that leaves its first row."""
     tables = pair("spring", load={"axial": -350.0}, kinematics={"spin_speed_rpm": 20000.0})
-    warnings = run(tables).warnings
-    assert any("loses axial contact" in one for one in warnings)
+    assert any("loses axial contact" in one for one in run(tables).warnings)
 
 
 def test_a_search_that_ends_without_the_springs_force_is_refused(monkeypatch):

@@ -60,8 +60,7 @@ def test_rates_of_the_groove_centres(built):
 @pytest.mark.parametrize("damping", [0.0, 500.0])
 def test_a_series_of_equilibria_has_no_rates(damping):
     """Contact dampers change nothing in it, however fast the balls travel."""
-    tables = scene(turns=1, contact={"damping": damping})
-    model = model_of(tables)
+    model = model_of(scene(turns=1, contact={"damping": damping}))
     equilibrium = solve_equilibrium(model)
     record = simulate(model, equilibrium).whole
     without = attrs.evolve(model.system, scalars=model.system.without(CAGE).scalars)

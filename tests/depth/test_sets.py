@@ -29,8 +29,7 @@ def scene(arrangement="TBT", preload=200.0, bearing=None, **tables):
 
 
 def built(*args, **more):
-    one = scene(*args, **more)
-    model = build_model(one)
+    model = build_model(scene(*args, **more))
     return model, solve_equilibrium(model)
 
 

@@ -152,8 +152,7 @@ def test_other_whirl_speeds_have_the_same_force():
 
 
 def test_fit_of_a_series_of_equilibria_has_no_mass():
-    tables = steady(excitation=SMALL, identifier=FIT, integrator={"kind": "quasi_static"})
-    found = run(tables).identification
+    found = run(steady(excitation=SMALL, identifier=FIT, integrator={"kind": "quasi_static"})).identification
     assert abs(found.mass_used) < 1e-6 * found.equivalent_stiffness / found.speed**2
 
 

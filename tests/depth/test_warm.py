@@ -260,8 +260,7 @@ def test_a_changing_speed_takes_its_part_of_a_fit(fit):
     excitation = {"kind": "run_up", "first_speed_rpm": 5000.0, "speed_rpm": 30000.0, "duration_s": 0.5, "unbalance": 1e-4}
     tables = scene(kinematics={"ring_growth": True}, shaft_interference=fit).to_dict()
     tables |= {"excitation": excitation, "identifier": {"kind": "order_tracking"}, "rotor": {"mass": 2.0}}
-    moving = scene_from_dict(tables)
-    model = build_model(moving)
+    model = build_model(scene_from_dict(tables))
     steady = scene(kinematics={"ring_growth": True, "spin_speed_rpm": 12000.0}, shaft_interference=fit)
     found = model.system.spin.constants(model.system, 12000.0 * np.pi / 30.0)
     expected = build_model(steady).system

@@ -96,8 +96,7 @@ def test_energy_is_the_integral_of_the_force_over_the_gap():
 
 def test_a_law_stiffer_than_the_mesh_is_refused_with_the_contact():
     made = contact(np.array([0.0, 3.0 * OWN, 0.0]))
-    gap = gaps_at(np.array([300.0, 300.0, 300.0]), 0.0 * LOCAL)
-    made.press(gap, np.zeros(3), 0.0)
+    made.press(gaps_at(np.array([300.0, 300.0, 300.0]), 0.0 * LOCAL), np.zeros(3), 0.0)
     with pytest.raises(
         ConvergenceError, match=r"ball 1, inner race: under .* N the contact is stiffer than the mesh .* nm/N"
     ):

@@ -10,6 +10,7 @@ from raceway.core.jit import working_processor_time
 from raceway.extend import continuous_keys, run, solve_equilibrium, with_number
 from raceway.pipeline.gradient import Gradients, NoDerivative, SteadyOrbit
 from raceway.scene.catalogue import single_presets
+from tests.test_gradients import derivative
 
 pytestmark = pytest.mark.night
 
@@ -40,19 +41,10 @@ def drawn(rng, bodies):
     return tables
 
 
-def model_of(scene):
-    return build_model(scene)
-
-
 def scales(model):
     """By which entries are divided: lengths and tilts, forces and moments made alike by the arm of the tilts."""
     arm = np.array([1.0, 1.0, 1.0, 1.0 / model.system.arm, 1.0 / model.system.arm])
     return {"displacement": arm, "stiffness": 1.0 / np.outer(arm, arm), "contact_force": 1.0}
-
-
-def derivative(values, step):
-    """Of fourth order, of values at multiples -2, -1, 1, 2 of a step."""
-    return (8.0 * (values[1] - values[-1]) - (values[2] - values[-2])) / (12.0 * step)
 
 
 def moved(model, key, step):
@@ -82,7 +74,7 @@ def test_static_derivatives(claim, bodies, wanted, seed):
     rng, worst, count, scenes = np.random.default_rng(seed), 0.0, 0, 0
     while scenes < wanted:
         try:
-            model = model_of(scene_from_dict(drawn(rng, bodies)))
+            model = build_model(scene_from_dict(drawn(rng, bodies)))
             still = solve_equilibrium(model)
         except (ConvergenceError, SceneError):
             continue
@@ -149,9 +141,8 @@ def moving(kind, damping, speed, force):
 
 def error_of_orbit(tables, step):
     """Largest error of a derivative over the largest derivative, both times the numbers at the keys, and how many keys there are."""
-    model = model_of(scene_from_dict(tables))
-    still = solve_equilibrium(model)
-    gradients, off, size = Gradients(model, still), [], []
+    model = build_model(scene_from_dict(tables))
+    gradients, off, size = Gradients(model, solve_equilibrium(model)), [], []
     for key in continuous_keys(model.scene):
         if key.path not in OF_ORBITS or not key.value:
             continue

@@ -101,8 +101,7 @@ def test_impact(claim):
 @pytest.fixture(scope="module")
 def bearing():
     """Model and the start on its orbit."""
-    scene = scene_from_dict(BEARING)
-    built = build_model(scene)
+    built = build_model(scene_from_dict(BEARING))
     found = solve_equilibrium(built)
     orbit = steady_orbit(built.bearing.periodic_system(built.system), built.excitation.period_s, found.displacement)
     return built, found, from_orbit(built.system, orbit)

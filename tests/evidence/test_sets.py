@@ -34,17 +34,13 @@ def scene_of(word, **tables):
     return scene_from_dict({"title": word, "bearing": bearing, "kinematics": kinematics, **tables})
 
 
-def built(scene):
-    return build_model(scene)
-
-
 def ground(word, preset="B7206E"):
     return scene_of(word, bearing={"preset": preset, "preload": PRELOAD, "preload_of": "row"})
 
 
 def factors(word, preset):
     """Preload, axial and radial stiffness of a set whose rows were all ground for one preload."""
-    model = built(ground(word, preset))
+    model = build_model(ground(word, preset))
     now = solve_equilibrium(model)
     return np.array([preload_table(model, now)["mounted_n"], now.stiffness[0, 0], now.stiffness[1, 1]])
 
@@ -74,7 +70,8 @@ def test_factors_over_a_pair(claim):
 def test_rows_in_tandem(claim):
     words = {"DT": 0.63, "TT": 0.48, "QT": 0.40}
     single, *more = (
-        solve_equilibrium(built(scene_of(word, load={"axial": PRELOAD}))).displacement[0] for word in ("single", *words)
+        solve_equilibrium(build_model(scene_of(word, load={"axial": PRELOAD}))).displacement[0]
+        for word in ("single", *words)
     )
     off = max(abs(one / single / printed - 1.0) for one, printed in zip(more, words.values(), strict=True))
     quantity = "deflection of 2, 3 and 4 rows in tandem over that of one: largest relative difference"
@@ -88,7 +85,7 @@ def ring(angle=25.0, rpm=0.0):
 def test_lift_off(claim):
     ratios, off = [], []
     for word, printed in (("DB", 2.95), ("TBT", 5.91), ("QBC", 5.91), ("QBT", 8.87)):
-        model = built(ground(word))
+        model = build_model(ground(word))
         load = preload_table(model, solve_equilibrium(model))["lift_off_axial_n"][0]
         ratios.append(abs(load / PRELOAD / printed - 1.0))
         sides, places = zip(*ground(word).bearing.rows, strict=True)
@@ -105,7 +102,7 @@ def test_different_and_warm_rows(claim):
     angles, sides, places, rpm = (25.0, 15.0, 15.0), [1.0, 1.0, -1.0], [-DISTANCE, 0.0, DISTANCE], 15000.0
     bearing = {"preload": PRELOAD, "row": [{"contact_angle_deg": angle} for angle in angles]}
     kinematics, load = {"ball_inertia": True, "spin_speed_rpm": rpm}, {"axial": 60.0, "radial": [50.0, 20.0]}
-    now = solve_equilibrium(built(scene_of("TBT", bearing=bearing, kinematics=kinematics, load=load)))
+    now = solve_equilibrium(build_model(scene_of("TBT", bearing=bearing, kinematics=kinematics, load=load)))
     still = [ring(angle) for angle in angles]
     shifts = [press_together(still[:2], PRELOAD)] * 2 + [press(still[2], PRELOAD)]
     reference = RowSet([ring(angle, rpm) for angle in angles], sides, places, shifts)
@@ -117,7 +114,7 @@ def test_different_and_warm_rows(claim):
     claim(quantity, off, at_most=1e-5, **RING)
     warm = {"inner_temperature": 14.0, "outer_temperature": 5.0, "ball_temperature": 11.0}
     scene = scene_of("TBT", bearing={"preload": PRELOAD}, mounting=warm)
-    model = built(scene)
+    model = build_model(scene)
     strains = tuple(scene.bearing.rings.thermal_expansion * value for value in warm.values())
     shifts = [press(ring(), 0.5 * PRELOAD)] * 2 + [press(ring(), PRELOAD)]
     rings = [warmed(ring(), strains, side, x) for side, x in zip(sides, places, strict=True)]

@@ -65,8 +65,7 @@ def test_a_pulled_contact_slips_in_an_annulus(share):
 
 def test_a_contact_that_is_pulled_further_slides_with_mu_times_its_load():
     case, _, _, mindlin = pressed()
-    none = np.zeros(case.patch.rows * case.patch.columns)
-    found = pulled(Friction(case.patch, MU), 2e-6, none)
+    found = pulled(Friction(case.patch, MU), 2e-6, np.zeros(case.patch.rows * case.patch.columns))
     assert found.force == pytest.approx(mindlin.limit, rel=1e-12)
     assert found.by_place == 0.0
     assert (found.sliding == 1).all()

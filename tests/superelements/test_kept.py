@@ -86,8 +86,7 @@ def test_a_contact_that_comes_to_other_nodes_widens_the_superelements():
 
 
 def test_a_contact_on_nodes_that_are_held_is_said():
-    model = built()
-    system = model.bearing.bearing.system
+    system = built().bearing.bearing.system
     assembly = system.assembly
     in_groove = np.repeat(system.condensed._wanted, 3)
     in_groove[: assembly.part(1).start] = in_groove[assembly.part(1).stop :] = False

@@ -47,8 +47,7 @@ def on_the_way(**tables):
     model, system = stepped(True, **tables)
     ring, rng = model.system, np.random.default_rng(4)
     y = ring.equilibrium
-    start = standstill(ring, ramped=False)
-    ring.stepped().begin(start)
+    ring.stepped().begin(standstill(ring, ramped=False))
     v = 1e-3 * rng.standard_normal(system.size) * system.assembly.unknown
     v[3:5] *= 100.0
     system.internal(0.0, STEP, y + STEP * v, v)

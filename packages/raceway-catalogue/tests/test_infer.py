@@ -149,8 +149,7 @@ def test_the_bearing_of_an_answer_runs():
         pytest.approx(9.525e-3),
         46e-3,
     ]
-    table = found.bearing(25)
-    ours = rw.run({"bearing": table, "load": {"axial": 400.0}}).stiffness
+    ours = rw.run({"bearing": found.bearing(25), "load": {"axial": 400.0}}).stiffness
     preset = rw.run({"bearing": {"preset": "7206A5"}, "load": {"axial": 400.0}}).stiffness
     assert np.allclose(ours, preset, rtol=1e-12, atol=1e-3)
     json.dumps(found.to_dict())

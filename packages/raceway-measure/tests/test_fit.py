@@ -334,8 +334,7 @@ def test_what_is_folded_back_is_of_the_size_of_what_sampling_adds():
 
 
 def test_pulses_sampled_without_a_filter_widen_the_interval_by_what_is_folded_back():
-    raw = hammer_record(5e7, 800.0, 2.0, 1)
-    found = rw.fit(raw, free="K,C,mass")
+    found = rw.fit(hammer_record(5e7, 800.0, 2.0, 1), free="K,C,mass")
     parts = {cause: one[0] for cause, one in found.estimate.parts.items()}
     assert parts["aliasing"] > 3.0 * parts["noise"] and any("half the sampling rate" in text for text in found.warnings)
     assert abs(found["K"] - 5e7) < found.half_width("K") == pytest.approx(np.hypot(*parts.values()))
