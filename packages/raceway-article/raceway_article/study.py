@@ -19,7 +19,7 @@ import numpy as np
 from raceway_checks.verify import study as verification
 from raceway_checks.verify.reference import Verified, reference_cases
 
-from raceway import Answer, ConvergenceError, Function, RacewayError, function, scene_from_dict
+from raceway import Answer, ConvergenceError, Function, RacewayError, Result, function, scene_from_dict
 from raceway.extend import (
     ERROR, FAILED, FORCE_AMPLITUDE, OF_ORBITS, Attractor, Fact, Item, K, OnProgress, Part, ReadTables, Registry, Status,
     Tables, Words, Workload, Z, attractor_beside_run, attractor_from_rest, lasting, local, processor_time, program_key, run,
@@ -197,12 +197,17 @@ def failure(why: RacewayError) -> Tables:
 def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
     """One row a point, in order; a run that fails or is refused becomes a row with its reason.
 
-    Where the steady motion is unstable, or none is found, ``instead`` states what a ring does, by time integration: from beside
-    that motion, or from rest.
+    Each motion is continued from that at the next speed where it stays beside it and is not unstable, else searched for. Where it is
+    unstable, or none is found, ``instead`` states what a ring does, by time integration: from beside that motion, or from rest.
 
     points : tables of scenes that differ in axial load, speed and tilt stiffness
     """
-    return [row or _point_row(tables, registry) for row, tables in zip(_looped(points, registry), points, strict=True)]
+    rows, near = list(_looped(points, registry)), None
+    for k in reversed(range(len(points))):
+        here, there = ({**tables, "excitation": None} for tables in (points[k], points[min(k + 1, len(points) - 1)]))
+        near = near if here == there else None
+        rows[k], near = (rows[k], near) if rows[k] else _point_row(points[k], registry, near)
+    return [row for row in rows if row]
 
 
 def _looped(points: Sequence[Tables], registry: Registry) -> Sequence[Tables | None]:
@@ -235,12 +240,13 @@ def _loop_of(points: Sequence[Tables], registry: Registry) -> tuple[Function | N
     return (None if f.why_slow or not f.contacts_alone else f), numbers
 
 
-def _point_row(tables: Tables, registry: Registry) -> Tables:
+def _point_row(tables: Tables, registry: Registry, near: Result | None) -> tuple[Tables, Result | None]:
+    """The row of a run, and its result, or ``near`` where it is none to continue the next motion from."""
     row: Tables = {"speed_rpm": tables["excitation"]["speed_rpm"], "axial_n": tables["load"]["axial"]}
     try:
         scene = scene_from_dict(tables, registry)
         try:
-            result = run(scene, registry)
+            result = run(scene, registry, near=near, stay=near is not None)
         except ConvergenceError as why:
             if not scene.integrator.method.steady:
                 raise
@@ -248,9 +254,9 @@ def _point_row(tables: Tables, registry: Registry) -> Tables:
             if motion.kind == FAILED:
                 raise
             reason = f"{' '.join(str(why).split()).partition(': ')[0]}; instead, from rest: {motion.words}"
-            return {**row, "status": Status.UNSTEADY, "reason": reason, "instead": _plain_row(motion)}
+            return {**row, "status": Status.UNSTEADY, "reason": reason, "instead": _plain_row(motion)}, near
     except RacewayError as why:
-        return {**row, **failure(why)}
+        return {**row, **failure(why)}, near
     identification, error, floquet = result.identification, result.error, result.stability["floquet"]
     assert identification is not None
     status, reason = Status.COMPLETED, ""
@@ -259,17 +265,10 @@ def _point_row(tables: Tables, registry: Registry) -> Tables:
         row["instead"] = _plain_row(motion)
         grows = f"the steady motion is unstable, disturbances grow {floquet['largest']:.4g} times per turn"
         status, reason = Status.UNSTABLE, f"{grows}; instead: {motion.words}"
-    return {
-        **row,
-        "status": status,
-        "reason": reason,
-        "found": None if floquet is None else floquet["found"],
-        "k": K.of(result),
-        "abs_z": abs(identification.dynamic_stiffness),
-        "force_n": identification.force_amplitude,
-        "error": without_mesh(error),
-        "mesh_error": error["mesh"],
-    }
+    numbers = {"k": K.of(result), "abs_z": abs(identification.dynamic_stiffness), "force_n": identification.force_amplitude}
+    errors = {"error": without_mesh(error), "mesh_error": error["mesh"]}
+    row = {**row, "status": status, "reason": reason, "found": floquet and floquet["found"], **numbers, **errors}
+    return row, (result if floquet is not None and status == Status.COMPLETED else near)
 
 
 def _plain_row(motion: Attractor) -> Tables:

@@ -16,6 +16,7 @@ from raceway_article.page import page
 from checks.validation.article_study import SMALL, curves, row, study
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway import ConvergenceError
+from raceway.core.periodic import branches
 from raceway.extend import FAILED, Attractor, default_registry, read_toml
 
 
@@ -79,7 +80,7 @@ def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, qu
 
 
 def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
-    def fail(*_):
+    def fail(*_, **__):
         raise ConvergenceError("no motion was found")
 
     monkeypatch.setattr(driver, "run", fail)
@@ -154,6 +155,20 @@ def test_friction_on_balls_that_stand_reverses_the_trend_at_a_heavy_load_with_ti
         )
         # The changes are 2.7 to 7.6 %; runs with friction are known to half a percent.
         assert sense * (last["k"] / first["k"] - 1.0) > 0.02, friction
+
+
+def test_motions_far_from_linear_are_continued_from_the_next_speed_not_searched_for(monkeypatch):
+    """800 N, tilt free: the same motions as without a neighbour, with one search for all of them instead of one each."""
+    searched, made, registry = [], design(article_tables()), default_registry()
+    chosen = branches.chosen
+    monkeypatch.setattr(branches, "chosen", lambda *given: searched.append(1) or chosen(*given))
+    setting = Setting("unidirectional", "constant", "free", True, "rigid")
+    points = [made.point(setting, 800.0, speed, registry) for speed in made.speeds[3:5]]
+    first, last = driver.rows_of_curve(points, registry)
+    assert len(searched) == 1 and first["status"] == last["status"] == "completed"
+    (alone,) = driver.rows_of_curve(points[:1], registry)
+    # Both orbits are known to a relative error of 1e-7.
+    assert len(searched) == 2 and first["k"] == pytest.approx(alone["k"], rel=1e-7)
 
 
 def test_page_says_what_failed(made_page):
