@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from numba import float64, void
@@ -31,7 +33,7 @@ ROWS = {
     "less": lambda x, y: 1.0 * (x < y), "not more": lambda x, y: 1.0 * (x <= y), "more": lambda x, y: 1.0 * (x > y),
     "not less": lambda x, y: 1.0 * (x >= y), "equal": lambda x, y: 1.0 * (x == y), "both": lambda x, y: 1.0 * ((x > 0.0) & (y > 0.0)),
     "not": lambda x, _: 1.0 * ~(x > 0.0), "added to": lambda x, y: x + y, "number": lambda x, _: np.full_like(x, 7.0),
-    "angle": np.arctan2, "either": lambda x, y: 1.0 * ((x > 0.0) | (y > 0.0)),
+    "angle": np.vectorize(math.atan2), "either": lambda x, y: 1.0 * ((x > 0.0) | (y > 0.0)),
     "chosen": lambda x, y: np.where(x < y, x, y + 1.0),
 }  # fmt: skip
 

@@ -106,7 +106,7 @@ def contact_pairs(problem: Problem, basis: Basis) -> ContactPairs:
 
     def both(a: Number, b: Number) -> np.ndarray:
         halves = [np.broadcast_to(per_ball(value) if problem.points else value, shape) for value in (a, b)]
-        return np.concatenate(halves, axis=-1).astype(float).ravel()
+        return np.concatenate(halves, axis=-1, dtype=float).ravel()
 
     def every(value: Number) -> np.ndarray:
         return both(value, value)

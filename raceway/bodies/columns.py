@@ -22,10 +22,12 @@ from raceway.core.excitations import no_force
 from raceway.core.periodic.fourier import Turning
 from raceway.core.periodic.orbits import Orbits, neighbours, orbits
 from raceway.core.periodic.turn import one_pitch
-from raceway.core.ring.equilibria import LOOSE, Kernels, Points, States, equilibria, groove_centres
+from raceway.core.ring.equilibria import equilibria, groove_centres
 from raceway.core.ring.equilibrium import NOT_CONVERGED
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import OWN_OFFSET_INNER, OWN_OFFSET_OUTER, elastic_columns
+from raceway.core.ring.kernels.rigid_inertial import rigid_inertial, rigid_tangential
+from raceway.core.ring.states import LOOSE, Kernels, Points, States
 from raceway.core.ring.system import System
 from raceway.core.signatures import FORCE, Linear
 from raceway.framework.contracts import ContactPairs, Excitation, SolvedPoints
@@ -187,7 +189,7 @@ class ColumnBearing:
     def _system(self, row: int) -> System:
         """The bearing at one point, at rest."""
         scalars, table, params, load, shaft, _ = (column[row] for column in self.points)
-        kernel, base, _, law = self.kernels
+        kernel, base, _, law, _ = self.kernels
         none = np.zeros((5, 5))
         base = base if self.plan.balls == "tangential" else kernel
         return System(
@@ -199,12 +201,19 @@ class ColumnBearing:
     def _preloaded(self) -> ColumnBearing:
         """With the preload of a set built in: the axial approach of the rows of either direction under it, at standstill."""
         bearing, points, basis = self.problem.bearing, self.points, self.basis
-        scalars, table, sides = points.scalars.copy(), points.table.copy(), np.array(bearing.rows)[basis.row, 0]
+        parts = (getattr(self.problem, name) for name in _OF_PRELOAD)
+        # Loads and speeds are none of a preload's: where nothing else differs, one point stands for all.
+        alike = self.problem.traits.contacts_alone and not any(map(has_columns, parts))
+        alike = alike and bool(np.all(points.params == points.params[:1]))
+        some_points = slice(1) if alike else slice(None)
+        scalars, table = points.scalars[some_points].copy(), points.table[some_points].copy()
+        sides = np.array(bearing.rows)[basis.row, 0]
         scalars[:, ring.GYROSCOPIC] = 0.0
-        scalars[:, ring.REST_AXIAL : ring.TILT_ARM + 1] -= basis.growth.common
-        table[..., ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] -= basis.growth.by_ball
+        common, by_ball = basis.growth.common, basis.growth.by_ball
+        scalars[:, ring.REST_AXIAL : ring.TILT_ARM + 1] -= common[some_points] if common.ndim > 1 else common
+        table[..., ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] -= by_ball[some_points] if by_ball.ndim > 2 else by_ball
         table[..., ring.CENTRIFUGAL], table[..., [ring.SIDE, ring.LEVER]] = 0.0, (1.0, 0.0)
-        n, faults = len(self.faults), self.faults.copy()
+        n, faults = len(scalars), self.faults.copy()
         none = np.zeros((n, 5))
         for side, force in ((sides[0], bearing.preload), (-sides[0], bearing.other_preload)):
             balls, pressed = np.flatnonzero(sides == side), np.broadcast_to(force, n) > 0.0
@@ -213,7 +222,8 @@ class ColumnBearing:
             guess, load = none.copy(), none.copy()
             guess[:, 0], load[:, 0] = 0.05 * basis.geometry.centre_distance, force
             contacts = np.concatenate([balls, balls + len(sides)])
-            rows = Points(scalars, table[:, balls].copy(), points.params[:, contacts].copy(), load, np.zeros(n), guess)
+            params = points.params[some_points][:, contacts].copy()
+            rows = Points(scalars, table[:, balls].copy(), params, load, np.zeros(n), guess)
             states = _empty_states(n, len(balls), self.kernels.columns)
             equilibria(self.kernels, self.linear._replace(free=_AXIAL), rows, states)
             points.table[:, balls, ring.SHIFT] = np.where(pressed[:, None], states.q[:, :1], 0.0)
@@ -257,8 +267,9 @@ class ColumnBearing:
         return inner, outer
 
 
-#: Tables of a scene that the bearing is built from, beside its speed and loads.
-_BUILT = ("bearing", "bodies", "contact", "kinematics", "mounting")
+#: Tables of a scene that a preload depends on, and those that the bearing is built from beside its speed and loads.
+_OF_PRELOAD = ("bearing", "bodies", "contact", "mounting")
+_BUILT = (*_OF_PRELOAD, "kinematics")
 
 
 @attrs.frozen(eq=False, slots=False)
@@ -356,7 +367,9 @@ def assembled_columns(cls: type[C], problem: Problem, plan: ScenePlan, basis: Ba
     n = problem.points[0]
     parts["scalars"][:, ring.CAGE] = 0.0  # at rest; balls of periodic motions stand
     columns = 2 + elastic_columns(parts["scalars"][0])
-    kernels = Kernels(parts["kernel"], parts["base_kernel"], columns, parts["law"])
+    lanes = parts["base_kernel"] is rigid_inertial and parts["kernel"] in (rigid_inertial, rigid_tangential)
+    lanes &= not np.any(parts["scalars"][:, ring.FRICTION])
+    kernels = Kernels(parts["kernel"], parts["base_kernel"], columns, parts["law"], lanes)
     none = np.zeros((5, 5))
     linear = Linear(none, none, none, np.array(plan.free, dtype=float), np.zeros(5))
     points = Points(parts["scalars"], parts["table"], parts["law_params"], *_loads(problem), np.zeros((n, 5)))

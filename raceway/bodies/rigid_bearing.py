@@ -73,9 +73,7 @@ def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
         from raceway.core.ring.kernels.rigid_weightless import rigid_weightless as base
     kernel = base  # base: the one whose forces have a potential
     if plan.balls == "tangential":
-        from raceway.core.ring.kernels.tangential import rigid_tangential
-
-        kernel = rigid_tangential
+        from raceway.core.ring.kernels.rigid_inertial import rigid_tangential as kernel
     params = law_params(problem.contact.law, contact_pairs(problem, basis))
     geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
     out = np.zeros((*problem.points, ring.SCALARS))
@@ -141,17 +139,26 @@ def _ball_table(problem: Problem, plan: ScenePlan, basis: Basis) -> np.ndarray:
     def spread(value: Number) -> Number:
         return value if several else per_ball(value)
 
-    table = np.zeros((*problem.points, len(row), ring.COLUMNS))
+    softness = inner.factor ** (-2.0 / 3.0), outer.factor ** (-2.0 / 3.0)
+    side, lever = np.array(problem.bearing.rows)[row].T
+    columns = {
+        ring.COSINE: np.cos(azimuth), ring.SINE: np.sin(azimuth), ring.SIDE: side, ring.LEVER: lever,
+        ring.OUTER_SHARE: spread(softness[1] / sum(softness)), ring.OUTER_FACTOR: spread(outer.factor),
+    }  # fmt: skip
+    # What points share is written into all of them at once.
+    table = np.zeros((len(row), ring.COLUMNS))
+    for column in [column for column, value in columns.items() if np.ndim(value) < 2]:
+        table[:, column] = columns.pop(column)
+    table = np.broadcast_to(table, (*problem.points, *table.shape)).copy()
+    for column, value in columns.items():
+        table[..., column] = value
     if plan.centrifugal:
         for k, geometry in enumerate(basis.geometries):
             cage, mass = geometry.cage_speed(problem.spin_speed), geometry.ball_mass(problem.bearing.balls.density)
             table[..., row == k, ring.CENTRIFUGAL] = per_ball(mass * 0.5 * geometry.pitch_diameter * cage**2)
-    softness = inner.factor ** (-2.0 / 3.0), outer.factor ** (-2.0 / 3.0)
-    table[..., ring.COSINE], table[..., ring.SINE] = np.cos(azimuth), np.sin(azimuth)
-    table[..., ring.OUTER_SHARE], table[..., ring.OUTER_FACTOR] = spread(softness[1] / sum(softness)), spread(outer.factor)
-    table[..., [ring.SIDE, ring.LEVER]] = np.array(problem.bearing.rows)[row]
     if several:
         grooves = np.array([_grooves(problem, geometry) for geometry in basis.geometries])
         table[:, ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] = (grooves - grooves[0])[row]
-    table[..., ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.by_ball
+    if np.any(basis.growth.by_ball):
+        table[..., ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.by_ball
     return table

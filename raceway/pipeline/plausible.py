@@ -354,7 +354,7 @@ def _under(model: Model, problem: Problem, near: Equilibrium) -> tuple[Model, Eq
     if problem.kinematics.gyroscopic == "none":
         scalars[GYROSCOPIC] = 0.0
     else:
-        from raceway.core.ring.kernels.tangential import rigid_tangential as kernel
+        from raceway.core.ring.kernels.rigid_inertial import rigid_tangential as kernel
 
         add_moments(scalars, problem, model.geometry)
         if ring.condensed:

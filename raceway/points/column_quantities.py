@@ -14,8 +14,8 @@ from raceway.answers.quantities import AMPLITUDE, KNOWN, OF_ORBITS, Z_IMAG, Z_RE
 from raceway.bodies.columns import Builder, ColumnBearing, impedance, solved_columns
 from raceway.core.periodic.floquet import NEUTRAL
 from raceway.core.periodic.orbits import Orbits
-from raceway.core.ring.equilibria import States
 from raceway.core.ring.ring import COORDINATES
+from raceway.core.ring.states import States
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, turn_samples
 from raceway.framework.registry import Registry, default_registry

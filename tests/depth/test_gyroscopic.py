@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import SceneError, make_plan, run, scene_from_dict
-from raceway.core.ring.kernels.tangential import rigid_tangential
+from raceway.core.ring.kernels.rigid_inertial import rigid_tangential
 from raceway.extend import System, solve_equilibrium
 from raceway.extend import layout as ring
 from raceway.scene.growth import ring_inertia

@@ -8,9 +8,9 @@ import numpy as np
 from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.ring.equilibria import KERNELS
 from raceway.core.ring.kernels import CONTACT_FORCE
 from raceway.core.ring.kernels.layout import keep_slips
+from raceway.core.ring.states import KERNELS
 from raceway.core.signatures import (
     CONSTANTS,
     CUBE,

@@ -29,8 +29,8 @@ from raceway.core.periodic import fourier
 from raceway.core.periodic.extremes import force_extremes
 from raceway.core.periodic.monodromy import span_transfer
 from raceway.core.ring.elimination import copy_matrix, solve
-from raceway.core.ring.equilibria import KERNELS, POINTS, STATES
 from raceway.core.ring.kernels.layout import DAMPING, TILT_ARM, TIME_CONSTANT, work_rows
+from raceway.core.ring.states import KERNELS, POINTS, STATES
 from raceway.core.signatures import CUBE, LINEAR, MATRIX, VECTOR, Constants, record
 
 #: Newton's steps of a level, and the last one's size over the motion's.

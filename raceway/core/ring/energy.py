@@ -26,7 +26,7 @@ def friction_energy(system: System, record: Record) -> _FrictionEnergy:
 
     Notes
     -----
-    A contact with the elastic tangential displacement u (``raceway.core.ring.kernels.tangential``) stores k u^2 / 2. A
+    A contact with the elastic tangential displacement u (``raceway.core.ring.kernels.rolling``) stores k u^2 / 2. A
     step in which its slip grows by d loses k u d with the u at the step's end: the return mapping lets the slip grow only
     along u, so no step of a record that keeps every step can give energy.
     """

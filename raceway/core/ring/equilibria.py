@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
-from numba import float64, int64, void
+from numba import float64, void
 
 from raceway.core.jit import jit
+from raceway.core.lanes import WIDTH
 from raceway.core.ring.elimination import cholesky_solve, copy_matrix
 from raceway.core.ring.equilibrium import CONVERGED, SLOW, find_root, solve_equilibrium
 from raceway.core.ring.kernels import CONTACT_FORCE
-from raceway.core.ring.kernels.layout import GYROSCOPIC, TILT_ARM, keep_slips, place, work_rows
+from raceway.core.ring.kernels.layout import DAMPING, GYROSCOPIC, TILT_ARM, TIME_CONSTANT, keep_slips, place, work_rows
+from raceway.core.ring.lockstep import POINT_ROWS, lockstep
+from raceway.core.ring.lockstep import WORK_ROWS as LANES_ROWS
+from raceway.core.ring.states import KERNELS, LEAST, LOOSE, POINTS, STATES, TOLERANCE
 from raceway.core.signatures import (
     CONSTANTS,
     CONTACTS,
     CUBE,
-    LAW_POINTER,
     LINEAR,
     MATRIX,
     RESPONSE,
-    SYSTEM_POINTER,
     VECTOR,
     Balls,
     Constants,
@@ -29,51 +29,7 @@ from raceway.core.signatures import (
     Linear,
     Response,
     StaticState,
-    record,
 )
-
-#: Relative residual of the equilibria.
-TOLERANCE = 1e-12
-#: Status beside those of ``raceway.core.ring.equilibrium``: some motion is held by less than this part of the stiffest one.
-LOOSE, _LEAST = 5, 1e-9
-
-
-class Points(NamedTuple):
-    """Numbers of n points: ``scalars`` (n, s), ``table`` (n, Z, c), law's ``params`` (n, 2 Z, k), ``load`` (n, 5), ``shaft`` (n,)
-    [N m/rad] against tilts, and ``guess`` (n, 5) to begin with."""
-
-    scalars: np.ndarray
-    table: np.ndarray
-    params: np.ndarray
-    load: np.ndarray
-    shaft: np.ndarray
-    guess: np.ndarray
-
-
-class States(NamedTuple):
-    """What is computed of n points: displacement (n, 5), positions of balls (n, Z, b), tangent of the contacts and their
-    damping (n, 5, 5), contact forces (n, 2 Z), status (n,)."""
-
-    q: np.ndarray
-    ball: np.ndarray
-    stiffness: np.ndarray
-    damping: np.ndarray
-    force: np.ndarray
-    status: np.ndarray
-
-
-class Kernels(NamedTuple):
-    """``system`` (a ``SYSTEM``), ``base`` (the one whose forces have a potential, ``columns`` of ``ball``) and ``law`` (a ``LAW``)."""
-
-    system: Any
-    base: Any
-    columns: int
-    law: Any
-
-
-POINTS = record(Points, MATRIX, CUBE, CUBE, MATRIX, VECTOR, MATRIX)
-STATES = record(States, MATRIX, CUBE, CUBE, CUBE, MATRIX, int64[::1])
-KERNELS = record(Kernels, SYSTEM_POINTER, SYSTEM_POINTER, int64, LAW_POINTER)
 
 
 @jit(float64(MATRIX, LINEAR, float64, MATRIX, VECTOR))
@@ -130,7 +86,16 @@ def equilibria(kernels, linear, points, states):
     stiffness = linear.stiffness.copy()
     work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
     free_ball, history = np.zeros((z, kernels.columns)), np.zeros((z, columns))
+    width = WIDTH if kernels.lanes else 0
+    lanes, of_points = np.zeros((LANES_ROWS, 2 * z * width)), np.zeros((POINT_ROWS, width))
+    params_of_lanes, none = np.empty((2 * z * width, points.params.shape[2])), np.zeros((2 * z * width, 0))
+    rates = True
     for p in range(n):
+        if width > 0 and p % width == 0:
+            rates = lockstep(kernels.law, linear, p, points, states, params_of_lanes, none, lanes, of_points)
+        in_lanes = width > 0 and states.status[p] == CONVERGED
+        if in_lanes and not rates and points.scalars[p, DAMPING] == 0.0 and points.scalars[p, TIME_CONSTANT] == 0.0:
+            continue
         constants, params, K, q = (
             Constants(points.scalars[p], points.table[p]),
             points.params[p],
@@ -140,24 +105,24 @@ def equilibria(kernels, linear, points, states):
         stiffness[3, 3] = points.shaft[p]
         stiffness[4, 4] = points.shaft[p]
         own = Linear(linear.mass, linear.damping, stiffness, linear.free, points.load[p])
-        for i in range(5):
-            q[i] = points.guess[p, i]
-        free_ball[:] = 0.0
-        response = Response(f, K, states.damping[p], work)
-        forces = Forces(kernels.base, kernels.law, params, constants)
-        status = solve_equilibrium(forces, own, TOLERANCE, 0.0, StaticState(q, free_ball, memory), response, report)
-        ball = states.ball[p]
-        ball[:] = 0.0
-        if status == CONVERGED and constants.scalars[GYROSCOPIC] != 0.0:
-            moving = Forces(kernels.system, kernels.law, params, constants)
-            status = find_root(moving, own, TOLERANCE, 0.0, StaticState(q, ball, memory), response, report)
-        elif columns == kernels.columns:
-            copy_matrix(free_ball, ball)
+        response, ball, status = Response(f, K, states.damping[p], work), states.ball[p], states.status[p]
+        if not in_lanes:
+            for i in range(5):
+                q[i] = points.guess[p, i]
+            free_ball[:] = 0.0
+            forces = Forces(kernels.base, kernels.law, params, constants)
+            status = solve_equilibrium(forces, own, TOLERANCE, 0.0, StaticState(q, free_ball, memory), response, report)
+            ball[:] = 0.0
+            if status == CONVERGED and constants.scalars[GYROSCOPIC] != 0.0:
+                moving = Forces(kernels.system, kernels.law, params, constants)
+                status = find_root(moving, own, TOLERANCE, 0.0, StaticState(q, ball, memory), response, report)
+            elif columns == kernels.columns:
+                copy_matrix(free_ball, ball)
         if status == CONVERGED:
             keep_slips(constants.scalars, ball, history)
             contacts = Contacts(kernels.law, params, memory, memory, 0.0)
             unsolvable = kernels.system(0.0, q, still, Balls(ball, 0.0, history), contacts, constants, response) != 0
-            if unsolvable or not _definiteness(K, own, constants.scalars[TILT_ARM], factor, scale) > _LEAST:
+            if unsolvable or not _definiteness(K, own, constants.scalars[TILT_ARM], factor, scale) > LEAST:
                 status = LOOSE
             for i in range(2 * z):
                 states.force[p, i] = work[CONTACT_FORCE, i]

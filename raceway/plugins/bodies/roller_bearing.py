@@ -13,9 +13,9 @@ from raceway.bodies.columns import ColumnBearing, assembled_columns
 from raceway.bodies.model import BuiltBearing, Equilibrium, Model, Told
 from raceway.core.columns import Number, per_ball
 from raceway.core.ratings import STRIBECK
-from raceway.core.ring.equilibria import States
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels import rollers as lines
+from raceway.core.ring.states import States
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError

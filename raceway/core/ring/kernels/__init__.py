@@ -20,8 +20,8 @@ and returns 0, or 1 when the balls did not find their equilibrium.  Damping and 
 outer loads are linear and belong to ``raceway.core.ring.system``.  Z counts the balls of all rows.
 
 rigid_weightless   balls without mass: the two races in series
-rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential
-tangential         the same with gyroscopic moments or friction: no potential;  rolling: these at four balls, in lanes
+rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential; with gyroscopic moments or friction: none
+rolling            moments and friction of four balls, in lanes
 structural         each of these on elastic rings and balls: contacts and structural compliances in series
 between            balls that act on each other through elastic rings
 layout             constants of a model, columns of ``ball``, rows of ``work``; a ball's seat on the ring;  tensors: vectors of its meridian plane

@@ -9,6 +9,7 @@ e = (e_rest + shift + side (x + R u), e_rest + rho - X u).  What ``scalars`` say
 differs has the difference in its own columns of ``table``.
 """
 
+from collections import namedtuple
 from typing import NamedTuple
 
 import numpy as np
@@ -17,12 +18,12 @@ from numba.extending import register_jitable
 
 from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
-from raceway.core.lanes import MASK, WIDTH, column_of, live_of, root, spread, sum_of, where
+from raceway.core.lanes import LANES, MASK, WIDTH, column_of, live_of, root, spread, sum_of, where
 from raceway.core.ring import kernels as rows
-from raceway.core.ring.kernels.tensors import PAIR, TENSOR, pair_of, put_pair
+from raceway.core.ring.kernels.tensors import LANES_PAIR, LANES_TENSOR, PAIR, TENSOR, Pair, pair_of, put_pair, tensors_of
 from raceway.core.signatures import CONSTANTS, CONTACTS, MATRIX, VECTOR
 
-#: Entries of ``scalars``.  CAGE: speed of orbiting balls [rad/s].  The last ones belong to ``rigid_tangential``:
+#: Entries of ``scalars``.  CAGE: speed of orbiting balls [rad/s].  The last ones belong to moments and friction:
 #: friction coefficient, stick stiffness [N/m], shares of the gyroscopic moment (inner + outer = 2), D / d_m,
 #: J * spin * cage speed [N m], ball diameter [m].  TIME_CONSTANT: of the contacts' damping [s].  TRACTION: largest traction
 #: coefficient by which contacts carry the moment; 0: an outer contact carries any.
@@ -88,140 +89,134 @@ def stop(t, scalars, table):
     scalars[CAGE] = 0.0
 
 
+class Seat(NamedTuple):
+    """How a ball's meridian plane meets the ring: azimuth, radius of the tilts' lever [m], side (+1, -1), lever X [m]."""
+
+    cosine: float
+    sine: float
+    arm: float
+    side: float
+    lever: float
+
+
+SEAT, SEATS = types.NamedUniTuple(float64, 5, Seat), types.NamedUniTuple(LANES, 5, Seat)
+
+
+#: Sums over balls of their forces and couples on the ring, lane by lane [N, N m].
+RingForce = namedtuple("RingForce", "x y z tilt_y tilt_z")
+FORCES = types.NamedUniTuple(LANES, 5, RingForce)
+
+
+@register_jitable
+def no_force():
+    """Of no balls."""
+    o = spread(0.0)
+    return RingForce(o, o, o, o, o)
+
+
+@jit(FORCES(FORCES, SEATS, LANES, LANES, LANES), inline=True)
+def with_force(total, seat, axial, radial, couple):
+    """With the forces of balls and their couples on the section."""
+    c, s, reach, side, lever = seat
+    turn = reach * (side * axial) - lever * radial + side * couple
+    return RingForce(
+        total.x + side * axial, total.y + radial * c, total.z + radial * s, total.tilt_y + turn * s, total.tilt_z - turn * c
+    )
+
+
+#: Sums over balls of a tangent's entries between x, the radial r and the section's turn u, times cosines and sines, lane by lane: all entries
+#: of K are such sums, held in registers: three times as fast as adding each ball to K in memory.
+RingTangent = namedtuple(
+    "RingTangent",
+    "xx xr_c xr_s rx_c rx_s xu_c xu_s ux_c ux_s rr_cc rr_cs rr_ss ru_cc ru_cs ru_ss ur_cc ur_cs ur_ss uu_cc uu_cs uu_ss",
+)
+TANGENTS = types.NamedUniTuple(LANES, 21, RingTangent)
+
+
+@register_jitable
+def no_tangent():
+    """Of no balls."""
+    o = spread(0.0)
+    return RingTangent(o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o)
+
+
+@jit(TANGENTS(TANGENTS, SEATS, LANES_TENSOR, LANES_PAIR, LANES_PAIR, LANES), inline=True)
+def with_tangent(total, seat, stiffness, by_turn, by_centre, turn):
+    """With J^T [[aa, ar], [ra, rr]] J of balls, derivatives of their forces by the section's turn side u, of the couples by e and by turn."""
+    c, s, reach, side, lever = seat
+    ar, ra = side * stiffness.ar, side * stiffness.ra
+    cc, cs, ss = c * c, c * s, s * s
+    xu, ux = reach * stiffness.aa - lever * ar + by_turn.axial, reach * stiffness.aa - lever * ra
+    ru, ur = reach * ra - lever * stiffness.rr + side * by_turn.radial, reach * ar - lever * stiffness.rr
+    uu = reach * (xu + by_centre.axial) - lever * (ru + side * by_centre.radial) + turn
+    ux, ur = ux + by_centre.axial, ur + side * by_centre.radial
+    t, rr = total, stiffness.rr
+    return RingTangent(
+        t.xx + stiffness.aa, t.xr_c + ar * c, t.xr_s + ar * s, t.rx_c + ra * c, t.rx_s + ra * s,
+        t.xu_c + xu * c, t.xu_s + xu * s, t.ux_c + ux * c, t.ux_s + ux * s,
+        t.rr_cc + rr * cc, t.rr_cs + rr * cs, t.rr_ss + rr * ss, t.ru_cc + ru * cc, t.ru_cs + ru * cs, t.ru_ss + ru * ss,
+        t.ur_cc + ur * cc, t.ur_cs + ur * cs, t.ur_ss + ur * ss, t.uu_cc + uu * cc, t.uu_cs + uu * cs, t.uu_ss + uu * ss,
+    )  # fmt: skip
+
+
+@register_jitable
+def rows_of_tangent(t):
+    """The rows of K (5, 5), lane by lane."""
+    return (
+        (t.xx, t.xr_c, t.xr_s, t.xu_s, -t.xu_c),
+        (t.rx_c, t.rr_cc, t.rr_cs, t.ru_cs, -t.ru_cc),
+        (t.rx_s, t.rr_cs, t.rr_ss, t.ru_ss, -t.ru_cs),
+        (t.ux_s, t.ur_cs, t.ur_ss, t.uu_ss, -t.uu_cs),
+        (-t.ux_c, -t.ur_cc, -t.ur_cs, -t.uu_cs, t.uu_cc),
+    )
+
+
+@jit(SEATS(int64, MASK, float64, MATRIX, MATRIX, int64), inline=True)
+def seats_of(k, live, arm, table, work, direction):
+    """The seats of balls from k on, whose azimuths are in the row ``direction`` of ``work``."""
+    c, s = pair_of(work, direction, k, live)
+    reach = arm + column_of(table, k, OWN_TILT_ARM, live)
+    return Seat(c, s, reach, column_of(table, k, SIDE, live), column_of(table, k, LEVER, live))
+
+
+@jit(void(FORCES, VECTOR), inline=True)
+def put_force(total, f):
+    """The sums of all lanes into f (5,)."""
+    for i, part in enumerate(total):
+        f[i] = sum_of(part)
+
+
+@jit(void(TANGENTS, MATRIX), inline=True)
+def put_tangent(total, K):
+    """The sums of all lanes into K (5, 5)."""
+    for i, entries in enumerate(rows_of_tangent(total)):
+        for j, entry in enumerate(entries):
+            K[i, j] = sum_of(entry)
+
+
 @jit(void(MATRIX, float64, MATRIX, int64, int64, VECTOR), inline=True)
 def ring_force(table, arm, work, direction, row, f):
     """f (5,): the balls' forces on the ring [N], from work[row] = axial (Z,), radial (Z,); f = sum J^T (axial, radial).
 
     ``direction`` is the row that ``place`` put the azimuths in.
     """
-    n = table.shape[0]
-    x, y, z, tilt_y, tilt_z = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    n, total = table.shape[0], no_force()
     for k in range(0, n, WIDTH):
         live = live_of(k, n)
-        (c, s), (axial, radial) = pair_of(work, direction, k, live), pair_of(work, row, k, live)
-        axial = column_of(table, k, SIDE, live) * axial
-        reach, lever = arm + column_of(table, k, OWN_TILT_ARM, live), column_of(table, k, LEVER, live)
-        couple = reach * axial - lever * radial
-        x += axial
-        y += radial * c
-        z += radial * s
-        tilt_y += couple * s
-        tilt_z += couple * c
-    f[0], f[1], f[2], f[3], f[4] = sum_of(x), sum_of(y), sum_of(z), sum_of(tilt_y), -sum_of(tilt_z)
+        axial, radial = pair_of(work, row, k, live)
+        total = with_force(total, seats_of(k, live, arm, table, work, direction), axial, radial, spread(0.0))
+    put_force(total, f)
 
 
 @jit(void(MATRIX, float64, MATRIX, int64, int64, MATRIX))
 def ring_tangent(table, arm, work, direction, row, K):
-    """K (5, 5): sum of J^T [[aa, ar], [ra, rr]] J over the balls.
-
-    Parameters
-    ----------
-    work : work[row] = aa (Z,), ar (Z,);  work[row + 1] = ra (Z,), rr (Z,)
-
-    Notes
-    -----
-    Each ball's tangent is taken to the three coordinates x, rho and u first; all entries are then sums times 1, cos, sin
-    and their products, held in registers: three times as fast as adding each ball to K in memory.
-    """
-    none = spread(0.0)
-    xx, xr_c, xr_s, rx_c, rx_s, xu_c, xu_s, ux_c, ux_s = none, none, none, none, none, none, none, none, none
-    rr_cc, rr_cs, rr_ss, uu_cc, uu_cs, uu_ss = none, none, none, none, none, none
-    ru_cc, ru_cs, ru_ss, ur_cc, ur_cs, ur_ss = none, none, none, none, none, none
-    z = table.shape[0]
+    """K (5, 5): sum of J^T [[aa, ar], [ra, rr]] J over the balls; work[row] = aa (Z,), ar (Z,), work[row + 1] = ra (Z,), rr (Z,)."""
+    none, total, z = Pair(spread(0.0), spread(0.0)), no_tangent(), table.shape[0]
     for k in range(0, z, WIDTH):
         live = live_of(k, z)
-        (c, s), (aa, ar), (ra, rr) = (
-            pair_of(work, direction, k, live),
-            pair_of(work, row, k, live),
-            pair_of(work, row + 1, k, live),
-        )
-        side, lever = column_of(table, k, SIDE, live), column_of(table, k, LEVER, live)
-        reach = arm + column_of(table, k, OWN_TILT_ARM, live)
-        ar, ra = side * ar, side * ra
-        cc, cs, ss = c * c, c * s, s * s
-        xu, ux = reach * aa - lever * ar, reach * aa - lever * ra
-        ru, ur = reach * ra - lever * rr, reach * ar - lever * rr
-        uu = reach * xu - lever * ru
-        xx += aa
-        xr_c += ar * c
-        xr_s += ar * s
-        rx_c += ra * c
-        rx_s += ra * s
-        xu_c += xu * c
-        xu_s += xu * s
-        ux_c += ux * c
-        ux_s += ux * s
-        rr_cc += rr * cc
-        rr_cs += rr * cs
-        rr_ss += rr * ss
-        ru_cc += ru * cc
-        ru_cs += ru * cs
-        ru_ss += ru * ss
-        ur_cc += ur * cc
-        ur_cs += ur * cs
-        ur_ss += ur * ss
-        uu_cc += uu * cc
-        uu_cs += uu * cs
-        uu_ss += uu * ss
-    K[0, 0], K[0, 1], K[0, 2], K[0, 3], K[0, 4] = sum_of(xx), sum_of(xr_c), sum_of(xr_s), sum_of(xu_s), -sum_of(xu_c)
-    K[1, 0], K[1, 1], K[1, 2], K[1, 3], K[1, 4] = sum_of(rx_c), sum_of(rr_cc), sum_of(rr_cs), sum_of(ru_cs), -sum_of(ru_cc)
-    K[2, 0], K[2, 1], K[2, 2], K[2, 3], K[2, 4] = sum_of(rx_s), sum_of(rr_cs), sum_of(rr_ss), sum_of(ru_ss), -sum_of(ru_cs)
-    K[3, 0], K[3, 1], K[3, 2], K[3, 3], K[3, 4] = sum_of(ux_s), sum_of(ur_cs), sum_of(ur_ss), sum_of(uu_ss), -sum_of(uu_cs)
-    K[4, 0], K[4, 1], K[4, 2], K[4, 3], K[4, 4] = (
-        -sum_of(ux_c),
-        -sum_of(ur_cc),
-        -sum_of(ur_cs),
-        -sum_of(uu_cs),
-        sum_of(uu_cc),
-    )
-
-
-@jit(void(MATRIX, float64, MATRIX, int64, int64, VECTOR, MATRIX))
-def add_couples(table, arm, work, direction, row, f, K):
-    """Add the couples of tangential forces on the balls' sections of the ring [N m] to f (5,), their derivatives to K (5, 5) or (0, 0).
-
-    Parameters
-    ----------
-    work : work[row] = couple (Z,), its derivative by the section's turn side u (Z,);  the next two rows, axial (Z,) and radial (Z,) each:
-        derivative of the ball's force by that turn, of the couple by e
-    """
-    none = spread(0.0)
-    tilt_y, tilt_z, xu_c, xu_s, ux_c, ux_s = none, none, none, none, none, none
-    ru_cc, ru_cs, ru_ss, ur_cc, ur_cs, ur_ss, uu_cc, uu_cs, uu_ss = none, none, none, none, none, none, none, none, none
-    z = table.shape[0]
-    for k in range(0, z, WIDTH):
-        live = live_of(k, z)
-        (c, s), (couple, turn) = pair_of(work, direction, k, live), pair_of(work, row, k, live)
-        (xu, ru), (ux, ur) = pair_of(work, row + 1, k, live), pair_of(work, row + 2, k, live)
-        side, lever = column_of(table, k, SIDE, live), column_of(table, k, LEVER, live)
-        couple, ru, ur = side * couple, side * ru, side * ur
-        cc, cs, ss = c * c, c * s, s * s
-        uu = (arm + column_of(table, k, OWN_TILT_ARM, live)) * (xu + ux) - lever * (ru + ur) + turn
-        tilt_y += couple * s
-        tilt_z += couple * c
-        xu_c += xu * c
-        xu_s += xu * s
-        ux_c += ux * c
-        ux_s += ux * s
-        ru_cc += ru * cc
-        ru_cs += ru * cs
-        ru_ss += ru * ss
-        ur_cc += ur * cc
-        ur_cs += ur * cs
-        ur_ss += ur * ss
-        uu_cc += uu * cc
-        uu_cs += uu * cs
-        uu_ss += uu * ss
-    f[3] += sum_of(tilt_y)
-    f[4] -= sum_of(tilt_z)
-    if K.size == 0:
-        return
-    for i, by_y, by_z in ((0, xu_s, xu_c), (1, ru_cs, ru_cc), (2, ru_ss, ru_cs), (3, uu_ss, uu_cs), (4, -uu_cs, -uu_cc)):
-        K[i, 3] += sum_of(by_y)
-        K[i, 4] -= sum_of(by_z)
-    for j, of_y, of_z in ((0, ux_s, ux_c), (1, ur_cs, ur_cc), (2, ur_ss, ur_cs)):
-        K[3, j] += sum_of(of_y)
-        K[4, j] -= sum_of(of_z)
+        seat, stiffness = seats_of(k, live, arm, table, work, direction), tensors_of(work, row, k, live)
+        total = with_tangent(total, seat, stiffness, none, none, spread(0.0))
+    put_tangent(total, K)
 
 
 #: Rows of the solvers of balls with two unknowns, see there: groove centre e [m] and its velocity [m/s], directions of a ball's contacts
@@ -273,6 +268,17 @@ def offsets_of(k, scalars, table):
     """Distances of ball k and the inner and the outer groove centre at first touch [m]."""
     inner = scalars[OFFSET_INNER] + table[k, OWN_OFFSET_INNER]
     return inner, scalars[OFFSET_OUTER] + table[k, OWN_OFFSET_OUTER]
+
+
+@jit(PAIR(int64, float64, float64, VECTOR, MATRIX), inline=True)
+def first_place(k, ea, er, scalars, table):
+    """Where ball k begins with its inner groove centre at e: on the line of the groove centres, or on its seat on the outer race."""
+    li, lo = offsets_of(k, scalars, table)
+    length = np.sqrt(ea * ea + er * er)
+    if length > li + lo:
+        scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
+        return Pair(scale * ea, scale * er)
+    return Pair(0.0, lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0))
 
 
 @jit(void(CONTACTS, VECTOR, MATRIX), inline=True)
@@ -389,19 +395,6 @@ def accept_balls(scalars, dt, ball, before, history, trial):
             before[k, c], ball[k, c] = last, now
             history[k, c] = now if is_slip else (0.5 * last - 2.0 * now) * inverse
             trial[k, c] = now if is_slip else 2.0 * now - last
-
-
-class Seat(NamedTuple):
-    """How a ball's meridian plane meets the ring: azimuth, radius of the tilts' lever [m], side (+1, -1), lever X [m]."""
-
-    cosine: float
-    sine: float
-    arm: float
-    side: float
-    lever: float
-
-
-SEAT = types.NamedUniTuple(float64, 5, Seat)
 
 
 @jit(SEAT(int64, float64, MATRIX, MATRIX, int64), inline=True)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from numba import float64, int64, types, void
+from numba import float64, int64, types
 from numba.extending import register_jitable
 
 from raceway.core.jit import jit
-from raceway.core.lanes import LANES, MASK, angle_of, larger, root, spread, take, where
+from raceway.core.lanes import LANES, MASK, angle_of, any_of, larger, root, spread, take, where
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
-from raceway.core.ring.kernels.tensors import LANES_PAIR, LANES_TENSOR, Pair, Tensor, pair_of, put_pair
+from raceway.core.ring.kernels.tensors import LANES_PAIR, LANES_TENSOR, Pair, Tensor, pair_of
 from raceway.core.signatures import MATRIX, VECTOR
 
 #: Rows of ``work`` beyond the law's and those of ``layout.approach``, two quantities of a ball each: the second one begins at Z + k.
@@ -98,52 +98,18 @@ def gyroscopic_moment(inner, outer, ratio, scale):
     return Moment(part * so * rest, part * so * (ratio * si + rest * sine), part * rest * (co - so * sine))
 
 
-@jit(void(MATRIX, int64, MASK, TANGENTIALS), inline=True)
-def put_tangential(work, k, live, h):
-    """Keep the tangential forces of balls from k on."""
-    put_pair(work, TANGENTIAL, k, live, h.inner, h.outer)
-    put_pair(work, TANGENTIAL + 1, k, live, h.inner_by_length, h.outer_by_length)
-    put_pair(work, TANGENTIAL + 2, k, live, h.inner_by_angle, h.outer_by_angle)
-    put_pair(work, TANGENTIAL + 3, k, live, h.inner_by_other, h.outer_by_other)
-    put_pair(work, TANGENTIAL + 4, k, live, h.inner_by_shift, h.outer_by_shift)
-    put_pair(work, TANGENTIAL + 5, k, live, h.couple, h.couple_by_length)
-    put_pair(work, TANGENTIAL + 6, k, live, h.couple_by_inner, h.couple_by_outer)
-    put_pair(work, TANGENTIAL + 7, k, live, h.couple_by_turn, h.inner_by_turn)
-    put_pair(work, TANGENTIAL + 8, k, live, h.grows, h.couple_by_shift)
-
-
 @jit(TANGENTIALS(MATRIX, int64, MASK), inline=True)
 def tangential_of(work, k, live):
     """The tangential forces of balls from k on that were kept."""
-    inner, outer = pair_of(work, TANGENTIAL, k, live)
-    inner_by_length, outer_by_length = pair_of(work, TANGENTIAL + 1, k, live)
-    inner_by_angle, outer_by_angle = pair_of(work, TANGENTIAL + 2, k, live)
-    inner_by_other, outer_by_other = pair_of(work, TANGENTIAL + 3, k, live)
-    inner_by_shift, outer_by_shift = pair_of(work, TANGENTIAL + 4, k, live)
-    couple, couple_by_length = pair_of(work, TANGENTIAL + 5, k, live)
-    couple_by_inner, couple_by_outer = pair_of(work, TANGENTIAL + 6, k, live)
-    couple_by_turn, inner_by_turn = pair_of(work, TANGENTIAL + 7, k, live)
-    grows, couple_by_shift = pair_of(work, TANGENTIAL + 8, k, live)
+    at, by_length = pair_of(work, TANGENTIAL, k, live), pair_of(work, TANGENTIAL + 1, k, live)
+    by_angle, by_other = pair_of(work, TANGENTIAL + 2, k, live), pair_of(work, TANGENTIAL + 3, k, live)
+    by_shift, couple = pair_of(work, TANGENTIAL + 4, k, live), pair_of(work, TANGENTIAL + 5, k, live)
+    by_angles, by_turn = pair_of(work, TANGENTIAL + 6, k, live), pair_of(work, TANGENTIAL + 7, k, live)
+    rest = pair_of(work, TANGENTIAL + 8, k, live)
     return Tangential(
-        inner,
-        outer,
-        inner_by_length,
-        outer_by_length,
-        inner_by_angle,
-        outer_by_angle,
-        inner_by_other,
-        outer_by_other,
-        inner_by_shift,
-        outer_by_shift,
-        couple,
-        couple_by_length,
-        couple_by_inner,
-        couple_by_outer,
-        couple_by_turn,
-        inner_by_turn,
-        grows,
-        couple_by_shift,
-    )
+        at[0], at[1], by_length[0], by_length[1], by_angle[0], by_angle[1], by_other[0], by_other[1], by_shift[0], by_shift[1],
+        couple[0], couple[1], by_angles[0], by_angles[1], by_turn[0], by_turn[1], rest[0], rest[1],
+    )  # fmt: skip
 
 
 class TractionForce(NamedTuple):
@@ -154,7 +120,7 @@ class TractionForce(NamedTuple):
     by_normal: float
 
 
-@jit(types.NamedUniTuple(LANES, 3, TractionForce)(LANES, LANES, float64), inline=True)
+@jit(types.NamedUniTuple(LANES, 3, TractionForce)(LANES, LANES, LANES), inline=True)
 def traction_within(demand, normal, limit):
     """demand / sqrt(1 + (demand / (limit normal))^2): all of a small part, never more than ``limit`` times the normal force."""
     most = limit * normal
@@ -164,8 +130,34 @@ def traction_within(demand, normal, limit):
     return TractionForce(most * a, m * m * m, limit * (a * a * a))
 
 
-@jit(TANGENTIALS(int64, MASK, CONTACTS, TANGENTIALS, VECTOR, MATRIX), inline=True)
-def with_gyroscopic(k, live, contacts, rub, scalars, work):
+class Rolling(NamedTuple):
+    """What moments take of the constants, see ``layout``: D [m], D / d_m, scale [N m], radius of the inner groove [m], shares, traction."""
+
+    diameter: float
+    ratio: float
+    scale: float
+    groove: float
+    share_inner: float
+    share_outer: float
+    limit: float
+
+
+ROLLING = types.NamedUniTuple(LANES, 7, Rolling)
+#: Where they stand.
+ROLLING_SCALARS = (
+    ring.DIAMETER, ring.BALL_OVER_PITCH, ring.GYROSCOPIC, ring.OFFSET_INNER, ring.SHARE_INNER, ring.SHARE_OUTER, ring.TRACTION
+)  # fmt: skip
+
+
+@register_jitable
+def no_tangential():
+    """Of contacts without tangential forces."""
+    o = spread(0.0)
+    return Tangential(o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o, o)
+
+
+@jit(TANGENTIALS(int64, MASK, CONTACTS, TANGENTIALS, ROLLING, MATRIX), inline=True)
+def with_gyroscopic(k, live, contacts, rub, rolling, work):
     """Add what the moments of the balls from k on do to their tangential forces and to the couples on the ring's section.
 
     T = share * M / D with M = J w_R w_c sin(beta): ``gyroscopic_moment``. The inner race carries no more than its
@@ -175,15 +167,11 @@ def with_gyroscopic(k, live, contacts, rub, scalars, work):
     Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapters 2 and 3 (control of the outer race).
     """
     inner, outer = contacts
-    diameter, ratio, scale = scalars[ring.DIAMETER], scalars[ring.BALL_OVER_PITCH], scalars[ring.GYROSCOPIC]
-    groove, limit, whole = scalars[ring.OFFSET_INNER] + 0.5 * diameter, scalars[ring.TRACTION], 2.0 / diameter
-    share_i, share_o, own = (
-        spread(scalars[ring.SHARE_INNER] / diameter),
-        spread(scalars[ring.SHARE_OUTER] / diameter),
-        spread(0.0),
-    )
+    diameter, ratio, scale, offset, share_i, share_o, limit = rolling
+    groove, whole, own = offset + 0.5 * diameter, 2.0 / diameter, spread(0.0)
+    share_i, share_o = share_i / diameter, share_o / diameter
     moment, by_i, by_o = gyroscopic_moment(Pair(inner.axial, inner.radial), Pair(outer.axial, outer.radial), ratio, scale)
-    if limit > 0.0:
+    if any_of(limit > 0.0):
         # Dashpots carry no traction: it is limited by the elastic forces, and rates of gaps leave it alone.
         (rate_i, rate_o), (by_rate_i, by_rate_o) = (
             pair_of(work, rows.GAP_RATE, k, live),
@@ -310,6 +298,19 @@ class Balance(NamedTuple):
 
 
 BALANCE = types.NamedTuple((*(LANES_TENSOR,) * 5, LANES_PAIR), Balance)
+
+
+@jit(BALANCE(CONTACTS, LANES, LANES), inline=True)
+def plain_balance(contacts, elastic, viscous):
+    """``linear_balance`` of balls without tangential forces."""
+    (na, nr, si, fi, ki), (oa, orr, so, fo, ko) = contacts
+    none, wi, wo = spread(0.0), where(si > 0.0, fi / si, 0.0), fo / so
+    x, y, far = elastic - wi, ki - wi, ko - wo
+    e = Tensor(x * na * na + wi, x * na * nr, x * na * nr, x * nr * nr + wi)
+    p = Tensor(-y * na * na - wi, -y * na * nr, -y * na * nr, -y * nr * nr - wi)
+    j = Tensor(p.aa - far * oa * oa - wo, p.ar - far * oa * orr, p.ra - far * oa * orr, p.rr - far * orr * orr - wo)
+    m = Tensor(viscous * na * na, viscous * na * nr, viscous * na * nr, viscous * nr * nr)
+    return Balance(e, p, e, j, m, Pair(none, none))
 
 
 @jit(BALANCE(CONTACTS, LANES, LANES, TANGENTIALS), inline=True)

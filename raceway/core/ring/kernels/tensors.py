@@ -117,3 +117,10 @@ def put_tensors(work, row, k, live, tensor):
     """The same of the balls from k on, in lanes."""
     put_pair(work, row, k, live, tensor.aa, tensor.ar)
     put_pair(work, row + 1, k, live, tensor.ra, tensor.rr)
+
+
+@jit(LANES_TENSOR(MATRIX, int64, int64, MASK), inline=True)
+def tensors_of(work, row, k, live):
+    """The matrices of the balls from k on that ``put_tensors`` put there."""
+    (aa, ar), (ra, rr) = pair_of(work, row, k, live), pair_of(work, row + 1, k, live)
+    return Tensor(aa, ar, ra, rr)
