@@ -22,9 +22,13 @@ SCENES = {
         {"bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 120.0}, "kinematics": TURNING},
         {"load.axial": (-600.0, 600.0), "load.radial[1]": (-500.0, 500.0)} | SPEED,
     ),
-    "steep tandem": (
+    "steep and fast": (
+        {"bearing": {"preset": "7014C"}, "kinematics": TURNING | {"gyroscopic": "none"}, "supports": {"tilt": "locked"}},
+        LOADS | {"kinematics.spin_speed_rpm": (10.0, 60_000.0), "bearing.contact_angle_deg": (5.0, 40.0)},
+    ),
+    "tandem": (
         {"bearing": {"preset": "B7206C", "arrangement": "DT", "ball_count": 7}, "kinematics": TURNING, "supports": {"tilt": "locked"}},
-        LOADS | SPEED | {"bearing.contact_angle_deg": (10.0, 40.0)},
+        LOADS | SPEED,
     ),
     "penalty, dashpots": (
         {"kinematics": TURNING, "contact": {"kind": "penalty", "time_constant": 1e-6}, "bearing": {"preset": "B7206C", "ball_count": 3}},
@@ -71,7 +75,7 @@ def test_each_point_is_where_it_balances_alone(loop):
 
 
 def test_few_points_are_left_to_the_trust_region(loop):
-    """Of ranges as wide as these at most one in ten."""
+    """Of ranges as wide as these at most one in twenty."""
     _, kernels, linear, points, like = loop
     width, states = 8 * points.table.shape[1], States(*(np.full_like(part, -7) for part in like))
     params, memory = np.empty((width, points.params.shape[2])), np.zeros((width, 0))
@@ -79,7 +83,7 @@ def test_few_points_are_left_to_the_trust_region(loop):
         work, of_points = np.zeros((WORK_ROWS, width)), np.zeros((POINT_ROWS, 4))
         lockstep(kernels.law, linear, first, points, states, params, memory, work, of_points)
     assert set(states.status) <= {0, -1}
-    assert (states.status == 0).mean() > 0.9
+    assert (states.status == 0).mean() > 0.95
 
 
 def test_what_balances_without_hold_is_no_equilibrium(monkeypatch):
