@@ -68,7 +68,8 @@ def use():
 
     yield add
     for module in modules:
-        registry._remove(module, [e for e in registry.all() if e.source.startswith("test ")])
+        registry.manager.unregister(module)
+    registry._forget([e for e in registry.all() if e.source.startswith("test ")])
 
 
 @pytest.fixture
