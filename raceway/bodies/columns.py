@@ -5,7 +5,7 @@ The builders are those of one point (``raceway.bodies.basis``, ``raceway.bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, TypeVar
 
@@ -33,7 +33,6 @@ from raceway.core.signatures import FORCE, Linear
 from raceway.framework.contracts import ContactPairs, Excitation, SolvedPoints
 from raceway.framework.duties import force_params, law_params, reach_of, renews
 from raceway.framework.probe import plugin_kernel
-from raceway.planning.columns import column_problem
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.scene.bearing import DIMENSIONS
@@ -184,7 +183,7 @@ class ColumnBearing:
         scalars, table = part.points.scalars, part.points.table
         scalars[:, ring.REST_AXIAL : ring.TILT_ARM + 1] += basis.growth.common - before.common[points]
         table[..., ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.by_ball - before.by_ball[points]
-        return _running(attrs.evolve(part, problem=problem, basis=basis))
+        return running_columns(attrs.evolve(part, problem=problem, basis=basis))
 
     def _system(self, row: int) -> System:
         """The bearing at one point, at rest."""
@@ -201,17 +200,19 @@ class ColumnBearing:
     def _preloaded(self) -> ColumnBearing:
         """With the preload of a set built in: the axial approach of the rows of either direction under it, at standstill."""
         bearing, points, basis = self.problem.bearing, self.points, self.basis
-        parts = (getattr(self.problem, name) for name in _OF_PRELOAD)
+        parts = (getattr(self.problem, name) for name in OF_PRELOAD)
         # Loads and speeds are none of a preload's: where nothing else differs, one point stands for all.
         alike = self.problem.traits.contacts_alone and not any(map(has_columns, parts))
         alike = alike and bool(np.all(points.params == points.params[:1]))
-        some_points = slice(1) if alike else slice(None)
-        scalars, table = points.scalars[some_points].copy(), points.table[some_points].copy()
-        sides = np.array(bearing.rows)[basis.row, 0]
+        some_points = np.arange(1 if alike else len(self.faults))
+        mounted, sides = _rows(points, some_points), np.array(bearing.rows)[basis.row, 0]
+        scalars, table = mounted.scalars, mounted.table
         scalars[:, ring.GYROSCOPIC] = 0.0
-        common, by_ball = basis.growth.common, basis.growth.by_ball
-        scalars[:, ring.REST_AXIAL : ring.TILT_ARM + 1] -= common[some_points] if common.ndim > 1 else common
-        table[..., ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] -= by_ball[some_points] if by_ball.ndim > 2 else by_ball
+        for numbers, first, growth in (
+            (scalars, ring.REST_AXIAL, basis.growth.common), (table, ring.OWN_REST_AXIAL, basis.growth.by_ball)
+        ):  # fmt: skip
+            grown = numbers[..., first : first + 5]
+            grown -= np.broadcast_to(growth, (len(self.faults), *grown.shape[1:]))[some_points]
         table[..., ring.CENTRIFUGAL], table[..., [ring.SIDE, ring.LEVER]] = 0.0, (1.0, 0.0)
         n, faults = len(scalars), self.faults.copy()
         none = np.zeros((n, 5))
@@ -222,8 +223,7 @@ class ColumnBearing:
             guess, load = none.copy(), none.copy()
             guess[:, 0], load[:, 0] = 0.05 * basis.geometry.centre_distance, force
             contacts = np.concatenate([balls, balls + len(sides)])
-            params = points.params[some_points][:, contacts].copy()
-            rows = Points(scalars, table[:, balls].copy(), params, load, np.zeros(n), guess)
+            rows = Points(scalars, table[:, balls].copy(), mounted.params[:, contacts].copy(), load, np.zeros(n), guess)
             states = _empty_states(n, len(balls), self.kernels.columns)
             equilibria(self.kernels, self.linear._replace(free=_AXIAL), rows, states)
             points.table[:, balls, ring.SHIFT] = np.where(pressed[:, None], states.q[:, :1], 0.0)
@@ -267,48 +267,11 @@ class ColumnBearing:
         return inner, outer
 
 
-#: Tables of a scene that a preload depends on, and those that the bearing is built from beside its speed and loads.
-_OF_PRELOAD = ("bearing", "bodies", "contact", "mounting")
-_BUILT = (*_OF_PRELOAD, "kinematics")
+#: Tables of a scene that a preload depends on.
+OF_PRELOAD = ("bearing", "bodies", "contact", "mounting")
 
 
-@attrs.frozen(eq=False, slots=False)
-class Builder:
-    """Bearings at columns of a scene's keys; what loads leave as it is, is built once.
-
-    Attributes
-    ----------
-    plan : of the scene with the numbers of one point
-    """
-
-    plan: ScenePlan
-
-    @np.errstate(all="ignore")  # of points that contradict themselves
-    def at(self, columns: Mapping[str, np.ndarray]) -> ColumnBearing:
-        """The bearing at the points of columns (n,)."""
-        return _running(self.mounted(columns))
-
-    @np.errstate(all="ignore")
-    def mounted(self, columns: Mapping[str, np.ndarray]) -> ColumnBearing:
-        """The same with the contact law as at standstill."""
-        own, problem = self.plan.problem, column_problem(self.plan.problem, columns)
-        bearing = None
-        if own.traits.contacts_alone and all(getattr(problem, name) is getattr(own, name) for name in _BUILT):
-            speeds = ((p.spin_speed, p.time_constant) for p in (own, problem))
-            if problem.excitation is own.excitation or all(np.all(a == b) for a, b in zip(*speeds, strict=True)):
-                bearing = self._unloaded and self._unloaded.under(problem)
-        return problem.body_kind.columns(self.plan) if bearing is None else bearing
-
-    @cached_property
-    def _unloaded(self) -> ColumnBearing | None:
-        """At one point; None where a plug-in has changed what the law makes of its contacts."""
-        one = attrs.evolve(self.plan.problem, points=(1,))
-        bearing: ColumnBearing = one.body_kind.columns(self.plan)
-        params = law_params(one.contact.law, bearing.pairs)
-        return bearing if np.array_equal(params.ravel(), bearing.points.params.ravel()) else None
-
-
-def _running(bearing: ColumnBearing) -> ColumnBearing:
+def running_columns(bearing: ColumnBearing) -> ColumnBearing:
     """A bearing at n points with its law's parameters at their running speeds: ``renew`` of columns, of which those that fit rest."""
     if not renews(bearing.problem.contact.law):
         return bearing
@@ -344,7 +307,7 @@ def _running(bearing: ColumnBearing) -> ColumnBearing:
 def ball_columns(
     problem: Problem, plan: ScenePlan, deformed: Callable[[Problem, Basis, Tables], tuple[Tables, np.ndarray]] | None = None
 ) -> ColumnBearing:
-    """Balls in grooves, for ``Builder``.
+    """Balls in grooves, for ``raceway.bodies.builder``.
 
     Parameters
     ----------

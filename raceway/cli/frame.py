@@ -304,7 +304,7 @@ def keep_state(error: RacewayError, scene: Scene, folder: Path) -> None:
     with suppress(OSError):
         if older.is_file():
             older.replace(older.with_name("result-older.json"))
-    arrays = {name: np.asarray(value) for name, value in error.state.items()}
+    arrays: Tables = {name: np.asarray(value) for name, value in error.state.items()}
     content = {
         "title": scene.title,
         "error": {"kind": type(error).__name__, "message": str(error)},
@@ -315,7 +315,7 @@ def keep_state(error: RacewayError, scene: Scene, folder: Path) -> None:
         paths = [write_json(without_nan(content), folder / "failure.json")]
         if arrays:
             memory = io.BytesIO()
-            np.savez(memory, **arrays)  # type: ignore[arg-type]
+            np.savez(memory, **arrays)
             paths.append(write_whole(memory.getvalue(), folder / "last-good-state.npz"))
     except RacewayError as why:
         error.add_note(f"the last good state is lost: {why}")

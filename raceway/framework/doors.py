@@ -47,13 +47,7 @@ def door(function: F) -> F:
         kind, markers = _parts(parameter.annotation, function.__globals__)
         plain.append(parameter.replace(annotation=kind))
         text = kind if isinstance(kind, str) else inspect.formatannotation(kind)
-        steps = [  # of a rule, which raises or gives None
-            each
-            if isinstance(each, Reader)
-            else reader(each.words, lambda value, rule=each: rule(None, None, value) is None)  # type: ignore[misc]
-            for each in markers
-            if hasattr(each, "words")
-        ]
+        steps = [each if isinstance(each, Reader) else _ruled(each) for each in markers if hasattr(each, "words")]
         if not any(each in steps for each in markers):  # whose reader takes the place of the type's
             steps = [*filter(None, [_TYPES.get(text.removesuffix(" | None"))]), *steps]
         if steps and parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
@@ -90,6 +84,11 @@ def _parts(annotation: Any, names: dict[str, Any]) -> tuple[Any, tuple[Any, ...]
     if get_origin(stands_for) is Annotated:
         return annotation if isinstance(annotation, str) else stands_for.__origin__, stands_for.__metadata__
     return annotation, ()
+
+
+def _ruled(rule: Any) -> Reader:
+    """Of a rule, which raises or gives None."""
+    return reader(rule.words, lambda value: rule(None, None, value) is None)
 
 
 def member(argument: str, value: object, choices: Collection[str]) -> Any:

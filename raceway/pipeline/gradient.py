@@ -21,7 +21,8 @@ from typing import TypeAlias
 import attrs
 import numpy as np
 
-from raceway.bodies.columns import Builder, impedance, solved_columns
+from raceway.bodies.builder import Builder
+from raceway.bodies.columns import impedance, solved_columns
 from raceway.bodies.model import Equilibrium, Model, model_of
 from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.orbits import neighbours

@@ -11,7 +11,8 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import AMPLITUDE, KNOWN, OF_ORBITS, Z_IMAG, Z_REAL, C, K, Quantity, plugin_quantities
-from raceway.bodies.columns import Builder, ColumnBearing, impedance, solved_columns
+from raceway.bodies.builder import Builder
+from raceway.bodies.columns import ColumnBearing, impedance, solved_columns
 from raceway.core.periodic.floquet import NEUTRAL
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.ring import COORDINATES

@@ -141,7 +141,7 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
     footer += "All numbers: article-elastic.json and article-elastic.csv beside this page."
     out = Page("The article’s own model: elastic rings and balls", content["title"], footer)
     by_name = {picture.name: picture for picture in pictures}
-    static = _of_phase(content, "static")
+    static = [row for row in content["rows"] if row["phase"] == "static"]
     elements = {row["cost"]["elements"] for row in content["rows"] if row["bodies"] == "elastic"} - {None}
     size = f"{max(elements):,}".replace(",", "\u202f") + " hexahedra" if elements else "no run that came to an end"
     out.text(
@@ -233,10 +233,6 @@ _AT_REST = (
     "Displacements and stiffness; the last four columns are differences from {reference} bodies, ball loads over the largest"
 )
 _IN_MOTION = "Identified at the operating point; K, C, |Z| without unit: differences from {reference} bodies; transient: part of |Z| by which turns differ"
-
-
-def _of_phase(content: ReadTables, phase: str) -> list[Tables]:
-    return [row for row in content["rows"] if row["phase"] == phase]
 
 
 def in_short(content: ReadTables) -> list[str]:

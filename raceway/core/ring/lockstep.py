@@ -32,7 +32,7 @@ from raceway.core.ring.kernels.tensors import (
     put_pair,
     put_tensors,
     tensors_of,
-)  # fmt: skip
+)
 from raceway.core.ring.states import LEAST, POINTS, STATES, TOLERANCE
 from raceway.core.signatures import LAW_POINTER, LINEAR, MATRIX, VECTOR
 
@@ -158,7 +158,7 @@ def _eliminated(k, live, rolls, rolling, work):
     That is its force [N] with the tangent by e, its couple [N m] with that, the size of its contacts' forces, and whether it still moves.
     """
     z, contacts, h = work.shape[1] // 2, _contacts(k, live, work), at.no_tangential()
-    (ia, ir, si, fi, ki), (oa, orr, so, fo, _) = contacts
+    (ia, ir, _, fi, ki), (oa, orr, _, fo, _) = contacts
     balance = at.plain_balance(contacts, ki, spread(0.0))
     if rolls:
         h = at.with_gyroscopic(k, live, contacts, h, rolling, work)
@@ -166,11 +166,8 @@ def _eliminated(k, live, rolls, rolling, work):
     force_a, force_r = fi * ia + h.inner * ir, fi * ir - h.inner * ia
     ra = force_a - fo * oa - h.outer * orr
     rr = force_r - fo * orr + h.outer * oa + take(work, REACH, z + k, live)
-    j, trace = balance.j, balance.j.aa + balance.j.rr
-    det, size = j.aa * j.rr - j.ar * j.ra, larger(trace, -trace)
-    shift = where(larger(det, -det) > 1e-14 * trace * trace, 0.0, -1e-7 * size - 1.0)
-    j = Tensor(j.aa + shift, j.ar, j.ra, j.rr + shift)
-    scale, none = 1.0 / (j.aa * j.rr - j.ar * j.ra), Pair(spread(0.0), spread(0.0))
+    j, none = at.regular(balance.j), Pair(spread(0.0), spread(0.0))
+    scale = 1.0 / (j.aa * j.rr - j.ar * j.ra)
     inverse = Tensor(j.rr * scale, -j.ar * scale, -j.ra * scale, j.aa * scale)
     zero, p = Tensor(none.axial, none.axial, none.axial, none.axial), balance.p
     step, follows, minus = (
@@ -181,13 +178,12 @@ def _eliminated(k, live, rolls, rolling, work):
     put_pair(work, STEP, k, live, step.axial, step.radial)
     put_tensors(work, BY_CENTRE, k, live, follows)
     (gap_i, gap_o), lo = pair_of(work, rows.GAP, k, live), take(work, OFFSET, z + k, live)
-    shallow = where(gap_i >= 0.0, -gap_o, where(gap_o >= 0.0, -gap_i, smaller(-gap_i, -gap_o)))
-    moves = root(step.axial * step.axial + step.radial * step.radial) > larger(_SETTLED * shallow, 1e-14 * lo)
+    moves = root(step.axial * step.axial + step.radial * step.radial) > larger(
+        _SETTLED * at.shallower(gap_i, gap_o), 1e-14 * lo
+    )
     couple, by_centre = none.axial, none
     if rolls:
-        stretch, angle, far = h.couple_by_length, h.couple_by_inner / si, h.couple_by_outer / so
-        by_e = Pair(stretch * ia + angle * ir, stretch * ir - angle * ia)
-        by_p = Pair(far * orr - by_e.axial, -far * oa - by_e.radial)
+        by_e, by_p = at.couple_slopes(contacts, h)
         couple = h.couple + by_p.axial * step.axial + by_p.radial * step.radial
         by_centre = less_row(by_e, Pair(-by_p.axial, -by_p.radial), follows)
     force, stiffness = less_column(Pair(force_a, force_r), minus, step), less(balance.e, minus, follows)

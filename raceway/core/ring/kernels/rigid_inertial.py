@@ -14,7 +14,7 @@ import numpy as np
 from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.lanes import LANES, MASK, WIDTH, any_of, larger, live_of, put, root, smaller, spread, take, where
+from raceway.core.lanes import LANES, MASK, WIDTH, any_of, larger, live_of, put, root, spread, take, where
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels import rolling as at
@@ -112,21 +112,15 @@ def _moving(k, live, rolls, attempt, ball_gain, scalars, work):
         long = root(da * da + dr * dr) > 1e-13
         too_far = (long & (size > 0.9999 * take(work, at.MERIT, z + k, live))) | (~long & too_far)
     back, (pa, pr) = active & too_far, pair_of(work, rows.PLACE, k, live)
-    # The shallower of the closed contacts sets the scale: under a light ring load the centrifugal force presses
-    # the ball far deeper into the outer race than the inner race is.  Below rounding nothing can be asked.
-    shallow = where(gap_i >= 0.0, -gap_o, where(gap_o >= 0.0, -gap_i, smaller(-gap_i, -gap_o)))
     lo, balance = take(work, rows.OFFSET, z + k, live), plain_balance(contacts, inner.stiffness, spread(0.0))
-    least = larger(1e-8 * shallow, 1e-14 * lo)
+    least = larger(1e-8 * at.shallower(gap_i, gap_o), 1e-14 * lo)  # below rounding nothing can be asked
     if rolls:
         balance = linear_balance(contacts, inner.stiffness, spread(0.0), h)
         least = 1e-10 * larger(larger(-gap_i, -gap_o), 1e-12)
     # -J^-1 R, regular where J = dR/dp is not, and no longer than a fifth of the groove's radius.
-    j, trace = balance.j, balance.j.aa + balance.j.rr
-    det = j.aa * j.rr - j.ar * j.ra
-    shift = where(larger(det, -det) > 1e-14 * trace * trace, 0.0, -1e-7 * larger(trace, -trace) - 1.0)
-    jaa, jrr, longest = j.aa + shift, j.rr + shift, 0.2 * lo
-    inverse = -1.0 / (jaa * jrr - j.ar * j.ra)
-    sa, sr = (jrr * ra - j.ar * rr) * inverse, (jaa * rr - j.ra * ra) * inverse
+    j, longest = at.regular(balance.j), 0.2 * lo
+    inverse = -1.0 / (j.aa * j.rr - j.ar * j.ra)
+    sa, sr = (j.rr * ra - j.ar * rr) * inverse, (j.aa * rr - j.ra * ra) * inverse
     reach = root(sa * sa + sr * sr)
     scale = where(reach > longest, longest / reach, 1.0)
     sa, sr = sa * scale, sr * scale
@@ -185,10 +179,7 @@ def _condense(k, live, rolls, ball_gain, work):
     u, by_turn, by_centre = Pair(none, none), Pair(none, none), Pair(none, none)
     if rolls:
         # The couple by e, and by the ball's place; turning the section moves both forces alike.
-        stretch, angle = h.couple_by_length, h.couple_by_inner / where(inner.length > 0.0, inner.length, 1.0)
-        by_e = Pair(stretch * inner.axial + angle * inner.radial, stretch * inner.radial - angle * inner.axial)
-        angle = h.couple_by_outer / outer.length
-        by_place = Pair(angle * outer.radial - by_e.axial, -angle * outer.axial - by_e.radial)
+        by_e, by_place = at.couple_slopes(contacts, h)
         u, couple = tensors.row_times_adjugate(by_place, b.j), h.couple + by_place.axial * da + by_place.radial * dr
         u = Pair(u.axial * inverse, u.radial * inverse)
         by_turn, by_centre = tensors.less_column(b.by_turn, t, b.by_turn), tensors.less_row(by_e, u, b.x)

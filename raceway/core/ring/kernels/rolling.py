@@ -8,7 +8,7 @@ from numba import float64, int64, types
 from numba.extending import register_jitable
 
 from raceway.core.jit import jit
-from raceway.core.lanes import LANES, MASK, angle_of, any_of, larger, root, spread, take, where
+from raceway.core.lanes import LANES, MASK, angle_of, any_of, larger, root, smaller, spread, take, where
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.tensors import LANES_PAIR, LANES_TENSOR, Pair, Tensor, pair_of
@@ -330,6 +330,36 @@ def linear_balance(contacts, elastic, viscous, h):
     x = Tensor(e.aa - to_a * oi_a, e.ar - to_a * oi_r, e.ra - to_r * oi_a, e.rr - to_r * oi_r)
     m = Tensor(viscous * na * na, viscous * na * nr, viscous * na * nr, viscous * nr * nr)
     return Balance(e, p, x, j, m, Pair(h.inner_by_turn * nr, -h.inner_by_turn * na))
+
+
+@jit(LANES_TENSOR(LANES_TENSOR), inline=True)
+def regular(j):
+    """J of balls; of those that nothing holds in some direction, with a spring of 1 N/m or more that does."""
+    trace, det = j.aa + j.rr, j.aa * j.rr - j.ar * j.ra
+    shift = where(larger(det, -det) > 1e-14 * trace * trace, 0.0, -1e-7 * larger(trace, -trace) - 1.0)
+    return Tensor(j.aa + shift, j.ar, j.ra, j.rr + shift)
+
+
+@jit(LANES(LANES, LANES), inline=True)
+def shallower(inner, outer):
+    """Approach of the shallower of the closed contacts [m], of both gaps.
+
+    Notes
+    -----
+    It sets the scale of a ball's steps: under a light ring load the centrifugal force presses the ball far deeper into the outer race than
+    the inner race is.
+    """
+    return where(inner >= 0.0, -outer, where(outer >= 0.0, -inner, smaller(-inner, -outer)))
+
+
+@jit(types.UniTuple(LANES_PAIR, 2)(CONTACTS, TANGENTIALS), inline=True)
+def couple_slopes(contacts, h):
+    """Derivatives of the couple on the ring's section by e, and by the ball's place [N]."""
+    inner, outer = contacts
+    stretch, angle = h.couple_by_length, h.couple_by_inner / where(inner.length > 0.0, inner.length, 1.0)
+    by_e = Pair(stretch * inner.axial + angle * inner.radial, stretch * inner.radial - angle * inner.axial)
+    angle = h.couple_by_outer / outer.length
+    return by_e, Pair(angle * outer.radial - by_e.axial, -angle * outer.axial - by_e.radial)
 
 
 @jit(LANES_TENSOR(CONTACT, LANES, LANES, LANES), inline=True)
