@@ -145,9 +145,9 @@ TWO_WAYS = [
 
 @pytest.mark.parametrize(("tables", "tolerances"), TWO_WAYS)
 def test_compiled_loops_give_what_samples_one_by_one_give(tables, tolerances, monkeypatch):
-    looped = rw.band(LOADED | tables, tolerances, count=16)
+    looped = rw.band(LOADED | tables, tolerances, count=8)
     monkeypatch.setattr("raceway.points.band._loop_rows", lambda scene, paths, numbers, nominal: [{}] * len(numbers))
-    single = rw.band(LOADED | tables, tolerances, count=16)
+    single = rw.band(LOADED | tables, tolerances, count=8)
     assert (looped.samples, looped.lost, looped.why) == (single.samples, single.lost, single.why)
     for name in ("nominal", "low", "high", "first", "total"):
         a, b = (getattr(one, name) for one in (looped, single))
@@ -199,7 +199,7 @@ def test_the_command_goes_on_with_what_is_kept(tmp_path):
     file.write_text(
         '[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[contact]\nfriction = 0.05\n[tolerances]\n"load.axial" = "±10 %"\n'
     )
-    words = ["band", str(file), "--out", str(tmp_path), "--samples", "8", "--processes", "0"]
+    words = ["band", str(file), "--out", str(tmp_path), "--samples", "2", "--processes", "0", "--no-pictures"]
     first = invoke(*words)
     assert first.exit_code == 0, first.output
     kept = (tmp_path / "points.sqlite").read_bytes()

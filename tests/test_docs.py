@@ -56,7 +56,7 @@ def test_a_law_written_from_the_page_is_short_conforms_and_runs_in_a_scene(folde
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=pytest.mark.slow) if name == "trapezoidal.py" else name for name in PLUGINS]
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in ("trapezoidal.py", "power_law.py"))) for name in PLUGINS]
 )
 def test_every_plugin_on_the_page_conforms(folder, name):
     registry = Registry(third_party=False)

@@ -112,7 +112,7 @@ def of_a_band() -> list[Figure]:
     odd = {
         name: dict.fromkeys(found.nominal, indices) for name, indices in {"total": [1.3, -0.2], "first": [1.1, -0.1]}.items()
     }
-    return [one.draw() for one in (found, lost, attrs.evolve(found, **odd))]
+    return [one.draw() for one in (lost, attrs.evolve(found, **odd))]
 
 
 def of_the_article() -> list[Figure]:

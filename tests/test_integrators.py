@@ -207,9 +207,13 @@ def scene(bodies, integrator):
     return scene_from_dict(tables, registry())
 
 
-@pytest.mark.parametrize("integrator", ["stepped", "by_numbers"])
+#: Points take seconds: once.
+WAYS = [(bodies, way) for bodies in BODIES for way in ("stepped", "by_numbers")]
+DEAR = {("nodal", "stepped"), ("elastic", "stepped"), ("elastic", "by_numbers")}
+
+
 @pytest.mark.parametrize(
-    "bodies", [pytest.param(name, marks=pytest.mark.slow) if name == "elastic" else name for name in BODIES]
+    ("bodies", "integrator"), [pytest.param(*way, marks=pytest.mark.slow if way in DEAR else ()) for way in WAYS]
 )
 def test_a_foreign_integrator_has_its_order_on_every_kind_of_bodies(bodies, integrator):
     """A force that grows over 0.1 ms: the error falls with the square of the step, from 10 to 20 and 40 steps."""

@@ -267,7 +267,7 @@ def test_pages_that_were_swapped_are_told(tmp_path):
     path = tmp_path / "s" / "points.sqlite"
     content, seen = path.read_bytes(), 0
     pages = [content[k : k + 4096] for k in range(0, len(content), 4096)]
-    for i, j in itertools.combinations(range(3, len(pages)), 2):
+    for i, j in itertools.pairwise(range(3, len(pages))):
         swapped = list(pages)
         swapped[i], swapped[j] = pages[j], pages[i]
         path.write_bytes(b"".join(swapped))

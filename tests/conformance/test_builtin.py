@@ -6,7 +6,8 @@ from raceway.extend import Registry
 from raceway.testing import check
 
 ENTRIES = list(Registry(third_party=False).all())
-DEAR = ("dask", "processes", "film", "elastic", "condensed", "cylindrical_rollers", "structured")  # own tests are quick
+#: Whose own tests are quick.
+DEAR = ("dask", "processes", "film", "elastic", "condensed", "cylindrical_rollers", "structured", "pictures")
 MARKS = {"gmsh": pytest.mark.needs("gmsh"), **dict.fromkeys(DEAR, pytest.mark.slow)}
 
 

@@ -51,7 +51,7 @@ def recovered(cells, growth, beside):
     return abs(found / shear - 1.0), abs(at / depth - 1.0), profile.cells_to(depth)
 
 
-@pytest.mark.parametrize("beside", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize("beside", [0.0, 0.3])
 def test_hertz_s_field_is_recovered_to_what_the_documents_say(beside):
     """docs/elastic.md: 1 % and 6 % from 2.4 elements down to the largest shear, 0.4 % and 1.5 % from 4; elements grow by 1.3."""
     for cells, fewest, size, place in ((4, 2.4, 0.01, 0.06), (8, 3.9, 0.004, 0.015)):

@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from checks.validation.browser.application import Application, Tab, expected, hurry
+from checks.validation.browser.application import Application, Tab, expected
 from checks.validation.browser.chromium import Browser
 from checks.validation.command_line import EXAMPLES, PATIENCE_S
 
@@ -216,8 +216,3 @@ def test_the_page_is_whole_and_fit_for_screen_readers(browser, application, widt
     ]
     assert serious == []
     tab.press("Compare two scenes")
-
-
-def test_random_changes_leave_no_stale_number(tab):
-    """A sequence of a person in a hurry; the night's are 200."""
-    assert hurry(tab, sequences=1, seed=1) == []

@@ -90,14 +90,10 @@ def history(values, kind, unit="NONE", **more):
 
 
 #: Response to the record's force: data type, order of the derivative, unit, direction and the factor that both make.
-RESPONSES = {
-    "displacement": (8, 0, "um", 3, 1e6),
-    "velocity": (11, 1, "m/s", 3, 1),
-    "acceleration": (12, 2, "g", -3, -0.1019716),
-}
+RESPONSES = {"displacement": (8, 0, "um", 3, 1e6), "acceleration": (12, 2, "g", -3, -0.1019716)}
 
 
-@pytest.mark.parametrize("response", RESPONSES)
+@pytest.mark.parametrize("response", ["displacement", "acceleration"])
 def test_k_of_time_histories_lies_within_its_interval(response, tmp_path):
     kind, order, unit, direction, size = RESPONSES[response]
     random, inside, time = np.random.default_rng(2), [], record()[0]
