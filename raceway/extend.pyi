@@ -103,9 +103,13 @@ from .answers.quantities import dry_damping_words as dry_damping_words
 from .answers.page import Cell as Cell
 from .answers.page import Page as Page
 from .answers.page import data_uri as data_uri
+from .answers.picture import Line as Line
+from .answers.picture import Plot as Plot
+from .answers.picture import draw_panels as draw_panels
 from .answers.picture import figure_png as figure_png
 from .answers.picture import given_axes as given_axes
 from .answers.picture import label_axes as label_axes
+from .answers.picture import name_ends as name_ends
 from .answers.picture import new_figure as new_figure
 from .answers.picture import save_figure as save_figure
 from .answers.picture import wrapped as wrapped
@@ -167,6 +171,7 @@ from .points.attractor import FAILED as FAILED
 from .points.attractor import Attractor as Attractor
 from .points.attractor import attractor_beside_run as attractor_beside_run
 from .points.attractor import attractor_from_rest as attractor_from_rest
+from .points.axes import axis_label as axis_label
 from .points.axes import box as box
 from .points.axes import is_number as is_number
 from .points.axes import numbers_at as numbers_at

@@ -203,7 +203,8 @@ def test_static_scenes_are_compared_by_tangents_and_displacement(tmp_path):
     by_load = next(e for e in found.effects if e["quantity"] == "kxx" and e["term"] == ("load.axial",))
     hertz = math.log(last["stiffness"][0][0] / first["stiffness"][0][0])
     assert {e["quantity"] for e in found.effects} == {"kxx", "kyy", "x"} and by_load["log_change"] > 0.5 * hertz > 0.0
-    assert found.words[0].startswith("kxx lies between") and "load.axial from 400 to 1200 changes it by +" in found.words[0]
+    assert found.words[0].startswith("penalty against hertz: kxx +") and " from 400 to 1200 N" in found.words[0]
+    assert found.words[1].startswith("kxx lies between") and "load.axial from 400 to 1200 changes it by +" in found.words[1]
     assert list(found.table()[0]) == ["axial", "kind", "kxx N/µm", "kyy N/µm", "x µm", "kxx within"]
     data = found.to_xarray()
     assert data.kyy.values[0, 0] == first["stiffness"][1][1] and data.x.attrs["units"] == "m"
@@ -253,7 +254,7 @@ def _k(point, tilt=1.0, law=1.0):
 
 def test_the_words_rank_the_effects_and_tell_the_course_where_an_axis_changes_it():
     made = _synthetic(_k)
-    ranking, text = made.words[0], "\n".join(made.words)
+    ranking, text = made.words[1], "\n".join(made.words)
     assert ranking.startswith("K lies between 40.00 and 200.00 N/µm. On average, strongest first: supports.tilt from locked")
     assert ranking.index("supports.tilt") < ranking.index("excitation.amplitude")
     assert "K hardly depends on excitation.kind (+0.00 %)" in text
@@ -278,7 +279,7 @@ def test_the_first_sentence_says_what_the_table_says_where_speed_is_varied_with_
         lambda point: (
             1e8 * 0.8 ** (point["excitation.speed_rpm"] / 14000.0) * (1.25 if point["contact.kind"] == "penalty" else 1.0)
         ),
-    ).short_words[0]
+    ).short_words[1]
     assert "contact.kind from hertz to penalty changes it by +25.0 %" in first and "none of the other axes" not in first
 
 
@@ -300,9 +301,37 @@ def test_what_lies_between_the_ends_of_an_axis_is_told_where_it_is_beyond_them(a
     """The first sentence gave the range of the ends as that of all runs, and passed over an axis whose ends are alike."""
     made = _made(axes, k_of)
     k = [1e-6 * k_of(row.point) for row in made.rows]
-    assert made.words[0].startswith(f"K lies between {min(k):.2f} and {max(k):.2f} N/µm. On average")
-    assert said in made.words[0] and "of the variation" not in made.words[0]
+    ranking = next(words for words in made.words if " lies between " in words)
+    assert ranking.startswith(f"K lies between {min(k):.2f} and {max(k):.2f} N/µm. On average")
+    assert said in ranking and "of the variation" not in ranking
     assert not any("hardly depends on " + axes[0].partition("=")[0] in words for words in made.words)
+
+
+@pytest.mark.parametrize(
+    ("ends", "said"),
+    [
+        ((0.9, 1.2), "both, whose causes they share; beyond numerical errors."),
+        ((0.999, 1.0001), "neither."),
+        ((0.99, 1.006), "both at 2 of 3 points, whose causes they share; beyond numerical errors."),
+    ],
+)
+def test_the_first_sentence_sets_the_difference_of_two_models_against_their_intervals(ends, said):
+    """By 0.25, 0.5 and 1 %, where an interval of both is wide, narrow, or between these."""
+    axes = ["excitation.kind=unidirectional,bidirectional", "excitation.speed_rpm=9000:15000:3"]
+    percents = {9000: 0.25, 12000: 0.5, 15000: 1.0}
+    made = _made(
+        axes, lambda p: 1e8 * (1.0 + 0.01 * percents[p["excitation.speed_rpm"]] * (p["excitation.kind"] == "bidirectional"))
+    )
+    rows = []
+    for row in made.rows:
+        k = row.value("equivalent_stiffness")
+        entry = {"low": ends[0] * k, "high": ends[1] * k, "relative": [ends[0] - 1.0, ends[1] - 1.0]}
+        rows.append(attrs.evolve(row, result={**row.result, "uncertainty": {"equivalent_stiffness": entry}}))
+    first = attrs.evolve(made, rows=tuple(rows)).words[0]
+    assert (
+        first
+        == f"bidirectional against unidirectional: K +0.25 to +1 % from 9000 to 15000, within the uncertainty of {said}"
+    )
 
 
 def test_no_line_crosses_a_point_that_failed():

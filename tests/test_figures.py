@@ -34,12 +34,14 @@ from raceway.answers.picture import readable
 from raceway.extend import below_contacts, select
 from raceway.plugins.formats import pictures
 from raceway.points import band as band_picture
-from raceway.points import compare_picture as comparison
-from raceway.points import follow_picture as followed
+from raceway.points import branch as followed
+from raceway.points import compare as comparison
 from raceway.points import law as law_picture
 from raceway.points import plot as store_picture
 from raceway.points import precision_picture as precision
 from raceway.points import sensitivities as bars
+from raceway.points.attractor import Attractor
+from raceway.points.branch import Followed, Label, Orbit
 from raceway.points.plot import layout
 from raceway.testing import b7206c, run
 from tests import test_compare
@@ -49,12 +51,24 @@ LOADS = np.linspace(200.0, 2000.0, 5)
 
 
 def unreadable(figure: Figure) -> list[str]:
-    """Letters below 9 pixels of 600, but in wide figures of pages, labels of axes of more than five words."""
+    """Letters below 9 pixels of 600, but in wide figures of pages; labels of axes of more than five words, or that are keys; words on words."""
     least = min(1.05 * figure.get_figwidth(), 11.0)
     texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
     small = [f"{text.get_text()!r} in {text.get_fontsize():g} pt" for text in texts if text.get_fontsize() < least - 1e-6]
     labels = [label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel())]
-    return small + [label for label in labels if len(label.partition("[")[0].split()) > 5]
+    ticks = [tick for axes in figure.axes for side in axes.get_xticklabels() + axes.get_yticklabels() for tick in [side]]
+    words = [
+        text
+        for text in texts
+        if text not in ticks and text.get_text() != "\n" and (text.axes is None or text.axes.get_visible())
+    ]
+    boxes = [(text.get_text(), Text.get_window_extent(text).shrunk(0.94, 0.8)) for text in words]
+    small += [f"{a!r} lies on {b!r}" for k, (a, one) in enumerate(boxes) for b, other in boxes[:k] if one.overlaps(other)]
+    return small + [
+        label
+        for label in labels
+        if len(label.partition("[")[0].split()) > 5 or re.search(r"[a-z]\.[a-z]|_(rpm|deg|hz)", label)
+    ]
 
 
 def of_a_run() -> list[Figure]:
@@ -82,10 +96,7 @@ def of_a_comparison() -> list[Figure]:
            if row.doubt else row for row in whole.rows]  # fmt: skip
     dots = [row for row in whole.rows if row.point["excitation.speed_rpm"] == 10000]
     axes = tuple(axis for axis in whole.axes if axis.key != "excitation.speed_rpm")
-    return [
-        comparison.draw(attrs.evolve(whole, rows=tuple(far))),
-        comparison.draw(attrs.evolve(whole, axes=axes, rows=tuple(dots))),
-    ]
+    return [attrs.evolve(whole, rows=tuple(far)).draw(), attrs.evolve(whole, axes=axes, rows=tuple(dots)).draw()]
 
 
 def of_precision() -> list[Figure]:
@@ -179,15 +190,19 @@ def of_laws() -> list[Figure]:
 
 def of_a_branch() -> list[Figure]:
     """Through two folds, one of them unstable; every kind of label."""
+    orbit = Orbit(0.0, 0.0, 100.0, 1e8 + 1e6j, 0.0, 1e-6, 1e-6, 1.0, 0, 0, 0.0, "stable", "")
+    speeds = enumerate((1.0, 2.0, 3.0, 4.0, 3.8, 3.6, 4.2, 5.0))
     rows = [
-        {"parameter": p, "swing": 1e-6 * k, "stiffness": 1e8 / (1 + k), "verdict": "unstable" if 3 < k < 6 else "stable"}
-        for k, p in enumerate((1.0, 2.0, 3.0, 4.0, 3.8, 3.6, 4.2, 5.0))
+        attrs.evolve(orbit, parameter=p, swing=1e-6 * k, z=1e8 / (1 + k), verdict="unstable" if 3 < k < 6 else "stable")
+        for k, p in speeds
     ]
-    labels = [{**rows[k], "kind": kind} for k, kind in enumerate(followed._MARKS)]
-    section = {"parameter": 3.8, "kind": "quasi-periodic", "section": [[np.cos(k), np.sin(k)] for k in range(50)]}
-    twice = {"rows": [{**row, "swing": row["swing"] + 1e-6} for row in rows], "labels": labels[:2], "instead": []}
-    title = {"title": "made up", "key": "excitation.speed_rpm"}
-    return [followed.draw_branch({**title, "rows": rows, "labels": labels, "instead": [section] * 2, "doubled": [twice]})]
+    labels = [Label(kind, row) for kind, row in zip(followed._MARKS, rows, strict=False)]
+    section = Attractor(3.8, "quasi-periodic", 50, section=np.array([[np.cos(k), np.sin(k)] for k in range(50)]))
+    twice = Followed(
+        "load.axial", 1.0, 5.0, 180.0, "made up", [attrs.evolve(row, swing=row.swing + 1e-6) for row in rows], labels[:2]
+    )
+    branch = Followed("load.axial", 1.0, 5.0, 90.0, "made up", rows, labels, attractors=[section] * 2, doubled=[twice])
+    return [branch.draw()]
 
 
 def of_fits() -> list[Figure]:
@@ -254,11 +269,11 @@ def test_no_module_makes_figures_that_are_not_looked_at_here():
     folder = Path(raceway.__file__).parent
     making = set()
     for path in [*folder.rglob("*.py"), *folder.parent.glob("packages/*/raceway_*/**/*.py")]:
-        if not re.search("new_figure|Figure", text := path.read_text(encoding="utf-8")):
+        if not re.search("new_figure|draw_panels|Figure", text := path.read_text(encoding="utf-8")):
             continue
         called = [node.func for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)]
         names = {getattr(call, "id", getattr(call, "attr", None)) for call in called}
-        if names & {"new_figure", "Figure"}:
+        if names & {"new_figure", "draw_panels", "Figure"}:
             making.add(path)
     making.remove(folder / "answers" / "picture.py")  # makes the figures
     assert making == {Path(module.__file__) for module in DRAWN}  # type: ignore[attr-defined]

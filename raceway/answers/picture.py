@@ -1,11 +1,20 @@
-"""Figures of matplotlib: their look, new ones without a window, a caller's axes, PNG files."""
+"""Figures of matplotlib: their look, curves over axes with their differences, a caller's axes, files.
+
+Every answer over axes is drawn alike: the axis with most numbers is x, the next are curves, which differ in colour, line and marker,
+the rest are panels with equal axes; below each stands by how many per cent its curves differ from the first, with their intervals.
+"""
 
 from __future__ import annotations
 
 import io
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
+import attrs
+import numpy as np
+
+from raceway.answers.page import svg
 from raceway.answers.table import lines_of
 from raceway.errors import RacewayError, extra
 from raceway.framework.doors import door, reader
@@ -16,12 +25,22 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-#: Colours of curves, that of secondary marks, and that of the grid.
-COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3", "#b58a00", "#555f6b", "#3aa6b9", "#b0457b")
+#: Colours of curves, neighbours of which differ in grey and for the colour-blind, that of secondary marks, and that of the grid.
+COLOURS = ("#0b4f8a", "#d9621e", "#4b2a6b", "#3fa7d6", "#1d6b4a", "#e0a100", "#7a1f3d", "#8d99a6")
 GREY, GRID = "#555f6b", "#e3e7eb"
 MARKERS = "os^DvPX*"
+#: Beside the colours: curves are told apart in grey, too.
+_LINES: Sequence[Any] = ("-", "--", ":", "-.", (0, (6, 1, 1, 1, 1, 1)))
+#: Points of a curve from which on it has no markers.
+_DENSE = 40
+#: Part of a common axis that each panel's curves fill at least: else every panel has its own limits.
+_SEEN = 1.0 / 6.0
+#: Intervals within so many times what differences span set the limits; wider ones are cut, and told in words.
+_NEAR = 3.0
 #: Least size of letters over the figure's width [pt/inch], which are 9 pixels of 600, up to a size; panels in a row at most.
 _READABLE, _LARGEST = 1.05, 11.0
+#: Endings of files of figures.
+FORMATS = (".png", ".svg", ".pdf")
 MOST_COLUMNS = 3
 
 
@@ -71,7 +90,10 @@ def given_axes(ax: Annotated[Axes | None, _AXES], width: float = 6.4, height: fl
 
 
 def label_axes(axes: Axes, title: str, x: str, y: str, size: float = 11.0) -> None:
-    """Title, labels of a font size [pt] and grid."""
+    """Title, labels of a font size [pt] and grid; numbers along axes without an offset."""
+    for axis in (axes.xaxis, axes.yaxis):
+        if hasattr(formatter := axis.get_major_formatter(), "set_useOffset"):
+            formatter.set_useOffset(False)
     axes.set_title(title, fontsize=size + 1.0)
     axes.set_xlabel(x, fontsize=size)
     axes.set_ylabel(y, fontsize=size)
@@ -98,18 +120,27 @@ def readable(figure: Figure) -> Figure:
     return figure
 
 
-def save_figure(figure: Figure, path: Path, dots_per_inch: int = 150) -> Path:
-    """Write a figure as PNG, whole or not at all.
+def save_figure(figure: Figure, path: Path, dots_per_inch: int = 300) -> Path:
+    """Write a figure as PNG, SVG or PDF, by the ending, whole or not at all; the same figure gives the same file.
 
     Raises
     ------
     RacewayError
-        A folder or disk that cannot be written.
+        Another ending, or a folder or disk that cannot be written.
     """
-    return write_whole(figure_png(figure, dots_per_inch), path)
+    if path.suffix.lower() not in FORMATS:
+        raise RacewayError(
+            f"`{path}`: pictures are written as {', '.join(FORMATS[:-1])} or {FORMATS[-1]}: choose such a name"
+        )
+    if path.suffix.lower() == ".svg":
+        return write_whole(svg(readable(figure)), path)
+    if path.suffix.lower() == ".png":
+        return write_whole(figure_png(figure, dots_per_inch), path)
+    readable(figure).savefig(memory := io.BytesIO(), format="pdf", metadata={"CreationDate": None})
+    return write_whole(memory.getvalue(), path)
 
 
-def figure_png(figure: Figure, dots_per_inch: int) -> bytes:
+def figure_png(figure: Figure, dots_per_inch: int = 300) -> bytes:
     """A figure as the content of a PNG file."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -117,3 +148,183 @@ def figure_png(figure: Figure, dots_per_inch: int) -> bytes:
     memory = io.BytesIO()
     FigureCanvasAgg(figure).print_png(memory)
     return memory.getvalue()
+
+
+@attrs.frozen(eq=False)
+class Line:
+    """A curve of a panel.
+
+    Attributes
+    ----------
+    x, y : (n,), broken where y is nan;  label : in the legend;  place : in the cycle of colours, lines and markers
+    low, high : (n,) ends of its interval, nan where none is known;  doubt : (n,) numbers that are no part of it, crosses
+    base : the curve that its difference is from, over the same x;  shade : of curves of numbers, its colour, from 0 to 1 in their order
+    style : options of ``Axes.plot`` that are its own
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    label: str = ""
+    place: int = 0
+    low: np.ndarray | None = None
+    high: np.ndarray | None = None
+    doubt: np.ndarray | None = None
+    base: Line | None = None
+    shade: float | None = None
+    style: dict[str, Any] = attrs.field(factory=dict)
+
+    @property
+    def look(self) -> dict[str, Any]:
+        """Options of ``Axes.plot``."""
+        from matplotlib import colormaps
+
+        shaded = COLOURS[self.place % len(COLOURS)] if self.shade is None else colormaps["viridis"](0.85 * self.shade)
+        tone, hollow = self.style.get("color", shaded), self.place % 2 == 1
+        look = {"color": tone, "linestyle": _LINES[self.place % len(_LINES)], "marker": MARKERS[self.place % len(MARKERS)]}
+        look |= {"markerfacecolor": "white" if hollow else tone, "linewidth": 1.7}
+        return look | {"markersize": 5.0 if len(self.x) <= _DENSE else 0.0} | self.style
+
+    def from_base(self) -> Line:
+        """By how many per cent it differs, and its interval, from the curve ``base``."""
+        zero = (self if self.base is None else self.base).y
+        ends = (None if end is None else 100.0 * (end / zero - 1.0) for end in (self.low, self.high))
+        low, high = ends
+        return attrs.evolve(self, y=100.0 * (self.y / zero - 1.0), label="", low=low, high=high, doubt=None)
+
+
+@attrs.frozen(eq=False)
+class Plot:
+    """A pair of axes.
+
+    Attributes
+    ----------
+    curves : what it shows;  x, y : labels, quantities with units;  title : which part of the answer it is
+    names : words that stand at 0, 1, 2, ... of x, where that has no numbers;  more : draws what is no curve, on axes with limits
+    """
+
+    curves: tuple[Line, ...]
+    x: str
+    y: str
+    title: str = ""
+    names: tuple[str, ...] = ()
+    more: Callable[[Axes], None] | None = None
+
+    def difference(self) -> Plot | None:
+        """The differences of its curves from their bases; None where none has one."""
+        if all(curve.base is None for curve in self.curves):
+            return None
+        shown = (one for one in self.curves if one.base is not None or any(one is curve.base for curve in self.curves))
+        return attrs.evolve(self, curves=tuple(one.from_base() for one in shown), y="difference [%]", title="", more=None)
+
+    def limits(self, bands: bool = False) -> tuple[float, float]:
+        """Range of its curves, without margins; with their intervals where these are not far wider."""
+        values = np.concatenate([curve.y for curve in self.curves] or [np.zeros(1)])
+        values = values[np.isfinite(values)] if np.isfinite(values).any() else np.array([0.0, 1.0])
+        low, high = float(values.min()), float(values.max())
+        wide = np.concatenate([self.ends() if bands else [], [low, high]])
+        return (float(wide.min()), float(wide.max())) if np.ptp(wide) <= _NEAR * (high - low) else (low, high)
+
+    def ends(self) -> np.ndarray:
+        """Those of all intervals that are known."""
+        ends = [np.ravel(end) for curve in self.curves for end in (curve.low, curve.high) if end is not None]
+        return (found := np.concatenate([*ends, []]))[np.isfinite(found)]
+
+    def draw(self, axes: Axes, limits: tuple[float, float] | None = None, bands: bool = False) -> None:
+        """Draw it.
+
+        limits : of y, without margins; None: of its curves;  bands : with the intervals
+        """
+        low, high = self.limits(bands) if limits is None else limits
+        margin = 0.07 * (high - low) or 0.01 * abs(high) or 1.0
+        low, high = low - margin, high + margin
+        for curve in self.curves:
+            axes.plot(curve.x, curve.y, label=curve.label or "_", **curve.look)
+            if bands and curve.low is not None and curve.high is not None:
+                ends = np.clip(curve.low, low, high), np.clip(curve.high, low, high)
+                axes.fill_between(
+                    curve.x, *ends, color=curve.look["color"], alpha=0.26 / len(self.curves), linewidth=0.0, zorder=0
+                )
+            if curve.doubt is not None and np.isfinite(curve.doubt).any():
+                tone = curve.look["color"]
+                (cross,) = axes.plot(curve.x, np.clip(curve.doubt, low, high), "x", color=tone, markersize=6, clip_on=False)
+                cross.set_in_layout(False)  # an artist that is not clipped would count for the layout, wherever it lies
+        axes.set_ylim(low, high)
+        if self.names:
+            axes.set_xticks(range(len(self.names)), list(self.names))
+        else:
+            axes.locator_params(axis="x", nbins=6)
+        label_axes(axes, self.title, self.x, self.y, 10.5)
+        dress(axes)
+        if self.more is not None:
+            self.more(axes)
+
+    def name_ends(self, axes: Axes) -> None:
+        """Write the last number of each curve beside its end, and the intervals where they reach beyond the axes."""
+        low, high = axes.get_ylim()
+        last = [(float(curve.y[np.isfinite(curve.y)][-1]), curve.look["color"]) for curve in self.curves
+                if curve.base is not None and np.isfinite(curve.y).any()]  # fmt: skip
+        name_ends(axes, [(y, f"{signed(y)} %", tone) for y, tone in last], 0.13)
+        ends = self.ends()
+        if ends.size and not (ends.min() >= low and ends.max() <= high):
+            words = f"shaded: intervals, {signed(ends.min())} to {signed(ends.max())} %"
+            axes.set_title(words, fontsize=9.5, loc="right", color=GREY)
+
+
+def signed(value: float) -> str:
+    """A percentage with its sign and two digits, of large ones all before the point."""
+    return f"{value:+.2g}" if abs(value) < 99.5 else f"{value:+.0f}"
+
+
+def name_ends(axes: Axes, ends: Sequence[tuple[float, str, Any]], apart: float) -> None:
+    """Texts in colours beside the right ends of curves, pushed apart where they would cover each other.
+
+    ends : y, text and colour;  apart : least distance, part of the axis' height
+    """
+    ends = sorted((end for end in ends if np.isfinite(end[0])), key=lambda end: end[0])
+    (low, high), right = axes.get_ylim(), axes.dataLim.x1
+    gap, heights = apart * (high - low), list[float]()
+    for y, *_ in ends:
+        heights.append(max(y, heights[-1] + gap) if heights else y)
+    top = high + 0.5 * gap
+    for k in reversed(range(len(heights))):  # what was pushed out at the top pushes back
+        heights[k] = top = min(heights[k], top - gap)
+    for height, (_, text, tone) in zip(heights, ends, strict=True):
+        axes.annotate(text, (right, height), xytext=(6, 0), textcoords="offset points", fontsize=9, color=tone, va="center", annotation_clip=False)  # fmt: skip
+
+
+def draw_panels(rows: Sequence[Sequence[Plot]], title: str, legend: str = "") -> Figure:
+    """Panels in rows, the differences of their curves below each.
+
+    legend : what its entries are values of
+    """
+    lines: list[tuple[list[Plot], bool]] = []
+    for row in rows:
+        lines.append((list(row), False))
+        if below := [panel for panel in (panel.difference() for panel in row) if panel is not None]:
+            lines.append((below, True))
+    columns = max(len(row) for row, _ in lines)
+    heights = [1.9 if bands else 3.1 for _, bands in lines]
+    figure = new_figure(7.6 if columns == 1 else 1.6 + 3.7 * columns, 1.3 + sum(heights))
+    grid = figure.subplots(len(lines), columns, squeeze=False, sharex=True, height_ratios=heights)
+    for line, (row, bands) in enumerate(lines):
+        own = [panel.limits(bands) for panel in row]
+        alike = len({panel.y for panel in row}) == 1
+        common = min(low for low, _ in own), max(high for _, high in own)
+        # A panel that is level says nothing about a scale.
+        spans = [high - low for low, high in own if high - low > 1e-6 * max(abs(low), abs(high))]
+        equal = alike and min(spans, default=1.0) >= _SEEN * (common[1] - common[0])
+        for column, (panel, axes) in enumerate(zip(row, grid[line], strict=False)):
+            last = line == len(lines) - 1
+            panel = attrs.evolve(panel, x=panel.x if last else "", y="" if column and alike else panel.y)
+            panel.draw(axes, common if equal else None, bands)
+            if bands:
+                panel.name_ends(axes)
+        for axes in grid[line, len(row) :]:
+            axes.set_visible(False)
+    entries = [axes.get_legend_handles_labels() for axes in grid.flat]
+    named = {label: handle for handles, labels in entries for handle, label in zip(handles, labels, strict=True)}
+    if named and any(len(line.x) > 1 for row, _ in lines for panel in row for line in panel.curves):
+        across = max(1, int(9.0 * figure.get_figwidth() / (max(map(len, named)) + 7)))
+        figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=min(len(named), across), frameon=False, fontsize=10, title=legend or None, title_fontsize=10)  # fmt: skip
+    figure.suptitle(wrapped(title, int(9.0 * figure.get_figwidth())), fontsize=12)
+    return figure

@@ -89,7 +89,7 @@ class Quantity:
     @property
     def axis(self) -> str:
         """Label of an axis: symbol and that unit."""
-        return f"{self.symbol}  [{self.read_unit}]"
+        return f"{self.symbol} [{self.read_unit}]"
 
     def text(self, value: float | None, digits: int = 5) -> str:
         """With that unit; a dash for what is not there."""

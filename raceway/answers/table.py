@@ -25,9 +25,9 @@ from raceway.framework.shown import tilt_words as tilt_words
 #: A blank that no line ends at, while a text is wrapped.
 _FIXED = "\N{NO-BREAK SPACE}"
 _UNIT = r"(?:N/µm|N s/m|N m|N|mm|µm|m|µrad|rad|deg|r/min|MPa|GPa|kg|k?Hz|MiB|mJ|s|%)(?![\w/])"
-#: A number and its unit, a sign and its number, both sides of an equation, a product.
+#: A number and its unit, thousands of a number, a sign and its number, both sides of an equation, a product.
 _TOGETHER = re.compile(
-    rf"(?<=\d) (?={_UNIT})|(?<=\+-) (?=\d)|(?<=\w) (?== )|(?<==) (?=\S)|(?<=\d) (?=x \d)|(?<=\d x) (?=\d)"
+    rf"(?<=\d) (?={_UNIT}|\d\d\d\b)|(?<=\+-) (?=\d)|(?<=\w) (?== )|(?<==) (?=\S)|(?<=\d) (?=x \d)|(?<=\d x) (?=\d)"
 )
 
 

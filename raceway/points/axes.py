@@ -6,6 +6,7 @@ import csv
 import itertools
 import json
 import math
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -34,16 +35,40 @@ _FORM = "must have the form table.key=a,b,c or table.key=start:stop:count"
 Vary: TypeAlias = Iterable[str] | Mapping[str, object]
 
 
+def noun(key: str) -> str:
+    """What a key of a scene is called in words: "axial load", "speed", "excitation"."""
+    table, _, name = key.rpartition(".")
+    if name in ("kind", "preset"):
+        return table.replace("_", " ")
+    words = re.sub("_(rpm|deg|hz|c)$", "", name).replace("_", " ")
+    return f"{words} {table}" if table and words in ("axial", "radial") else words
+
+
+def axis_label(key: str, unit: str) -> str:
+    """Of an axis of a picture: noun and unit."""
+    return f"{noun(key)} [{unit}]" if unit not in ("", "1") else noun(key)
+
+
 @attrs.frozen
 class Axis:
-    """One key of the scene and the values it takes, in the order given."""
+    """One key of the scene and the values it takes, in the order given, in a unit."""
 
     key: str
     values: tuple[Any, ...]
+    unit: str = ""
 
     @property
     def numeric(self) -> bool:
         return all(is_number(v) for v in self.values)
+
+    def words(self, value: object) -> str:
+        """One value: "axial load 400 N"."""
+        return f"{noun(self.key)} {shown(value)} {self.unit if is_number(value) and self.unit != '1' else ''}".rstrip()
+
+    @property
+    def label(self) -> str:
+        """Of an axis of a picture: noun and unit."""
+        return axis_label(self.key, self.unit if self.numeric else "")
 
     @cached_property
     def column(self) -> np.ndarray:
@@ -56,6 +81,27 @@ class Axis:
 
     def to_dict(self) -> Tables:
         return {"key": self.key, "values": list(self.values)}
+
+
+def places_of(axes: Sequence[Axis], most: int) -> tuple[Axis, list[Axis], list[Axis]]:
+    """The axis of x, those of the curves and those of the panels of a picture.
+
+    Parameters
+    ----------
+    most : panels; axes that do not find room in so many are further ones of the curves
+
+    Notes
+    -----
+    x is the axis of numbers with most values, of several such that of speed, without such the last axis of words; of the others words
+    come first.
+    """
+    numeric = [axis for axis in axes if axis.numeric]
+    x = max(numeric, key=lambda axis: (len(axis.values), axis.key.endswith("speed_rpm"))) if numeric else axes[-1]
+    others = sorted((axis for axis in axes if axis is not x), key=lambda axis: axis.numeric)
+    curves, panels = others[:1], others[1:]
+    while math.prod(len(axis.values) for axis in panels) > most:
+        curves.append(panels.pop())
+    return x, curves, panels
 
 
 def is_number(value: object) -> bool:

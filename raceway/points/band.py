@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Part
-from raceway.answers.picture import MOST_COLUMNS, new_figure, wrapped
+from raceway.answers.picture import MOST_COLUMNS, label_axes, new_figure, wrapped
 from raceway.answers.progress import ShowProgress, telling
 from raceway.answers.quantities import Z_IMAG, Z_REAL, C, quantity_of, read_in
 from raceway.answers.table import Words
@@ -204,19 +204,16 @@ class Band(Answer):
             for end, label in ((low, "95 % of samples"), (high, None)):
                 axes.axvline(end, color=_LIMIT_COLOUR, linewidth=1.2, label=label)
             axes.axvline(value, color="#555f6b", linewidth=1.0, linestyle="--", label="nominal")
-            axes.set_title(f"{name.replace('_', ' ')}\n{low:.5g} to {high:.5g} {unit}", fontsize=10)
-            axes.set_xlabel(unit, fontsize=9)
-            axes.tick_params(labelsize=8)
+            words, samples = name.replace("_", " "), "samples" if column == 0 else ""
+            label_axes(axes, f"{words}\n{low:.5g} to {high:.5g} {unit}", f"{words} [{unit}]", samples, 9.0)
             axes.locator_params(axis="x", nbins=4)
-            rows[len(heights) * block, 0].set_ylabel("samples", fontsize=9)
             if with_indices:
                 panel = rows[2 * block + 1, column]
                 places = np.arange(len(keys))
                 panel.set_xlim(0.0, 1.05)
                 panel.set_ylim(len(keys) - 0.4, -0.6)
                 panel.set_yticks(places, keys if column == 0 else [""] * len(keys), fontsize=8)
-                panel.set_xlabel("Sobol' index", fontsize=9)
-                panel.tick_params(axis="x", labelsize=8)
+                label_axes(panel, "", "Sobol' index [-]", "", 9.0)
                 # Estimates of small indices scatter about 0, those of a single cause about 1.
                 none = np.zeros(len(keys))
                 total, first = (np.clip(of.get(name, none), 0.0, 1.0) for of in (self.total, self.first))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Part
+from raceway.answers.quantities import read_in
 from raceway.answers.table import Words
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Solved
@@ -22,10 +23,13 @@ from raceway.core.signals import stiffness
 from raceway.errors import ConvergenceError
 from raceway.framework.shown import Fact
 from raceway.points.attractor import Attractor
+from raceway.points.axes import axis_label
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from raceway.answers.picture import Plot
 
 #: Samples a turn: harmonics up to this order alias nothing.
 _SAMPLES = 360
@@ -39,6 +43,13 @@ _ALONG = 1e-4
 _OUTSIDE = 1.0 + 1e-6
 #: Kinds of labels beside the special points: a local maximum of the swing, a first contact that opens on the way.
 PEAK, OPENS = "peak", "contact opens"
+
+#: Kind of a label -> mark.
+_MARKS = {"fold": "s", "branch point": "D", "period doubling": "^", "Neimark-Sacker": "o", OPENS: "x", PEAK: "+"}
+#: Numbers that are drawn: name -> label.
+_DRAWN = {"swing": "amplitude [µm]", "stiffness": "K [N/µm]"}
+#: Sections that are drawn, and peaks that are labelled, the highest, at most.
+_SECTIONS, _PEAKS = 4, 6
 
 #: Name of a number -> (unit, words).
 _COLUMNS: dict[str, tuple[str, str]] = {
@@ -132,7 +143,7 @@ class Followed(Answer):
     rows : orbits in the order of the branch;  labels : special points and peaks
     end : why it ends before ``last``; "" where it reaches it
     notes : what a user should know;  worst : the most unstable orbit of each unstable stretch
-    doubled : branches of twice the period;  attractors : motions reached from beside the orbits ``worst``
+    doubled : branches of twice the period;  attractors : motions reached from beside the orbits ``worst``;  unit : of the key
 
     Examples
     --------
@@ -156,6 +167,7 @@ class Followed(Answer):
     worst: list[Point] = attrs.field(factory=list, repr=False)
     doubled: list[Followed] = attrs.field(factory=list)
     attractors: list[Attractor] = attrs.field(factory=list)
+    unit: str = ""
 
     @property
     def unstable(self) -> list[tuple[Orbit, Orbit]]:
@@ -198,10 +210,31 @@ class Followed(Answer):
         return {"csv": text.getvalue()}
 
     def draw(self) -> Figure:
-        """Amplitude and K over the key."""
-        from raceway.points.follow_picture import draw_branch
+        """Amplitude and K over the key, special points and peaks; below them sections of what is met beside unstable orbits."""
+        from raceway.answers.picture import GREY, label_axes, new_figure, wrapped
 
-        return draw_branch(self.to_dict())
+        branches = (self, *self.doubled)
+        sections = [one for branch in branches for one in branch.attractors if len(one.section)][:_SECTIONS]
+        figure = new_figure(9.0, 10.0 if sections else 7.4)
+        places = figure.add_gridspec(3 if sections else 2, max(len(sections), 1))
+        upper = figure.add_subplot(places[0, :])
+        lower = figure.add_subplot(places[1, :], sharex=upper)
+        for axes, (name, label) in zip((upper, lower), _DRAWN.items(), strict=True):
+            _panel(branches, name, label, axis_label(self.key, self.unit) if axes is lower else "").draw(axes)
+        peaks = sorted((label.row for label in self.labels if label.kind == PEAK), key=lambda row: -row.swing)[:_PEAKS]
+        for row in peaks:
+            words = f"{row.parameter:.6g}\n{1e6 * row.swing:.4g} µm"
+            upper.annotate(
+                words, (row.parameter, 1e6 * row.swing), (0, 6), textcoords="offset points", ha="center", fontsize=9
+            )
+        for k, one in enumerate(sections):
+            panel, (y, velocity) = figure.add_subplot(places[2, k]), 1e6 * np.array(one.section).T
+            panel.plot(y, velocity, ".", markersize=3, color=GREY)
+            label_axes(panel, f"{one.parameter:.6g}: {one.kind}", "y once per turn [µm]", "velocity / w [µm]", 9.5)
+        handles = dict(zip(*reversed(upper.get_legend_handles_labels()), strict=True))
+        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4, frameon=False, fontsize=9.5)
+        figure.suptitle(wrapped(self.title.partition("\n")[0]), fontsize=11)
+        return figure
 
     def _facts(self) -> tuple[str, list[Fact]]:
         ends = (
@@ -236,6 +269,31 @@ class Followed(Answer):
         yield from self.notes
         if self.end:
             yield Words(self.end, "bold")
+
+
+def _panel(branches: Sequence[Followed], name: str, label: str, x: str) -> Plot:
+    """A quantity over the key, each branch in pieces of one verdict, up to the first point of the next one, and its labels."""
+    from raceway.answers.picture import COLOURS, Line, Plot
+
+    def curve(rows: Sequence[Orbit], words: str, **style: object) -> Line:
+        factor, numbers = read_in(1.0, _COLUMNS[name][0])[0], [(row.parameter, getattr(row, name)) for row in rows]
+        x, y = np.array(numbers).T
+        return Line(x, factor * y, words, style=style)
+
+    curves, labels = list[Line](), [label for branch in branches for label in branch.labels]
+    for doubled, branch in enumerate(branches):
+        first, rows = 0, branch.rows
+        for k in range(1, len(rows) + 1):
+            bad = rows[first].verdict == "unstable"
+            if k == len(rows) or (rows[k].verdict == "unstable") != bad:
+                words = ("unstable" if bad else "stable") + (", twice the period" if doubled else "")
+                tone, line = COLOURS[1 if bad else 0] if not doubled else COLOURS[3 if bad else 2], "--" if bad else "-"
+                curves.append(curve(rows[first : k + 1], words, color=tone, linestyle=line, marker=""))
+                first = k
+    for kind, mark in _MARKS.items():
+        if rows := [label.row for label in labels if label.kind == kind]:
+            curves.append(curve(rows, kind, color="black", linestyle="", marker=mark, markerfacecolor="white", markersize=6))
+    return Plot(tuple(curves), x, label)
 
 
 def _range(branch: Followed) -> str:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from functools import cached_property
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
@@ -12,8 +14,9 @@ import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Interrupted, Part
+from raceway.answers.picture import Line, Plot, draw_panels, given_axes, signed
 from raceway.answers.progress import ShowProgress, telling
-from raceway.answers.quantities import ENDS, K_ERROR, C, Quantity, Z, named
+from raceway.answers.quantities import ENDS, K_ERROR, C, K, Quantity, Z, named
 from raceway.answers.table import Words
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import KEY_VALUES, PATH, PATHS, door, member
@@ -23,11 +26,12 @@ from raceway.pipeline.run import run
 from raceway.pipeline.uncertainty import interval
 from raceway.planning.plan import make_plan
 from raceway.plugins.formats import labelled_dataset
-from raceway.points.axes import Axis, Vary, axes_of, points, refuse_mistakes, shown, tables_at
+from raceway.points.axes import Axis, Vary, axes_of, noun, places_of, points, refuse_mistakes, shown, tables_at
 from raceway.points.dataset import axis_labels
-from raceway.points.effects import MOVING, Findings, Row, explain, in_few_words
+from raceway.points.effects import MOVING, Findings, Row, enumeration, explain, in_few_words
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import row_key, tables_key, written
+from raceway.points.survey import key_facts
 from raceway.scene.scene import SceneSource, plain_tables, scene_from_dict
 from raceway.scene.tables import AutoIntegrator
 from raceway.storage.files import writable
@@ -37,6 +41,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from xarray import Dataset
+
+
+#: Panels of a quantity at most; part of K from which on |Z| is drawn beside it; part to which ends of intervals of the same causes agree;
+#: differences that one sentence tells by themselves.
+_MOST_PANELS, _INERTIA, _ALIKE, _FEW = 4, 0.01, 0.05, 3
 
 
 @attrs.frozen(eq=False, slots=False, repr=False)
@@ -71,12 +80,12 @@ class Comparison(Answer, Findings):
     @cached_property
     def words(self) -> list[str]:
         """The effects and trends, a sentence each."""
-        return explain(self)
+        return [*difference_words(self), *explain(self)]
 
     @cached_property
     def short_words(self) -> list[str]:
         """Those of the words that a screen shows."""
-        return in_few_words(self)
+        return [*difference_words(self), *in_few_words(self)]
 
     def to_dict(self) -> Tables:
         """Everything, as plain tables for JSON."""
@@ -121,10 +130,12 @@ class Comparison(Answer, Findings):
         RacewayError
             matplotlib is missing.
         """
-        from raceway.points.compare_picture import draw_on
-
-        quantity = next(iter(self.quantities)) if quantity is None else member("quantity", quantity, self.quantities)
-        return draw_on(self, quantity, ax)
+        name = next(iter(self.quantities)) if quantity is None else member("quantity", quantity, self.quantities)
+        (panel,), axis = _panels(self, self.quantities[name], 1)
+        panel.draw(axes := given_axes(ax, 8.0, 5.0))
+        if axis is not None:
+            axes.legend(title=axis.label, frameon=False, fontsize=9)
+        return axes
 
     def _facts(self) -> tuple[str, list[Fact]]:
         names, (first, about) = _short_names(self.axes), next(iter(self.quantities.items()))
@@ -161,10 +172,16 @@ class Comparison(Answer, Findings):
         return texts
 
     def draw(self) -> Figure:
-        """All quantities."""
-        from raceway.points.compare_picture import draw
-
-        return draw(self)
+        """K, and |Z| where the inertia of the mass makes it another; of static scenes kxx, kyy and x."""
+        pairs = [(row.value(K.name) or 0.0, row.value(Z.name) or 0.0) for row in self.rows if row.doubt is None]
+        seen = any(abs(z - k) > _INERTIA * k for k, z in pairs)
+        quantities = [about for about in self.quantities.values() if about is not Z or seen]
+        parts = [_panels(self, about) for about in quantities]
+        rows, axis = [panels for panels, _ in parts], parts[0][1]
+        rows = [sum(rows, [])] if len(rows[0]) == 1 else [row[k : k + 2] for row in rows for k in range(0, len(row), 2)]
+        along = noun(places_of(self.varied or self.axes, _MOST_PANELS)[0].key)
+        title = f"{enumeration([about.symbol for about in quantities])} over {along}: {self.title}"
+        return draw_panels(rows, title, "" if axis is None else axis.label)
 
     def report(self) -> Iterator[Part]:
         """The effects, the largest first, a line for each point, and the other words."""
@@ -173,6 +190,82 @@ class Comparison(Answer, Findings):
         yield self.table()
         yield from self.short_words[1:]
         yield Words("all quantities, courses and inertia in words: compare.json", "dim")
+
+
+def _panels(comparison: Findings, about: Quantity, most: int = _MOST_PANELS) -> tuple[list[Plot], Axis | None]:
+    """Panels of a quantity, at most so many, and the axis whose values are their curves; None: each is one curve."""
+    along, of_curves, of_panels = places_of(comparison.varied or comparison.axes, most)
+    names = () if along.numeric else tuple(map(shown, along.values))
+    values = sorted(along.values) if along.numeric else list(along.values)
+    if alone := bool(names) and not of_curves:  # each value is a curve of one point
+        of_curves = [along]
+    axes = [*of_panels, *of_curves, *([] if alone else [along])]
+    at = {tuple(repr(row.point[axis.key]) for axis in axes): row for row in comparison.rows}
+    stride, panels = math.prod(len(axis.values) for axis in of_curves[1:]), []
+    for setting in product(*(axis.values for axis in of_panels)):
+        lines: list[Line] = []
+        for place, chosen in enumerate(product(*(axis.values for axis in of_curves))):
+            points_along = [(*setting, *chosen, *end) for end in ([()] if alone else [(value,) for value in values])]
+            rows = [at.get(tuple(map(repr, point))) for point in points_along]
+            y, low, high, doubt = np.array([_numbers(row, about) for row in rows]).T
+            x = np.array([place] if alone else range(len(values)) if names else values, dtype=float)
+            first, *more = [axis.words(value) for axis, value in zip(of_curves, chosen, strict=True)] or [""]
+            words = ", ".join([shown(chosen[0]) if chosen else first, *more])
+            base = lines[place % stride] if place >= stride else None
+            shade = place / (len(of_curves[0].values) - 1) if len(of_curves) == 1 and of_curves[0].numeric else None
+            lines.append(Line(x, y, words, place, low, high, doubt, base, shade, {"linestyle": ""} if names else {}))
+        title = ", ".join(axis.words(value) for axis, value in zip(of_panels, setting, strict=True))
+        panels.append(Plot(tuple(lines), along.label, about.axis, title, names))
+    return panels, next(iter(of_curves), None)
+
+
+def _numbers(row: Row | None, about: Quantity) -> tuple[float, float, float, float]:
+    """Value, ends of its interval, and the value of a row in doubt, in the unit that people read it in; nan for what is not there."""
+    value = None if row is None or row.failed else row.value(about.name)
+    if row is None or value is None or row.doubt is not None:
+        return math.nan, math.nan, math.nan, math.nan if value is None else about.read(value)
+    entry = (row.result.get("uncertainty") or {}).get(about.name)
+    low, high = (about.read(entry[end]) if entry else math.nan for end in ("low", "high"))
+    return about.read(value), low, high, math.nan
+
+
+def difference_words(comparison: Findings) -> list[str]:
+    """One sentence: by how many per cent curves of the picture differ from the first, and whether that is within their intervals."""
+    about, pairs = next(iter(comparison.quantities.values())), dict[str, list[tuple[str, np.ndarray]]]()
+    panels, axis = _panels(comparison, about)
+    for panel, line, base in ((one, line, line.base) for one in panels for line in one.curves):
+        if axis is not None and base is not None and (known := np.isfinite(line.y) & np.isfinite(base.y)).any():
+            value, first = line.label.partition(", ")[0], base.label.partition(", ")[0]
+            what = "" if axis.key.endswith((".kind", ".preset")) else f"{noun(axis.key)} "
+            numbers = np.array([[one.y, one.low, one.high] for one in (base, line)])[..., known]
+            where = f" with {panel.title}" if panel.title else ""
+            pairs.setdefault(f"{what}{value} against {first} {axis.unit}".rstrip(), []).append((where, numbers))
+    if not pairs:
+        return []
+    along, text, every = places_of(comparison.varied, _MOST_PANELS)[0], list[str](), list[np.ndarray]()
+    for pair, parts in pairs.items():
+        every.append(np.concatenate([numbers for _, numbers in parts], axis=2))
+        spans = []
+        for where, numbers in parts if len(parts) <= _FEW else [(f" over {len(parts)} settings", every[-1])]:
+            changes = 100.0 * (numbers[1, 0] / numbers[0, 0] - 1.0)
+            ends = sorted((changes.min(), changes.max()), reverse=bool(changes[0] > changes[-1]))
+            spans.append(f"{' to '.join(dict.fromkeys(map(signed, ends)))} %{where}")
+        text.append(f"{pair}: {about.symbol} {', '.join(spans)}")
+    words = "; ".join(text)
+    if along.numeric:
+        words += f"{',' if len(panels) > 1 else ''} from {shown(min(along.values))} to {shown(max(along.values))} {along.unit}".rstrip()
+    (base, base_low, base_high), (y, low, high) = np.concatenate(every, axis=2)
+    if np.isfinite([low, high, base_low, base_high]).all():
+        within = np.array([(base_low <= y) & (y <= base_high), (low <= base) & (base <= high)])
+        both = within.all(axis=0)
+        which = "both" if both.all() else "neither" if not within.any() else f"both at {both.sum()} of {both.size} points"
+        # What is alike in both does not tell them apart; errors of the solver do.
+        apart = np.abs([low / y - base_low / base, high / y - base_high / base]).max()
+        alike = apart < _ALIKE * np.abs([low / y - 1.0, high / y - 1.0]).max()
+        error = max(row.error_of(about.name) for row in comparison.rows if row.doubt is None)
+        share = ", whose causes they share; beyond numerical errors"
+        words += f", within the uncertainty of {which}{share if both.any() and alike and np.abs(y / base - 1.0).min() > 2.0 * error else ''}"
+    return [f"{words}."]
 
 
 def _number_of(row: Row) -> tuple[str, str]:
@@ -327,6 +420,8 @@ def compare(
     axes = axes_of(vary, tables, registry)
     title, places = refuse_mistakes(tables, axes, registry), list(points(axes))
     scenes = [tables_at(tables, point, registry, notes) for point in places]
+    first = scene_from_dict(scenes[0], registry)
+    axes = tuple(attrs.evolve(axis, unit=key_facts(first, axis.key)[0]) for axis in axes)
     scenes = _by_one_method(scenes, registry, notes)
     items = [_item(scene, registry) for scene in scenes]
 

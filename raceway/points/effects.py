@@ -412,7 +412,7 @@ def explain(comparison: Findings) -> list[str]:
     # What was run, and how far the runs' own errors reach.
     few = [axis.values if len(axis.values) <= 6 else (*axis.values[:2], "...", axis.values[-1]) for axis in comparison.axes]
     axes = [f"{axis.key} ({', '.join(map(shown, values))})" for axis, values in zip(comparison.axes, few, strict=True)]
-    text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {_enumeration(axes)}."
+    text = f"{len(comparison.rows)} run{'s' * (len(comparison.rows) != 1)} of one scene that differ only in {enumeration(axes)}."
     if comparison.factorials:
         factorial, error = next(iter(comparison.factorials.values())), max(f.error for f in comparison.factorials.values())
         text += f" The effects compare the first with the last value of each axis ({factorial.corners.size} runs)"
@@ -466,7 +466,7 @@ def _span(log_changes: Iterable[float]) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def _enumeration(parts: Sequence[str]) -> str:
+def enumeration(parts: Sequence[str]) -> str:
     """``a, b and c``."""
     return parts[0] if len(parts) == 1 else ", ".join(parts[:-1]) + " and " + parts[-1]
 
@@ -477,7 +477,7 @@ def _axis_ends(axis: Axis) -> str:
 
 def _settings(point: Tables) -> str:
     """``a = 1 and b = 2``."""
-    return _enumeration([f"{key} = {shown(value)}" for key, value in point.items()])
+    return enumeration([f"{key} = {shown(value)}" for key, value in point.items()])
 
 
 def _courses(comparison: Findings) -> list[str]:
@@ -509,7 +509,7 @@ def _courses(comparison: Findings) -> list[str]:
             note = f"; doubtful runs between the ends left out: {left_out}" if left_out else ""
             if parts:
                 words.append(
-                    f"With {partner.key} = {shown(value)}, {label} along {_axis_ends(axis)} {_enumeration(parts)}{note}."
+                    f"With {partner.key} = {shown(value)}, {label} along {_axis_ends(axis)} {enumeration(parts)}{note}."
                 )
     return words
 
@@ -570,15 +570,15 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
     words = [f"{label} lies between {min(values):.2f} and {max(values):.2f} {unit}. {order} {'; '.join(parts) or none}."]
     if unclear:
         words.append(
-            f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {_enumeration(unclear)}."
+            f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {enumeration(unclear)}."
         )
     if weak:
         words.append(
-            f"{label} on average hardly depends on {_enumeration(weak)}, but does so together with other axes (see below)."
+            f"{label} on average hardly depends on {enumeration(weak)}, but does so together with other axes (see below)."
         )
     if inert:
         words.append(
-            f"{label} hardly depends on {_enumeration(inert)}: no effect of it, alone or with others, reaches 0.5 %."
+            f"{label} hardly depends on {enumeration(inert)}: no effect of it, alone or with others, reaches 0.5 %."
         )
     return words
 

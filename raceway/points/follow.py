@@ -28,6 +28,7 @@ from raceway.points.attractor import attractor_beside
 from raceway.points.branch import OPENS, PEAK, Followed, Label, Orbit, growth_of_swing, open_contacts, orbit_of, resonance
 from raceway.points.parameter import Parameter, parameter_of
 from raceway.points.workload import Workload, run_times
+from raceway.scene.changes import key_of
 from raceway.scene.scene import Change, SceneSource, plain_tables
 
 #: Error of orbits over their size that meshes are kept fit for, and that at which a branch is left.
@@ -184,7 +185,14 @@ def _follow_branch(
         return float(np.sqrt(max(squares[0] + part * (squares[1] - squares[0]), min(squares))))
 
     branch = Branch(lambda p: parameter.problem_at(p, symmetry), unit, first.size, ERROR, MOST, None, fastest, aim)
-    curve = Followed(parameter.key, parameter.first, parameter.last, float(np.degrees(symmetry.span)), model.scene.title)
+    curve = Followed(
+        parameter.key,
+        parameter.first,
+        parameter.last,
+        float(np.degrees(symmetry.span)),
+        model.scene.title,
+        unit=key_of(parameter.base, parameter.key).unit,
+    )
     sense = 1.0 if parameter.last > parameter.first else -1.0
     try:
         start = branch.start(first, parameter.first, sense)

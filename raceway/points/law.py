@@ -54,7 +54,6 @@ SAMPLES, _PERIODS = 720, 4
 #: Of a mean of so many samples, over the largest force.
 _ROUNDING = 1e-13
 #: Colours of the picture.
-_LAW, _HERTZ, _MOVING = "#0b5fa5", "#555f6b", "#c8501e"
 
 
 @attrs.frozen(eq=False)
@@ -192,40 +191,36 @@ class LawCurves(Answer):
 
     def draw(self) -> Figure:
         """Force, stiffness, damping and the cycle's loop."""
-        from raceway.answers.picture import new_figure, wrapped
+        from raceway.answers.picture import Line, Plot, draw_panels
 
-        with_damping = self.cycle.energy != 0.0 or bool(self.damping.any())
-        figure = new_figure(9.6, 7.2 if with_damping else 3.9)
-        panels = figure.subplots(2 if with_damping else 1, 2, squeeze=False)
         micro, contact, motion = 1e6 * self.approach, self.contact, self.cycle
-        (force, stiffness), further = panels[0], panels[1:]
-        for panel, still, hertz, unit in (
-            (force, self.force, self.hertz_force, 1.0),
-            (stiffness, self.stiffness, self.hertz_stiffness, 1e-6),
-        ):
-            panel.plot(micro, unit * still[0], color=_LAW, label=f"{self.law} at rest")
-            panel.plot(micro, unit * hertz, color=_HERTZ, linestyle="--", label="Hertz")
-        force.set(ylabel="force [N]", title="Force" if with_damping else f"Force; {self.damping_origin}")
-        stiffness.set(ylabel="stiffness [N/µm]", title="Stiffness at rest")
-        for loop, damping in further:
-            damping.plot(micro, self.damping[0], color=_LAW, label="at rest")
-            for k, word, style in ((1, "closing", "-"), (2, "opening", ":")):
-                label = f"{word} at {1e3 * abs(self.rate[k]):.3g} mm/s"
-                for panel, values in ((force, self.force), (damping, self.damping)):
-                    panel.plot(micro, values[k], color=_MOVING, linestyle=style, linewidth=0.9, label=label)
-            loop.plot(1e6 * motion.approach, motion.force, color=_LAW)
-            damping.set(ylabel="damping [N s/m]", title="Damping: force over rate")
+        damped = motion.energy != 0.0 or bool(self.damping.any())
+
+        def lines(numbers: np.ndarray, rates: bool = True) -> list[Line]:
+            words = [
+                f"{word} at {1e3 * abs(self.rate[k]):.3g} mm/s"
+                for k, word in ((1, "closing"), (2, "opening"))
+                if damped and rates
+            ]
+            return [
+                Line(micro, row, word, 2 * k)
+                for k, (row, word) in enumerate(zip(numbers, ["at rest", *words], strict=False))
+            ]
+
+        force = [*lines(self.force), Line(micro, self.hertz_force, "Hertz", 1)]
+        force += [Line(np.array([1e6 * contact.approach]), np.array([contact.load]), "equilibrium", style={"linestyle": ""})]
+        stiffness = [*lines(1e-6 * self.stiffness, False), Line(micro, 1e-6 * self.hertz_stiffness, "Hertz", 1)]
+        x, origin = "approach [µm]", "Force" if damped else f"Force; {self.damping_origin}"
+        rows = [
+            [Plot(tuple(force), x, "force [N]", origin), Plot(tuple(stiffness), x, "stiffness [N/µm]", "Stiffness at rest")]
+        ]
+        if damped:
             title = f"Cycle at {motion.frequency:.4g} Hz: {1e6 * motion.energy:.3g} µJ lost\nC {motion.damping:.4g} N s/m"
-            loop.set(ylabel="force [N]", title=title)
-            damping.legend(frameon=False, fontsize=8.5)
-        force.plot([1e6 * contact.approach], [contact.load], "o", color=_LAW, label="equilibrium")
-        for panel in panels.flat:
-            panel.set_xlabel("approach [µm]")
-        for panel in (force, stiffness):
-            panel.legend(frameon=False, fontsize=8.5)
-        title = f"{self.law}, {contact.race} contact of ball {contact.ball}: {self.title.partition(chr(10))[0]}"
-        figure.suptitle(wrapped(title), fontsize=11)
-        return figure
+            cycle = Plot((Line(1e6 * motion.approach, motion.force),), x, "force [N]", title)
+            rows.append([cycle, Plot(tuple(lines(self.damping)), x, "damping [N s/m]", "Damping: force over rate")])
+        return draw_panels(
+            rows, f"{self.law}, {contact.race} contact of ball {contact.ball}: {self.title.partition(chr(10))[0]}"
+        )
 
     def report(self) -> Iterator[Part]:
         """The contact, the law beside Hertz', the cycle."""

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import io
-from collections.abc import Iterable
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
-from raceway.answers.picture import COLOURS, MARKERS, dress, new_figure, wrapped
+from raceway.answers.picture import Line, Plot, draw_panels, dress, label_axes, new_figure, save_figure, wrapped
 from raceway.answers.quantities import AXIAL_DISPLACEMENT, COLUMNS, STIFFNESS, Z_REAL, K, entry_unit, read_in
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
-from raceway.points.axes import is_number, shown
+from raceway.points.axes import Axis, is_number, places_of, shown
 from raceway.points.selection import LIST, Selection, listed
-from raceway.storage.files import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,8 +24,6 @@ if TYPE_CHECKING:
 
 
 _NO_RESULT = "#c3cad1"
-_FORMATS = (".png", ".svg")
-_DOTS_PER_INCH = 150
 
 
 def draw(layout: _Layout) -> Figure:
@@ -38,172 +34,95 @@ def draw(layout: _Layout) -> Figure:
     RacewayError
         matplotlib is missing.
     """
-    data, kind, x, y, panels = layout.data, layout.kind, layout.x, layout.y, layout.panels
+    data, kind = layout.data, layout.kind
     factor, unit = read_in(1.0, str(data.attrs.get("units", "")))
     name = str(data.name).replace("_", " ").replace(":", " ")
     words = str(data.attrs.get("description", ""))
     label = name if unit in ("", "1") else f"{name} [{unit}]"
-    data = data.copy(data=data.values * factor).assign_coords({key: data[key] for key in data.coords})
-    parts = (
-        [(None, data)] if panels is None else [(value, data.sel({panels: value})) for value in data[panels].values.tolist()]
-    )
+    heading = name if words in ("", name) else f"{name}: {words}"
+    title = "\n".join((heading, layout.title, layout.remark)).strip()
+    parts = layout.parts(factor)
+    if kind == "curves":
+        panels = [_curves(layout, part, label, words) for words, part in parts]
+        columns = 3 if len(panels) == 3 else 2
+        lines = [panels[k : k + columns] for k in range(0, len(panels), columns)]
+        return draw_panels(lines, title, "" if layout.y is None else axis_of(data, layout.y).label)
     columns = min(len(parts), 3)
-    rows = -(-len(parts) // columns)
-    size = (2.0 + 4.0 * columns, 1.2 + (3.9 if kind != "surface" else 4.2) * rows) if len(parts) > 1 else (8.6, 5.6)
-    figure = new_figure(*size)
-    projection = {"projection": "3d"} if kind == "surface" else {}
-    grid = figure.subplots(
-        rows, columns, squeeze=False, sharex=kind != "surface", sharey=kind != "surface", subplot_kw=projection
-    )
-    low, high = float(np.nanmin(data.values)), float(np.nanmax(data.values))
+    rows, flat = -(-len(parts) // columns), kind == "map"
+    figure = new_figure(*((2.0 + 4.0 * columns, 1.2 + 4.0 * rows) if len(parts) > 1 else (8.6, 5.6)))
+    frame = {} if flat else {"projection": "3d"}
+    grid = figure.subplots(rows, columns, squeeze=False, sharex=flat, sharey=flat, subplot_kw=frame)
+    values = factor * data.values
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
     if high - low <= 1e-9 * abs(high):
         low, high = low - 0.01 * abs(low or 1.0), high + 0.01 * abs(high or 1.0)
-    for panel, (value, part) in enumerate(parts):
-        axes = grid.flat[panel]
-        axes.set_title("" if panels is None else f"{panels} = {shown(value)}{_unit(data, panels)}", fontsize=10.5)
-        first = panel % columns == 0
-        if kind == "curves":
-            _curves(axes, part, x, y, label if first else "")
-        elif kind == "map":
-            mappable = _map(axes, part, x, y or "", (low, high), first)
+    x, y = axis_of(data, layout.x).label, axis_of(data, layout.y or layout.x).label
+    for place, ((words, (part, *_)), axes) in enumerate(zip(parts, grid.flat, strict=False)):
+        if flat:
+            label_axes(axes, words, x, "" if place % columns else y)
+            cells = _map(axes, part, layout.x, layout.y or "", (low, high))
         else:
-            mappable = _surface(axes, part, x, y or "", (low, high), label)
+            across = np.meshgrid(part[layout.x].values, part[layout.y].values)
+            axes.plot_surface(*across, part.transpose(layout.y, layout.x).values, cmap="viridis", vmin=low, vmax=high, rcount=200,
+                              ccount=200, linewidth=0.3, edgecolor="#ffffff55", antialiased=True)  # fmt: skip
+            label_axes(axes, words, x, y, 9.5)
+            axes.set_zlabel(label, fontsize=9.5, labelpad=7)
+            axes.xaxis.labelpad = axes.yaxis.labelpad = 9
+            axes.view_init(elev=26.0, azim=-128.0)
+            axes.set_box_aspect((1.25, 1.1, 0.8), zoom=1.0)
     for axes in grid.flat[len(parts) :]:
         axes.set_visible(False)
-    if kind == "map":
-        bar = figure.colorbar(mappable, ax=grid, shrink=0.95, pad=0.015)
-        bar.set_label(label, fontsize=11)
-        bar.outline.set_visible(False)
-    if kind == "curves" and y is not None:
-        handles, labels = grid.flat[0].get_legend_handles_labels()
-        figure.legend(
-            handles, labels, loc="outside right center", frameon=False, fontsize=10, title=_axis(data, y), title_fontsize=10
-        )
-    heading = name if words in ("", name) else f"{name}: {words}"
-    figure.suptitle(wrapped("\n".join((heading, layout.title, layout.remark)), 84), fontsize=11.5)
+    if flat:
+        figure.colorbar(cells, ax=grid, shrink=0.95, pad=0.015, label=label).outline.set_visible(False)
+    figure.suptitle(wrapped(title, 84), fontsize=11.5)
     return figure
 
 
-def write(figure: Figure, path: Path) -> Path:
-    """Write a figure as PNG or SVG, by the ending, whole or not at all.
-
-    Raises
-    ------
-    RacewayError
-        Another ending, or a folder that cannot be written.
-    """
-    if path.suffix.lower() not in _FORMATS:
-        raise RacewayError(f"`{path}`: pictures are written as {' or '.join(_FORMATS)}: choose such a name with --out")
-    from matplotlib import rc_context
-
-    memory = io.BytesIO()
-    # Neither a date nor names at random: the same results give the same file.
-    with rc_context({"svg.hashsalt": "raceway"}):
-        vector = path.suffix.lower() == ".svg"
-        figure.savefig(
-            memory, format=path.suffix.lower()[1:], dpi=_DOTS_PER_INCH, metadata={"Date": None} if vector else None
-        )
-    return write_whole(memory.getvalue(), path)
-
-
-def _curves(axes: Axes, data: DataArray, x: str, y: str | None, label: str) -> None:
+def _curves(layout: _Layout, parts: Sequence[DataArray], label: str, title: str) -> Plot:
     """A curve for each value of y; the points of a list without lines, since they may have no order."""
-    from matplotlib import colormaps
-
-    as_list = LIST in data.dims
-    values: list[Any] = [None] if y is None else list(dict.fromkeys(np.atleast_1d(data[y].values).tolist()))
-    values = sorted(values) if y is not None and _numeric(values) else values
-    # Numbers stand at themselves, in ordered colours; words at 0, 1, 2, ... in distinct ones.
-    plain, ordered = data[x].values.tolist(), _numeric(values) and len(values) > 1
-    names = [] if _numeric(plain) else list(dict.fromkeys(map(shown, plain)))
-    places = np.array([names.index(shown(value)) for value in plain] if names else plain, dtype=float)
-    for k, value in enumerate(values):
-        if y is None:
-            series, at = data, places
-        elif as_list:
-            keep = np.array([coordinate == value for coordinate in data[y].values.tolist()])
-            series, at = data.isel({LIST: np.flatnonzero(keep)}), places[keep]
-        else:
-            series, at = data.sel({y: value}), places
-        colour = colormaps["viridis"](0.88 * k / (len(values) - 1)) if ordered else COLOURS[k % len(COLOURS)]
-        axes.plot(
-            at, series.values, label=shown(value), color=colour, marker=MARKERS[k % len(MARKERS)],
-            markersize=4.5 if len(at) <= 40 else 0.0, linewidth=0.0 if as_list or names else 1.6,
-        )  # fmt: skip
-        if as_list and len(at) > 40:
-            axes.lines[-1].set_markersize(3.0)
-    if names:
-        axes.set_xticks(range(len(names)), names)
-    axes.set_ylabel(label, fontsize=11)
-    _dress(axes, data, x)
+    data, as_list = parts[0], LIST in parts[0].dims
+    along = axis_of(data, layout.x)
+    names = () if along.numeric else tuple(dict.fromkeys(map(shown, along.values)))
+    own = () if layout.y is None else axis_of(data, layout.y).values
+    values = tuple(sorted(own) if all(map(is_number, own)) else dict.fromkeys(own)) or (None,)
+    curves = list[Line]()
+    for place, value in enumerate(values):
+        choice = {} if value is None else {LIST if as_list else layout.y: [one == value for one in own]}
+        series = [part.isel({dim: np.flatnonzero(keep) for dim, keep in choice.items()}) for part in parts]
+        x = [names.index(shown(one)) if names else one for one in np.atleast_1d(series[0][layout.x].values).tolist()]
+        y, *ends = (np.atleast_1d(one.values).ravel() for one in series)
+        low, high = ends or (None, None)
+        style, base = {"linestyle": ""} if as_list or names else {}, curves[0] if curves and not as_list else None
+        shade = place / (len(values) - 1) if len(values) > 1 and all(map(is_number, values)) else None
+        words = "" if value is None else shown(value)
+        curves.append(Line(np.array(x, dtype=float), y, words, place, low, high, None, base, shade, style))
+    return Plot(tuple(curves), along.label, label, title, names)
 
 
-def _map(axes: Axes, data: DataArray, x: str, y: str, limits: tuple[float, float], first: bool) -> Collection:
+def _map(axes: Axes, data: DataArray, x: str, y: str, limits: tuple[float, float]) -> Collection:
     """A cell round each point; contours where every point has a result."""
     low, high = limits
-    axes.set_ylabel(_axis(data, y) if first else "", fontsize=11)
     if LIST in data.dims:
-        points = axes.scatter(data[x].values, data[y].values, c=data.values, s=42, cmap="viridis", vmin=low, vmax=high)
-        _dress(axes, data, x)
-        return points
+        dress(axes)
+        return axes.scatter(data[x].values, data[y].values, c=data.values, s=42, cmap="viridis", vmin=low, vmax=high)
     at_x, at_y = data[x].values, data[y].values
     values = data.transpose(y, x).values
     axes.set_facecolor(_NO_RESULT)
+    axes.grid(False)
     cells = axes.pcolormesh(at_x, at_y, np.ma.masked_invalid(values), shading="nearest", cmap="viridis", vmin=low, vmax=high)
     if np.isfinite(values).all() and min(values.shape) >= 4:
         lines = axes.contour(at_x, at_y, values, levels=8, colors="white", linewidths=0.8, alpha=0.85)
         axes.clabel(lines, fontsize=8.5, fmt="%.4g")
-    _dress(axes, data, x)
-    axes.grid(False)
     return cells
 
 
-def _surface(axes: Any, data: DataArray, x: str, y: str, limits: tuple[float, float], label: str) -> Collection:
-    across, along = np.meshgrid(data[x].values, data[y].values)
-    values = data.transpose(y, x).values
-    surface = axes.plot_surface(
-        across, along, values, cmap="viridis", vmin=limits[0], vmax=limits[1], rcount=200, ccount=200,
-        linewidth=0.3, edgecolor="#ffffff55", antialiased=True,
-    )  # fmt: skip
-    axes.set_xlabel(_axis(data, x), fontsize=9.5, labelpad=9)
-    axes.set_ylabel(_axis(data, y), fontsize=9.5, labelpad=9)
-    axes.set_zlabel(label, fontsize=9.5, labelpad=7)
-    axes.tick_params(labelsize=8.5)
-    axes.view_init(elev=26.0, azim=-128.0)
-    axes.set_box_aspect((1.25, 1.1, 0.8), zoom=1.0)
-    return surface
-
-
-def _dress(axes: Axes, data: DataArray, x: str) -> None:
-    axes.set_xlabel(_axis(data, x), fontsize=11)
-    axes.tick_params(labelsize=10)
-    dress(axes)
-    for axis in (axes.xaxis, axes.yaxis):
-        formatter = axis.get_major_formatter()
-        if hasattr(formatter, "set_useOffset"):
-            formatter.set_useOffset(False)
-    if _numeric(np.atleast_1d(data[x].values).tolist()):
-        axes.locator_params(axis="x", nbins=7)
-
-
-def _axis(data: DataArray, key: str) -> str:
-    return f"{key}{_unit(data, key, brackets=True)}"
-
-
-def _unit(data: DataArray, key: str, brackets: bool = False) -> str:
-    unit = str(data[key].attrs.get("units", ""))
-    if unit in ("", "1", "-"):
-        return ""
-    return f" [{unit}]" if brackets else f" {unit}"
-
-
-def _numeric(values: Iterable[object]) -> bool:
-    return all(map(is_number, values))
+def axis_of(data: DataArray, key: str) -> Axis:
+    """The values of a key, point by point of a list, with their unit."""
+    return Axis(key, tuple(np.atleast_1d(data[key].values).tolist()), str(data[key].attrs.get("units", "")))
 
 
 #: First that is there: what a sweep is made for, then what a static scene has.
 _DEFAULTS = (K.name, Z_REAL.name, f"{STIFFNESS.name}:y,y", AXIAL_DISPLACEMENT.name)
-_FIRST_X = ("excitation.speed_rpm", "kinematics.spin_speed_rpm")
 _MOST_COLOURS = 8
 _MOST_PANELS = 6
 
@@ -215,7 +134,7 @@ class _Layout:
     data : dimensions among ``x``, ``y`` and ``panels``, or ``point``; nan where there is no result; units and description in its
         attributes
     x, y : keys; in curves y is what the colours stand for and may be None
-    panels : key of one panel a value, or None;  title, remark : first line over the picture, and a second, smaller one
+    panels : key of one panel a value, or None;  title, remark : lines over the picture;  ends : of the quantity's interval, or none
     """
 
     data: DataArray
@@ -226,13 +145,25 @@ class _Layout:
     panels: str | None
     title: str
     remark: str
+    ends: tuple[DataArray, ...]
+
+    def parts(self, factor: float) -> list[tuple[str, list[DataArray]]]:
+        """Of each panel its words, and the numbers in a unit that people read, then the ends of their intervals."""
+        arrays = [
+            one.copy(data=factor * one.values).assign_coords({key: one[key] for key in one.coords})
+            for one in (self.data, *self.ends)
+        ]
+        if self.panels is None:
+            return [("", arrays)]
+        axis = axis_of(self.data, self.panels)
+        return [(axis.words(value), [one.isel({axis.key: k}) for one in arrays]) for k, value in enumerate(axis.values)]
 
     def write(self, path: Path) -> Path:
         """Draw it.
 
         RacewayError: matplotlib is missing, or the file cannot be written.
         """
-        return write(draw(self), path)
+        return save_figure(draw(self), path, 150)
 
 
 def layout(
@@ -272,23 +203,25 @@ def layout(
         mistakes.append(Mistake("--y", y, "is the axis of --x already: choose another, or leave one out"))
     if mistakes:
         raise SceneError(mistakes)
-    numeric = [key for key, values in axes.items() if _numeric(values)]
+    found = [Axis(key, tuple(values)) for key, values in axes.items()]
+    numeric = [axis.key for axis in found if axis.numeric]
     both = len(axes) == 2 and len(numeric) == 2
     kind = kind or ("map" if both and min(len(values) for values in axes.values()) > _MOST_COLOURS else "curves")
-    if not x and not (others := [key for key in numeric or axes if key != y]):
+    if not x and not (others := [axis for axis in found if axis.key != y]):
         raise RacewayError(f"{kind}: no axis is left for x: leave out --y, or an --at")
-    x = x or min(others, key=lambda key: (key not in _FIRST_X, -len(axes[key])))
+    x = x or places_of(others, 1)[0].key
     other_axes = [key for key in axes if key != x]
     if kind != "curves":
-        y = y or next(iter(sorted((key for key in other_axes if key in numeric), key=lambda key: -len(axes[key]))), None)
+        y = y or max((key for key in other_axes if key in numeric), key=lambda key: len(axes[key]), default=None)
         if y is None:
             raise SceneError.at("--kind", kind, f"takes two axes with numbers, and only {x} varies: choose --kind curves")
         for option, key in (("--x", x), ("--y", y)):
             if key not in numeric:
                 raise SceneError.at(option, key, f"has words as values, a {kind} needs numbers: choose --kind curves")
-    else:
-        apart = [key for key in other_axes if len(axes[key]) <= _MOST_COLOURS]  # can be told apart by their colours
-        y = y or max(apart or other_axes, key=lambda key: len(axes[key]), default=None)
+    else:  # words first, then most numbers that can be told apart
+        y = y or min(
+            other_axes, key=lambda key: (key in numeric, len(axes[key]) > _MOST_COLOURS, -len(axes[key])), default=None
+        )
     over = [key for key in other_axes if key != y]
     panels = over[0] if len(over) == 1 and len(axes[over[0]]) <= _MOST_PANELS and LIST not in data.dims else None
     if rest := [key for key in over if key != panels]:
@@ -300,9 +233,13 @@ def layout(
         raise RacewayError("the points of this sweep fill no grid, which a surface needs: choose --kind map or curves")
     constants = ", ".join(f"{key} = {shown(v)}" for key, v in selection.fixed.items())
     remark = "; ".join(part for part in (constants, f"without result: {selection.gaps}" if selection.gaps else "") if part)
-    return _Layout(data, name, kind, x, y, panels, selection.title, remark)
+    wanted = [f"{_SYMBOLS.get(name)}_{end}" for end in ("low", "high")]
+    ends = tuple(selection.dataset[end] for end in wanted) if set(wanted) <= set(selection.dataset) else ()
+    return _Layout(data, name, kind, x, y, panels, selection.title, remark, ends)
 
 
+#: Of quantities whose intervals a sweep may state.
+_SYMBOLS = {K.name: K.symbol, f"{STIFFNESS.name}:y,y": "kyy"}
 #: Symbol -> name.
 _NAMES = {number.symbol: number.name for number in COLUMNS.values()} | {"kxx": "stiffness:x,x", "kyy": "stiffness:y,y"}
 

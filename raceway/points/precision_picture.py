@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -69,19 +69,17 @@ def page(result: Tables, picture: bool = False) -> str:
     lines += ["Errors of each quantity, each relative to its own reference:", "", _quantities(result), ""]
     models = [model for model in result["models"] if not model["base"]]
     if models:
-        table = [
-            _markdown_row(("model", "difference", "of K", "of peak load", "of p0", "reference's bound")),
-            _markdown_row(["---"] * 6),
-        ]
+        rows = []
         for model in models:
-            parts = model["differences"]
-            changes = (parts.get(name) for name in (K.name, PEAK_BALL_LOAD.name, P0.name))
-            cells = ["" if part is None else f"{100.0 * part:+.3g} %" for part in changes]
-            difference = "" if model["difference"] is None else f"{100.0 * model['difference']:.3g} %"
-            table.append(
-                _markdown_row((_setting_words(model["model"]), difference, *cells, _digits(model["reference"]["error"], 2)))
-            )
-        lines += ["Differences between models, each by its own reference:", "", "\n".join(table), ""]
+            parts, difference = model["differences"], model["difference"]
+            changes = [difference and abs(difference), *(parts.get(name) for name in (K.name, PEAK_BALL_LOAD.name, P0.name))]
+            cells = [
+                "" if part is None else f"{100.0 * part:{sign}.3g} %"
+                for part, sign in zip(changes, ("", "+", "+", "+"), strict=True)
+            ]
+            rows.append([_setting_words(model["model"]), *cells, _digits(model["reference"]["error"], 2)])
+        table = _markdown(("model", "difference", "of K", "of peak load", "of p0", "reference's bound"), rows)
+        lines += ["Differences between models, each by its own reference:", "", table, ""]
     if result["left_out"]:
         lines += ["Left out:", ""]
         lines += [f"- {_setting_words(item['setting'])} ({item['family']}): {item['why']}" for item in result["left_out"]]
@@ -92,7 +90,7 @@ def page(result: Tables, picture: bool = False) -> str:
 def _table(result: Tables) -> str:
     times = "wall ms", "spread", "cpu ms", "compile s"
     head = ("", "setting", "error", "own estimate", "order", *times, "steps", "iterations", "MiB", "status")
-    lines = [_markdown_row(head), _markdown_row(["---"] * len(head))]
+    lines = list[list[str]]()
     for number, row in enumerate(result["rows"]):
         cost: Mapping[str, Any] = row["cost"] or {}
         memory = cost.get("peak_memory_bytes")
@@ -102,45 +100,39 @@ def _table(result: Tables) -> str:
             ("~" if row["at_bound"] else "") + _digits(row["error"], 2),
             _digits(row["own_error"], 2),
             "" if row["order"] is None else f"{row['order']:.2f}",
-            _digits(_milli(cost.get("wall_s"))),
-            _digits(_milli(cost.get("wall_spread_s")), 2),
-            _digits(_milli(cost.get("cpu_s"))),
+            _digits(cost.get("wall_s"), 3, 1e3),
+            _digits(cost.get("wall_spread_s"), 2, 1e3),
+            _digits(cost.get("cpu_s"), 3, 1e3),
             _digits(cost.get("compile_s"), 2),
             str(cost.get("steps", "")),
             str(cost.get("iterations", "")),
             "" if memory is None else f"{memory / 2**20:.0f}",
             row["status"] + (f": {row['reason']}" if row["reason"] else ""),
         ]
-        lines.append(_markdown_row(cells))
+        lines.append(cells)
     notes = "\\* on the front; ~ the reference is not ten times more accurate than this row: its error is known to the bound only."
-    return "\n".join([*lines, "", notes])
+    return "\n".join([_markdown(head, lines), "", notes])
 
 
 def _quantities(result: Tables) -> str:
     """Errors of all quantities, those of Z's parts relative to |Z|."""
     rows = [row for row in result["rows"] if row["errors"]]
     names = list(dict.fromkeys(name for row in rows for name in row["errors"]))
-    lines = [
-        _markdown_row(("setting", *(name.replace("_", " ") for name in names))),
-        _markdown_row(["---"] * (1 + len(names))),
+    lines = [(_setting_words(row["setting"]), *(_digits(row["errors"].get(name), 2) for name in names)) for row in rows]
+    table = _markdown(("setting", *(name.replace("_", " ") for name in names)), lines)
+    return f"{table}\n\nz real and z imag: relative to the size of Z."
+
+
+def _markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table."""
+    cells = [
+        [cell if cell == "\\*" else cell.replace("|", "\\|") for cell in row] for row in (head, ["---"] * len(head), *rows)
     ]
-    lines += [
-        _markdown_row((_setting_words(row["setting"]), *(_digits(row["errors"].get(name), 2) for name in names)))
-        for row in rows
-    ]
-    return "\n".join([*lines, "", "z real and z imag: relative to the size of Z."])
+    return "\n".join(f"| {' | '.join(row)} |" for row in cells)
 
 
-def _markdown_row(cells: Sequence[object]) -> str:
-    return "| " + " | ".join(str(cell).replace("|", "\\|") if cell != "\\*" else cell for cell in cells) + " |"
-
-
-def _digits(value: float | None, digits: int = 3) -> str:
-    return "" if value is None else f"{value:.{digits}g}"
-
-
-def _milli(value: float | None) -> float | None:
-    return None if value is None else 1e3 * value
+def _digits(value: float | None, digits: int = 3, factor: float = 1.0) -> str:
+    return "" if value is None else f"{factor * value:.{digits}g}"
 
 
 def _setting_words(setting: Tables) -> str:
@@ -150,10 +142,9 @@ def _setting_words(setting: Tables) -> str:
 def draw(result: Tables) -> Figure:
     """The figure of a study."""
     figure = new_figure(8.4, 7.6)
-    labels = draw_on(panel := figure.add_subplot(), result)
     figure.suptitle(wrapped(f"Error against run time: {result['title']}", 70), fontsize=12)
-    if panel.get_legend_handles_labels()[1]:
-        figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    labels = draw_on(panel := figure.add_subplot(), result)
+    figure.legend(*panel.get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     put_beside(panel, labels)
     return figure
 

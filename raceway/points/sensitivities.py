@@ -12,7 +12,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Part
-from raceway.answers.picture import MOST_COLUMNS, new_figure, wrapped
+from raceway.answers.picture import MOST_COLUMNS, label_axes, new_figure, wrapped
 from raceway.answers.progress import ShowProgress, telling
 from raceway.answers.quantities import quantity_of, read_in
 from raceway.answers.table import sections
@@ -155,8 +155,7 @@ class Sensitivities(Answer):
                 if abs(share) >= _LEAST:
                     side = "left" if share >= 0.0 else "right"
                     panel.annotate(f"{share:+.2g}", (share, position), (3 if share >= 0.0 else -3, 0), textcoords="offset points", ha=side, va="center", fontsize=8)  # fmt: skip
-            panel.set_title(name.replace("_", " "), fontsize=11)
-            panel.set_xlabel("% per % of key", fontsize=9)
+            label_axes(panel, name.replace("_", " "), "% per % of key", "", 9.5)
             panel.set_yticks(range(len(keys)), [row.key.path for row in keys], fontsize=9)
             panel.set_ylim(len(keys) - 0.4, -0.6)
         figure.suptitle(wrapped(self.title), fontsize=11)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import attrs
 import numpy as np
 
-from raceway.extend import Status, Tables, label_axes, new_figure
+from raceway.extend import Line, Plot, Status, Tables, label_axes, name_ends, new_figure
 from raceway_article.design import (
     AMPLITUDES, CLAIMED, DIRECTIONS, FRICTION_WORDS, ROTATING, STIFFNESSES, TILT_WORDS, TILTS, Curve, Curves, Setting, hardening,
 )  # fmt: skip
@@ -47,7 +47,7 @@ class Panel:
 
     def figure(self) -> Figure:
         figure = new_figure(_WIDTH, _HEIGHT)
-        self.draw(_axes(figure, (1, 1, 1), self.solid))
+        self.draw(figure.add_subplot(projection="3d" if self.solid else None))
         return figure
 
 
@@ -64,44 +64,28 @@ class Picture:
         columns = min(3, len(self.panels))
         figure = new_figure(_WIDTH * columns, _HEIGHT * rows + 0.4)
         for number, panel in enumerate(self.panels, start=1):
-            panel.draw(_axes(figure, (rows, columns, number), panel.solid))
+            panel.draw(figure.add_subplot(rows, columns, number, projection="3d" if panel.solid else None))
         figure.suptitle(self.title, fontsize=13)
         return figure
-
-
-def _axes(figure: Figure, position: tuple[int, int, int], solid: bool) -> Axes:
-    return figure.add_subplot(*position, projection="3d" if solid else None)
 
 
 def finish(axes: Axes, title: str, x: str, y: str, legend: int = 0) -> None:
     """Title, labels and grid; a legend of so many columns below."""
     label_axes(axes, title, x, y, 10.0)
-    axes.ticklabel_format(useOffset=False)
     if legend:
         axes.legend(fontsize=8.5, frameon=False, ncols=legend, loc="upper center", bbox_to_anchor=(0.5, -0.17))
 
 
-@attrs.frozen(eq=False)
-class _Line:
-    """A line of a panel; ``marked`` has a dot at each point, ``bridged`` goes straight over points without a number."""
-
-    x: np.ndarray
-    y: np.ndarray
-    style: str
-    colour: _Colour
-    width: float
-    label: str | None = None
-    marked: bool = True
-    bridged: bool = False
-
-    def plot(self, axes: Axes) -> None:
-        visible = np.isfinite(self.y) if self.bridged else slice(None)
-        marker: Tables = {"marker": "o", "markersize": 3} if self.marked else {}
-        axes.plot(self.x[visible], self.y[visible], self.style, color=self.colour, lw=self.width, label=self.label, **marker)
+def _line(
+    x: np.ndarray, y: np.ndarray, style: str, colour: _Colour, width: float, label: str = "", marked: bool = True
+) -> Line:
+    """A line with a dot at each point where it is ``marked``."""
+    look = {"color": colour, "linestyle": style, "linewidth": width, "markersize": 3.0, "markerfacecolor": colour}
+    return Line(x, y, label, style={**look, "marker": "o" if marked else ""})
 
 
 def _panel(
-    lines: Sequence[_Line], labels: tuple[str, str, str], legend: int, words: str, caption: str = "", more: Callable[[Axes], None] | None = None
+    lines: Sequence[Line], labels: tuple[str, str, str], legend: int, words: str, caption: str = "", more: Callable[[Axes], None] | None = None
 ) -> Panel:  # fmt: skip
     """Lines over one axis.
 
@@ -109,10 +93,8 @@ def _panel(
     """
 
     def draw(axes: Axes) -> None:
-        for line in lines:
-            line.plot(axes)
-        if more is not None:
-            more(axes)
+        title, x, y = labels
+        Plot(tuple(lines), x, y, title, more=more).draw(axes)
         finish(axes, *labels, legend=legend)
 
     return Panel(draw, words, caption)
@@ -185,20 +167,19 @@ def _excitations(curves: Curves, kind: str, tilt: str, measure: str, star: bool,
     def k(curve: Curve, status: str = "completed") -> np.ndarray:
         return np.asarray(curve.values(measure, status) / (curve.values(measure)[0] if star else 1e6))
 
-    lines = [_Line(w, k(curve), "--", _PAIRS[pair][0], 1.1, None, False, True) for pair, curve in light.items()]
-    lines += [_Line(w, k(curve), style, colour, width, name, bridged=True)
-              for curve, (colour, style, width, name) in ((curve, _PAIRS[pair]) for pair, curve in run.items())]  # fmt: skip
+    def bridged(curve: Curve, style: str, colour: _Colour, width: float, label: str = "", marked: bool = True) -> Line:
+        """Straight over points without a number."""
+        known = np.isfinite(y := k(curve))
+        return _line(w[known], y[known], style, colour, width, label, marked)
 
-    def unstable(axes: Axes) -> None:
-        # Limits by the steady motions: an unstable one far away must not flatten them.
-        values = np.concatenate([line.y for line in lines])
-        values = values[np.isfinite(values)]
-        if values.size:
-            room = 0.07 * max(values.max() - values.min(), 0.01 * abs(values.max()))
-            axes.set_ylim(values.min() - room, values.max() + room)
-        for pair, curve in run.items():
-            crosses = np.clip(k(curve, "unstable"), *axes.get_ylim())
-            axes.plot(w, crosses, "x", color=_PAIRS[pair][0], markersize=6, zorder=1, clip_on=False)
+    lines = [bridged(curve, "--", _PAIRS[pair][0], 1.1, marked=False) for pair, curve in light.items()]
+    lines += [bridged(curve, style, colour, width, name)
+              for curve, (colour, style, width, name) in ((curve, _PAIRS[pair]) for pair, curve in run.items())]  # fmt: skip
+    # A ring does not stay on an unstable motion; limits are those of the others.
+    lines += [
+        attrs.evolve(_line(w, np.full(len(w), np.nan), "", _PAIRS[pair][0], 1.0), doubt=k(curve, "unstable"))
+        for pair, curve in run.items()
+    ]
 
     caption = "Dashed: the same with weightless balls."
     if any(np.isfinite(curve.values(measure, "unstable")).any() for curve in run.values()):
@@ -207,16 +188,16 @@ def _excitations(curves: Curves, kind: str, tilt: str, measure: str, star: bool,
     if gaps:
         caption += f" No steady motion is found at {', '.join(sorted(gaps))} r/min; what a ring does there stands in the last table."
     words = f"{label} over w* from 0 to 1, {TILT_WORDS[tilt]}: {_ends({_PAIRS[pair][3]: k(curve) for pair, curve in run.items()})}"
-    return _panel(lines, (f"{TILT_WORDS[tilt]}, {load:g} N", _SPEED, label), 2, words, caption, unstable)
+    return _panel(lines, (f"{TILT_WORDS[tilt]}, {load:g} N", _SPEED, label), 2, words, caption)
 
 
 def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     """Figure 10: at several axial loads; dashed without ball inertia."""
     w, rows = np.array(curves.design.relative(curves.design.speeds)), _few_of(curves.design.loads)
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
-    label, lines, names = _STAR if star else _STIFFNESS, list[_Line](), {}
+    label, lines, names = _STAR if star else _STIFFNESS, list[Line](), {}
     for row, colour in zip(rows, _colours(len(rows)), strict=True):
-        lines += [_Line(w, k[row], "-", colour, 2.0, marked=False), _Line(w, light[row], "--", colour, 1.1, marked=False)]
+        lines += [_line(w, k[row], "-", colour, 2.0, marked=False), _line(w, light[row], "--", colour, 1.1, marked=False)]
         names[f"{curves.design.loads[row]:g} N"] = k[row]
 
     def ends(axes: Axes) -> None:
@@ -224,20 +205,11 @@ def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
             _reference(axes)
         axes.set_xlim(0.0, 1.2)
         axes.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0])
-        labels = [(float(line.y[-1]), name, line.colour) for name, line in zip(names, lines[::2], strict=True)]
-        # Names at the right ends of curves, pushed apart where they would cover each other.
-        finite = sorted((label for label in labels if np.isfinite(label[0])), key=lambda label: label[0])
-        low, high = axes.get_ylim()
-        gap = 0.062 * (high - low)
-        heights: list[float] = []
-        for y, *_ in finite:
-            heights.append(max(y, heights[-1] + gap) if heights else y)
-        top = high + 0.5 * gap
-        for k in reversed(range(len(heights))):  # what was pushed out at the top pushes back
-            heights[k] = top = min(heights[k], top - gap)
-        for height, (_, text, colour) in zip(heights, finite, strict=True):
-            axes.annotate(text, (1.0, height), xytext=(5, 0), textcoords="offset points", fontsize=8.5, color=colour, va="center",
-                          annotation_clip=False)  # fmt: skip
+        name_ends(
+            axes,
+            [(float(line.y[-1]), name, line.style["color"]) for name, line in zip(names, lines[::2], strict=True)],
+            0.062,
+        )
 
     words = f"{label} over w*, {TILT_WORDS[tilt]}, with ball inertia: {_ends(names)}"
     return _panel(lines, (TILT_WORDS[tilt], _SPEED, label), 0, words, "Dashed: weightless balls.", ends)
@@ -247,11 +219,11 @@ def _over_load(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     """Figure 11: at several speeds; dashed without ball inertia."""
     loads, columns = np.array(curves.design.loads), _few_of(curves.design.speeds)
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
-    label, lines, names = _STAR if star else _STIFFNESS, list[_Line](), {}
+    label, lines, names = _STAR if star else _STIFFNESS, list[Line](), {}
     for column, colour in zip(columns, _colours(len(columns)), strict=True):
         name = f"w* = {curves.design.relative(curves.design.speeds)[column]:.2g}"
-        lines.append(_Line(loads, light[:, column], "--", colour, 1.1, marked=False))
-        lines.append(_Line(loads, k[:, column], "-", colour, 1.9, name))
+        lines.append(_line(loads, light[:, column], "--", colour, 1.1, marked=False))
+        lines.append(_line(loads, k[:, column], "-", colour, 1.9, name))
         names[name] = k[:, column]
     words = f"{label} over the axial load, {TILT_WORDS[tilt]}: {_ends(names)}"
     return _panel(lines, (TILT_WORDS[tilt], _LOAD, label), 3, words, "Dashed: weightless balls.")
@@ -323,13 +295,14 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
 
 def _friction(curves: Curves, tilt: str) -> Panel:
     """k* over speed without friction, and with it on balls that stand and that orbit, at the heaviest and the lightest load."""
-    design, lines, names = curves.design, list[_Line](), {}
+    design, lines, names = curves.design, list[Line](), {}
     for load, style in ((design.loads[-1], "-"), (design.loads[0], "--")):
         for friction in design.frictions:
             setting = Setting(**ROTATING, tilt=tilt, inertia=True, bodies="rigid", friction=friction)
             star, w = curves.curve(setting, load).normalised(), np.array(design.relative(design.speeds_of(setting)))
-            label = FRICTION_WORDS[friction] if style == "-" else None
-            lines.append(_Line(w, star, style, _FRICTION_COLOURS[friction], 1.7, label, bridged=True))
+            label = FRICTION_WORDS[friction] if style == "-" else ""
+            known = np.isfinite(star)
+            lines.append(_line(w[known], star[known], style, _FRICTION_COLOURS[friction], 1.7, label))
             names[f"{load:g} N, {FRICTION_WORDS[friction]}"] = star
     words = f"k* over w* from 0 to 1, {TILT_WORDS[tilt]}: {_ends(names)}"
     caption = f"Solid: {design.loads[-1]:g} N. Dashed: {design.loads[0]:g} N."
@@ -343,18 +316,22 @@ def _reference(axes: Axes) -> None:
 def _tilt_stiffness(ratios: Mapping[str, np.ndarray], shaft: float) -> Picture:
     """k*(1) over the tilt stiffness, which decides whether the bearing hardens."""
 
-    def draw(axes: Axes) -> None:
-        for (name, ratio), colour in zip(ratios.items(), _colours(len(ratios)), strict=True):
-            axes.semilogx(STIFFNESSES, ratio, "-o", markersize=3, color=colour, linewidth=2.0, label=name)
+    def more(axes: Axes) -> None:
+        axes.set_xscale("log")
         _reference(axes)
         axes.axvline(shaft, color=_REFERENCE, linewidth=0.8, linestyle="--")
         axes.annotate("shaft", (shaft, 0.02), xycoords=("data", "axes fraction"), xytext=(4, 0), textcoords="offset points",
                       fontsize=9, color="#55636f")  # fmt: skip
-        label_axes(axes, "Hardening (above 1) or softening", "tilt stiffness of the shaft [N m/rad]", "k* at w* = 1", 10.0)
-        axes.legend(fontsize=9, frameon=False)
 
+    colours = zip(ratios.items(), _colours(len(ratios)), strict=True)
+    lines = [_line(np.array(STIFFNESSES), ratio, "-", colour, 2.0, name) for (name, ratio), colour in colours]
+    labels = "Hardening (above 1) or softening", "tilt stiffness of the shaft [N m/rad]", "k* at w* = 1"
     words = f"k* at the highest speed over the tilt stiffness, from next to free to next to locked: {_ends(ratios)}"
-    return Picture("tilt-stiffness", "What decides the trend: the tilt stiffness of the shaft", (Panel(draw, words, ""),))
+    return Picture(
+        "tilt-stiffness",
+        "What decides the trend: the tilt stiffness of the shaft",
+        (_panel(lines, labels, 3, words, more=more),),
+    )
 
 
 def _both_bodies(curves: Curves, tilt: str, star: bool) -> Panel:
@@ -365,7 +342,7 @@ def _both_bodies(curves: Curves, tilt: str, star: bool) -> Panel:
     surfaces = {f", {names[0]}": first, f", {names[1]}": second} if star else {"": second / first}
     label = _STAR if star else f"K {names[1]} / K {names[0]} [-]"
     lines = [
-        _Line(w, values[row], style, colour, 1.7, f"{design.loads[row]:g} N{name}", marked=False)
+        _line(w, values[row], style, colour, 1.7, f"{design.loads[row]:g} N{name}", marked=False)
         for (name, values), style in zip(surfaces.items(), ("--" if star else "-", "-"), strict=False)
         for row, colour in zip(rows, _colours(len(rows)), strict=True)
     ]

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from raceway.plugins.formats import RecordedMotion, RunResult
+    from raceway.plugins.formats import RunResult
 
 
 _USED, _OTHER, _STATIC, _GRID = "#0b5fa5", "#b9c4cf", "#c8501e", "#d8dee4"
@@ -119,7 +119,8 @@ def _available(result: RunResult) -> tuple[str, ...]:
 
 def _draw_orbit(axes: Axes, result: RunResult) -> None:
     """Path of the inner ring's reference point in the radial plane."""
-    motion = _motion(result)
+    motion = result.simulation
+    assert motion is not None
     record, used = motion.whole, motion.record
     shortened = len(record.time) > len(used.time)
     turns = round(len(used.time) * used.schedule.stride / used.schedule.steps_per_turn)
@@ -135,14 +136,15 @@ def _draw_orbit(axes: Axes, result: RunResult) -> None:
     still = _MICRO * result.equilibrium.displacement[1:3]
     axes.plot(*still, "+", color=_STATIC, markersize=11, label="static equilibrium")
     axes.set_aspect("equal", adjustable="datalim")
-    label_axes(axes, f"Orbit of the inner ring\n{_subtitle(result)}", "displacement y [µm]", "displacement z [µm]")
+    label_axes(axes, f"Orbit of the inner ring\n{wrapped(result.title, 64)}", "displacement y [µm]", "displacement z [µm]")
 
 
 def _draw_spectrum(axes: Axes, result: RunResult) -> None:
     """Amplitude of the displacement against multiples of the excitation's frequency."""
     import numpy as np
 
-    record, z = _motion(result).record, result.identification
+    assert result.simulation is not None
+    record, z = result.simulation.record, result.identification
     frequency = result.model.excitation.frequency_hz if z is None else z.frequency_hz
     motion = record.displacement[:, 1:3] - record.displacement[:, 1:3].mean(axis=0)
     lines = 2.0 * np.abs(np.fft.rfft(motion, axis=0)) / len(motion) * _MICRO
@@ -165,7 +167,7 @@ def _draw_spectrum(axes: Axes, result: RunResult) -> None:
     axes.set_xlim(0.0, 10.4)
     axes.set_ylim(peak * 1e-9, peak * 10.0)
     axes.set_xticks(range(11))
-    title = f"Spectrum of the displacement, mean removed\n{_subtitle(result)}"
+    title = f"Spectrum of the displacement, mean removed\n{wrapped(result.title, 64)}"
     label_axes(axes, title, "frequency / excitation frequency [-]", "amplitude [µm]")
 
 
@@ -194,24 +196,13 @@ def _draw_ball_loads(axes: Any, result: RunResult) -> None:
     axes.set_xticks(np.radians(np.arange(0, 360, 30)))
     axes.set_xticklabels(["0° (+y)", "30°", "60°", "90° (+z)", *(f"{a}°" for a in range(120, 360, 30))])
     axes.tick_params(labelsize=10, pad=6)
-    title = f"Ball loads on the inner race [N] by azimuth; grey: ball number\n{_subtitle(result)}"
+    title = f"Ball loads on the inner race [N] by azimuth; grey: ball number\n{wrapped(result.title, 64)}"
     axes.set_title(title, fontsize=12, pad=14)
     axes.grid(color=_GRID, linewidth=0.7)
 
 
-def _motion(result: RunResult) -> RecordedMotion:
-    if result.simulation is None:
-        raise ValueError("the scene is static: no motion was recorded")
-    return result.simulation
-
-
 def _turns(count: int) -> str:
     return f"{count} turn{'' if count == 1 else 's'}"
-
-
-def _subtitle(result: RunResult) -> str:
-    """The title, and what was changed of the scene, in lines that fit."""
-    return wrapped(result.title, 64)
 
 
 class _Drawing(NamedTuple):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.extend import ReadTables, new_figure, read_in, wrapped
+from raceway.extend import ReadTables, axis_label, new_figure, read_in, wrapped
 from raceway_measure.fit.shaft_angle import Rotation
 from raceway_measure.fit.synchronous import Synchronous
 from raceway_rotor.shaft import State
@@ -39,12 +39,12 @@ def draw_fit(content: ReadTables) -> Figure:
         panel.plot(x[order], factor * fit[order], color=_BLUE, label="fit, with its 95 %")
         fmt, size, bars = ("o", 4, 1.96 * factor * error) if few else (".", 1, None)
         panel.errorbar(x, factor * data, bars, fmt=fmt, ms=size, color=_BLACK, elinewidth=0.8, label="data")
-        panel.set_ylabel(_with_unit(quantity["name"], unit))
+        panel.set_ylabel(axis_label(quantity["name"], unit))
         panel.legend(frameon=False, fontsize=8)
         for level, style in ((0.0, "-"), (-_MARKED, ":"), (_MARKED, ":")):
             below.axhline(level, color=_GREY, linewidth=0.8, linestyle=style)
         below.plot(x, (data - fit) / np.where(error > 0.0, error, 1.0), fmt, ms=size, color=_BLACK)
-        below.set_xlabel(_with_unit(quantity["over"], quantity["over_unit"]))
+        below.set_xlabel(axis_label(quantity["over"], quantity["over_unit"]))
         below.set_ylabel("residual over\nstandard error")
     # The ellipse of two numbers at 95 %; of one number its interval
     panel = panels[0][-1]
@@ -70,8 +70,8 @@ def draw_fit(content: ReadTables) -> Figure:
             path = path * errors[:, None] + np.array([[number["value"]] for number in free])
             panel.plot(path[0], path[1], color=_RED)
             panel.plot([free[0]["value"]], [free[1]["value"]], "o", ms=4, color=_RED)
-            panel.set_ylabel(_with_unit(free[1]["key"], free[1]["unit"]), fontsize=9)
-        panel.set_xlabel(_with_unit(free[0]["key"], free[0]["unit"]), fontsize=9)
+            panel.set_ylabel(axis_label(free[1]["key"], free[1]["unit"]), fontsize=9)
+        panel.set_xlabel(axis_label(free[0]["key"], free[0]["unit"]), fontsize=9)
     panels[1][-1].set_axis_off()
     lines = []
     for number in content["free"][:4]:
@@ -80,10 +80,6 @@ def draw_fit(content: ReadTables) -> Figure:
     panels[1][-1].text(0.0, 0.9, "\n".join(lines), va="top", transform=panels[1][-1].transAxes, fontsize=8)
     figure.suptitle(wrapped(content["title"]), fontsize=11)
     return figure
-
-
-def _with_unit(name: str, unit: str) -> str:
-    return f"{name} [{unit}]" if unit else name
 
 
 def figures(rotation: Rotation, component: Synchronous, state: State) -> dict[str, Figure]:

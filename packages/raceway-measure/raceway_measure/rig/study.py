@@ -16,7 +16,7 @@ from raceway_rotor.shaft import Bearing, State, balance, bearing, rotor
 
 from raceway import Answer, BeyondPlanError, ConvergenceError, RacewayError, Scene, __version__
 from raceway.extend import (
-    K_ERROR, C, Fact, Item, K, Page, Part, ReadTables, Registry, Tables, Words, Workload, label_axes, local, new_figure,
+    K_ERROR, C, Fact, Item, K, Line, Page, Part, Plot, ReadTables, Registry, Tables, Words, Workload, draw_panels, label_axes, local, new_figure,
     registry_with, row_key, rows_table, run_times, save_figure, stored_rows, without_nan, work_through, written,
 )  # fmt: skip
 from raceway_measure.fit.identify import Identified, identify_recording
@@ -313,7 +313,6 @@ def _point(rig: Rig, specimen: Bearing, rpm: float, number: int) -> _Point:
     return _Point(specimen.scene.load.axial, state, free.unbalance_force, signals, slow, identification, by_article, causes)
 
 
-_COLOURS = ("#0b5fa5", "#c8501e", "#2a8f5b", "#8a4fa3")
 _KINDS = {"none": "#2a8f5b", "correction": "#c8501e", "noise": "#0b5fa5", "window": "#8a4fa3", "run-out": "#b58a00", "model": "#555f6b"}  # fmt: skip
 #: Errors below this are drawn at the edge.
 _LEAST_PERCENT = 1e-4
@@ -321,28 +320,18 @@ _LEAST_PERCENT = 1e-4
 
 def _procedures(study: _RigStudy) -> Figure:
     """True K over speed, and what each correction makes of it."""
-    figure = new_figure(8.0, 4.2)
-    loads = list(dict.fromkeys(point.axial for point in study.points))
-    for panel, axial in zip(np.atleast_1d(figure.subplots(1, len(loads), sharey=True)), loads, strict=True):
+    panels = []
+    for axial in dict.fromkeys(point.axial for point in study.points):
         points = [point for point in study.points if point.axial == axial]
-        speeds = [30.0 / np.pi * point.state.speed for point in points]
-        panel.plot(speeds, [1e-6 * p.state.stiffness for p in points], color="#1c2733", marker="o", label="true")
-        by_inversion = [1e-6 * p.identified.state.stiffness for p in points]
-        panel.plot(speeds, by_inversion, color=_COLOURS[2], marker="x", markersize=9, linestyle="", label="beam inverted")
-        for k, style in ((0, "--"), (3, ":"), (5, "-.")):
-            name = points[0].readings[k].correction
-            values = [1e-6 * p.readings[k].stiffness for p in points]
-            label = {"none": "no correction"}.get(name, name)
-            panel.plot(speeds, values, color=_COLOURS[1], linestyle=style, marker=".", label=label)
-        label_axes(panel, f"{axial:g} N axial", "speed [r/min]", "", 10.0)
-        panel.set_xticks(speeds)
-    # One scale for all panels, and set when all are drawn: a limit that is set holds, whatever comes after it.
-    figure.axes[0].set_ylim(bottom=0.0)
-    figure.axes[0].set_ylabel("K [N/µm]")
-    figure.legend(
-        *figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False, fontsize=9
-    )
-    return figure
+        speeds = 30.0 / np.pi * np.array([point.state.speed for point in points])
+        names = {points[0].readings[k].correction: k for k in (0, 3, 5)}
+        numbers = {"beam inverted": [p.identified.state.stiffness for p in points]}
+        numbers |= {name: [p.readings[k].stiffness for p in points] for name, k in names.items()}
+        true = Line(speeds, 1e-6 * np.array([p.state.stiffness for p in points]), "true")
+        lines = [Line(speeds, 1e-6 * np.array(k), {"none": "no correction"}.get(name, name), place, base=true)
+                 for place, (name, k) in enumerate(numbers.items(), start=1)]  # fmt: skip
+        panels.append(Plot((true, *lines), "speed [r/min]", "K [N/µm]", f"{axial:g} N axial"))
+    return draw_panels([panels], "K from the rig's record, and what it differs from the true one by")
 
 
 def _causes(study: _RigStudy) -> Figure:
