@@ -447,7 +447,7 @@ SLIPS = {
     "no store": (["export", "nowhere", "--ross", "b.toml"], "`nowhere` is no store of a sweep", ""),
     "no quantity": (["sweep", "STORE", "--plot", "nothing"], "is not a quantity of this sweep", ""),
     "no value": (["sweep", "STORE", "--at", "load.axial"], "must have the form KEY=VALUE", ""),
-    "ending of no picture": (["sweep", "STORE", "--picture", "a.pdf"], "pictures are written as .png or .svg", ""),
+    "ending of no picture": (["sweep", "STORE", "--picture", "a.jpg"], "pictures are written as .png, .svg or .pdf", ""),
 }  # fmt: skip
 
 
