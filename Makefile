@@ -44,10 +44,10 @@ ross: $(VENV)-docs/.installed ## the tests under the rotor program ROSS
 	$(VENV)-docs/bin/python -m pytest -q -m ross packages/raceway-rotor/tests/test_ross_inside.py packages/raceway-rotor/tests/test_against_ross.py
 
 wheel: $(VENV)/.all ## a wheel in dist with compiled kernels, installed into an empty environment without extras, which runs a scene
-	rm -rf dist build/wheel build/kernels
-	$(BIN)/python -m checks.kernels build/kernels
-	mv build/kernels raceway/data/kernels
-	$(BIN)/python -m build --wheel --no-isolation --outdir dist .; status=$$?; rm -rf raceway/data/kernels; exit $$status
+	rm -rf dist build && mkdir -p build/source
+	cp -r raceway README.md LICENSE pyproject.toml build/source
+	$(BIN)/python -m checks.kernels build/source/raceway/data/kernels
+	$(BIN)/python -m build --wheel --no-isolation --outdir dist build/source
 	$(PYTHON) -m venv build/wheel
 	build/wheel/bin/python -m pip install -q -c constraints.txt dist/*.whl
 	cd build/wheel && bin/raceway run $(CURDIR)/examples/minimal.toml -v --out out

@@ -32,7 +32,10 @@ def ran(name):
     return run(load_scene(FOLDER / f"{name}.toml")).to_dict()
 
 
-@pytest.mark.parametrize("path", RUNNING, ids=lambda path: path.stem)
+#: The patches with fewer points run below.
+@pytest.mark.parametrize(
+    "path", [pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * (path.stem == "b7206_patches")) for path in RUNNING]
+)
 def test_example_runs(path):
     result = ran(path.stem)
     json.dumps(result, allow_nan=False)

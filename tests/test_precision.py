@@ -198,6 +198,7 @@ def test_a_reference_that_is_no_better_than_the_rows_is_refused_after_the_rows_a
 
 def test_no_converging_row_is_a_numerical_failure_with_the_reason(tmp_path):
     words = ["--vary", "integrator.steps_per_turn=8,16", "--set", "integrator.kind=central_difference", "--repeats", "1"]
+    words += ["--set", "integrator.turns=4"]
     found = invoke("precision", ARTICLE, *words, "--out", tmp_path)
     assert found.exit_code == 1 and "no setting converged" in found.output and "stable limit" in found.output
     rows = json.loads((tmp_path / "precision.json").read_text())["rows"]

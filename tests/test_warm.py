@@ -155,7 +155,7 @@ def test_tolerances_without_derivatives_have_no_interval():
     assert band["quantities"] == {} and "every tolerance is left out" in band["why"]
 
 
-@pytest.mark.parametrize("kind", ["rigid", "spring"])
+@pytest.mark.parametrize("kind", ["rigid", pytest.param("spring", marks=pytest.mark.slow)])
 def test_runaway_advises_by_the_preload(kind):
     """Of a pair whose heat can not leave; a sprung one is not told to take springs."""
     closed = dict.fromkeys(("shaft_ambient", "housing_ambient"), 1e-9) | {"oil_flow": 1e-14}

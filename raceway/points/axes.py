@@ -188,9 +188,9 @@ def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Ax
 def _axis(key: str, values: Sequence[Any]) -> Axis:
     """An axis whose values are all different."""
     names = [(isinstance(v, bool), v if is_number(v) else repr(v)) for v in values]
-    for position, name in enumerate(names):
-        if name in names[:position]:
-            raise SceneError.at(key, values[position], "is duplicated in the axis")
+    if len(set(names)) < len(names):
+        repeated = next(value for k, value in enumerate(values) if names[k] in names[:k])
+        raise SceneError.at(key, repeated, "is duplicated in the axis")
     return Axis(key, tuple(values))
 
 

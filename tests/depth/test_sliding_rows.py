@@ -94,7 +94,7 @@ def test_stiffness_and_damping_are_those_of_single_rows_condensed():
     assert held[0][0] == pytest.approx(2.0 * own[1][0, 0], rel=1e-6)
 
 
-@pytest.mark.parametrize("bodies", ["condensed", "patches"])
+@pytest.mark.parametrize("bodies", ["condensed", pytest.param("patches", marks=pytest.mark.slow)])
 def test_elastic_bodies_follow_alike(bodies):
     """Axially a pair on a spring is its first row: meshes and contacts are the same, to what an equilibrium is solved to."""
     tables = {"bodies": {"kind": "condensed"}}

@@ -8,6 +8,7 @@ from collections import defaultdict
 from functools import cache
 
 import numpy as np
+import pytest
 from raceway_catalogue.inferred import STIFFNESS_95
 from raceway_catalogue.printed import printed_by
 from raceway_catalogue.rating_conventions import stiffnesses
@@ -15,6 +16,8 @@ from raceway_catalogue.rating_conventions import stiffnesses
 import raceway as rw
 from checks.validation.command_line import invoke
 from raceway.core.jit import working_process_time
+
+pytestmark = pytest.mark.night
 
 NSK = "NSK, super-precision bearings, series 70, 72, 79"
 GMN = "GMN's printed balls: 103 bearings, each inferred from what is printed of it and from the balls of the 102 others"

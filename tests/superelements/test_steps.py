@@ -76,7 +76,7 @@ def test_a_solution_is_that_of_the_matrix_of_a_step(tables):
     contact, solver = system.contact, system.condensed
     assert contact.friction.slipping.any()
     assert contact.rate_stiffness.any()
-    for dt in (1e-2, 1e-4, 1e-6):
+    for dt in (1e-2, 1e-6):
         before = solver.setups
         assert_solved(system, rng, dt)
         # Superelements of a step are kept and know its mass.
@@ -95,7 +95,7 @@ def test_balls_that_touch_nothing_are_held_by_their_mass_and_cage_alone():
     y[0] -= 5e-5
     system.internal(0.0, STEP, y + np.concatenate([np.zeros(5), lifted(system)]), np.zeros_like(y))
     assert not system.contact.force.any()
-    for dt in (1e-4, 1e-5):
+    for dt in (1e-4,):
         assert_solved(system, np.random.default_rng(5), dt, first=1e-2)
 
 
@@ -130,19 +130,19 @@ def assert_solved(system, rng, dt, first=1e-3):
     "tables", [pytest.param({}, id="fastened"), pytest.param(SEATS, id="on beds", marks=pytest.mark.slow)]
 )
 def test_steps_with_friction_are_those_of_the_unreduced_system(method, tables):
-    """Four steps after a force that acts at once; 1e-10 of the forces, times a softness of some hundred."""
+    """Two steps after a force that acts at once; 1e-10 of the forces, times a softness of some hundred."""
     found = []
     for reduced in (True, False):
         model, system = stepped(reduced, **tables)
         ring = model.system
         start = standstill(ring, ramped=False)
-        record = integrate(method, ring.stepped(), start, Schedule(STEP, 4, 1))
+        record = integrate(method, ring.stepped(), start, Schedule(STEP, 2, 1))
         found.append((record, start, system.contact.friction))
     (new, start, friction), (old, _, _) = found
     assert friction.slipping.any()
     assert not friction.slipping.all()
     # Contacts balance at every evaluation: the first solution, and refinements by five digits.
-    assert new.counts["evaluations"] <= 4 * 4
+    assert new.counts["evaluations"] <= 2 * 4
     moved = {name: np.abs(old.final.full_state[name] - start.full_state[name]).max() for name in ("u", "v", "a")}
     for name, size in moved.items():
         assert np.abs(new.final.full_state[name] - old.final.full_state[name]).max() < 1e-5 * size, name
