@@ -73,14 +73,13 @@ def make_basis(problem: Problem, meshed: bool = False) -> Basis:
         pairs = [geometry.ellipses(modulus) for geometry in geometries]
         inner, outer = (every([pair[race] for pair in pairs], row) for race in (0, 1))
     axial, ball_load = problem.axial_approach
-    azimuths = np.concatenate(azimuth, axis=-1)
     return Basis(
         geometries[0],
         geometries,
         modulus,
         inner,
         outer,
-        azimuths,
+        np.concatenate(azimuth, axis=-1),
         row,
         axial,
         largest(ball_load, 1.0),

@@ -376,8 +376,7 @@ def overlap(columns: Mapping[str, np.ndarray], equilibrium: Equilibrium) -> Told
         np.concatenate([columns[f"{name}_{race}_m"] for race in ("inner", "outer")])[loaded]
         for name in ("approach_penetration", "approach")
     )
-    share = float((penetration / np.maximum(approach, 1e-300)).max())
-    return share, Estimate.OVERLAP()
+    return float((penetration / np.maximum(approach, 1e-300)).max()), Estimate.OVERLAP()
 
 
 def untold(model: Model) -> Told:

@@ -185,7 +185,6 @@ class Command(NamedTuple):
             is_required = parameter.default is inspect.Parameter.empty
             several = f"{text.removesuffix('.')}; repeat for more."
             of = _TYPES.get(kind.partition("Iterable[")[2].partition("]")[0], str)
-            complete = scene_keys if parameter.name in OF_KEYS else None
             return click.option(
                 *flags,
                 type=of,
@@ -193,7 +192,7 @@ class Command(NamedTuple):
                 required=is_required,
                 metavar=about.metavar,
                 help=several,
-                shell_complete=complete,
+                shell_complete=scene_keys if parameter.name in OF_KEYS else None,
             )
         empty = default is inspect.Parameter.empty
         # None too is a value to click, also of what is required.

@@ -97,8 +97,7 @@ def show_progress(remaining: bool = False, waiting: str | None = None) -> Progre
 
     folder = current_folder()
     warm = folder.is_dir() and any(folder.iterdir())
-    start = waiting or ("starting" if warm else "compiling kernels (first run only)")
-    return ProgressBar(start, remaining=remaining)
+    return ProgressBar(waiting or ("starting" if warm else "compiling kernels (first run only)"), remaining=remaining)
 
 
 def attempt(write: Callable[[], list[Path]], files: list[str]) -> RacewayError | None:

@@ -134,8 +134,7 @@ def fit_harmonics(
         columns.append((span / np.abs(span).max())[:, None])
     basis = np.hstack(columns)
     solution, *_ = np.linalg.lstsq(basis, signal, rcond=None)
-    lines = solution[:harmonics] - 1j * solution[harmonics : 2 * harmonics]
-    return lines, signal - basis @ solution
+    return solution[:harmonics] - 1j * solution[harmonics : 2 * harmonics], signal - basis @ solution
 
 
 def turns_in(time: np.ndarray, frequency_hz: float) -> float:

@@ -124,8 +124,7 @@ def _several(of: Reader) -> Reader:
 
 
 def _table(value: object) -> object:
-    texts = TEXTS.read(value)
-    return value if isinstance(value, Mapping) else texts
+    return value if isinstance(value, Mapping) else TEXTS.read(value)
 
 
 TEXT = reader("text", str)

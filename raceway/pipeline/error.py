@@ -385,8 +385,7 @@ def _largest_misfit(run: Identified) -> tuple[float, float]:
 
 def misfit_warnings(model: Model, misfit: float | None) -> list[str]:
     """Says where Z over the whirl speeds is not what K and C make of it."""
-    several_speeds = model.problem.several_speeds
-    if not several_speeds or (misfit or 0.0) <= _MISFIT:
+    if not model.problem.several_speeds or (misfit or 0.0) <= _MISFIT:
         return []
     return [
         f"Z is not of the form K - m w^2 + j w C over these whirl speeds (misfit {misfit:.2g} of |Z|; free tilts, "

@@ -129,8 +129,7 @@ def first_order_band(
         why = f"at rest only: {failure.mistakes[0].message if isinstance(failure, SceneError) else failure}"
         gradients = Gradients(model, equilibrium, moving=False)
     words, slopes, left_out = definitions(model, equilibrium), {}, []
-    answers = gradients.by_all([tolerance.key for tolerance in ranges])
-    for tolerance, answer in zip(ranges, answers, strict=True):
+    for tolerance, answer in zip(ranges, gradients.by_all([tolerance.key for tolerance in ranges]), strict=True):
         key = tolerance.key
         if isinstance(answer, NoDerivative):
             left_out.append({"key": key.path, "reason": str(answer)})

@@ -270,10 +270,9 @@ class Result(Answer):
             for name, key, unit in (("peak_ball_load", "peak_ball_load", "n"), ("p0", "peak_pressure", "pa"))
             for suffix in ("", "_inner", "_outer")
         }
-        least = loads[..., : self.model.system.ball_count].min()
         return {
             "axial_displacement": table.get("axial_displacement_m", self.displacement[0]),
-            "min_ball_load": least,
+            "min_ball_load": loads[..., : self.model.system.ball_count].min(),
             **each,
         }
 

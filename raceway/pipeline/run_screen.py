@@ -142,10 +142,9 @@ def screen(result: Content) -> Screen:
         )
         count = len(own) if kind == "single" else len(signs_of(kind))
         apart = bearing.get("row_distance") or bearing.get("width")
-        with_positions = own and all(row.get("position") is not None for row in own)
         places = (
             ", ".join(f"{1e3 * row['position']:g}" for row in own) + " mm"
-            if with_positions
+            if own and all(row.get("position") is not None for row in own)
             else f"{1e3 * (apart or 0.0):g} mm apart"
         )
         what = "unequal rows, see bearing.row" if any(set(row) & set(GEOMETRY) for row in own) else "rows of these balls"

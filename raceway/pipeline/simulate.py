@@ -152,8 +152,7 @@ def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list
     motions, force = [], model.problem.excitation
     kinematics = attrs.evolve(model.problem.kinematics, spin_speed_rpm=model.problem.spin_speed * 30.0 / np.pi)
     for speed in model.problem.identifier.method.speeds_rpm:
-        rpm = float(speed)
-        excitation = at_whirl(force, rpm)
+        excitation = at_whirl(force, float(speed))
         problem = attrs.evolve(model.problem, excitation=excitation, kinematics=kinematics)
         at_speed = model_of(problem, plan_of(problem))
         motions.append(simulate(at_speed, solve_equilibrium(at_speed), on_progress))

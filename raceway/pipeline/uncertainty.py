@@ -354,8 +354,7 @@ def elastic_change(model: Model, equilibrium: Equilibrium) -> dict[str, float] |
 
     def approach(load: np.ndarray) -> np.ndarray:
         """Of both races [m], in the ratio that the two loads of a ball have now."""
-        both = model.inner.approach(inner / mean * load) + model.outer.approach(outer / mean * load)
-        return np.asarray(both)
+        return np.asarray(model.inner.approach(inner / mean * load) + model.outer.approach(outer / mean * load))
 
     rest, mean = (b.conformity_inner + b.conformity_outer - 1.0) * b.ball_diameter, 0.5 * (inner + outer)
     push, distance = mean * np.sin(angle), (rest + approach(mean)) * np.cos(angle)

@@ -240,8 +240,7 @@ def _runaway_words(scene: Scene) -> str:
 
 def _at(keys: tuple[str, ...], level: np.ndarray) -> dict[str, np.ndarray]:
     """Columns of the keys at temperatures (n, 3) [C] of ``_FELT``."""
-    rings = dict(zip(keys[:-1], level.T - _MOUNTED_C, strict=True))
-    return rings | {keys[-1]: level @ _IN_CONTACTS}
+    return dict(zip(keys[:-1], level.T - _MOUNTED_C, strict=True)) | {keys[-1]: level @ _IN_CONTACTS}
 
 
 def _one(scene: Scene) -> dict[str, np.ndarray]:

@@ -61,8 +61,7 @@ def design(count: int, dimensions: int, seed: int) -> np.ndarray:
 
     both = qmc.Sobol(2 * dimensions, seed=seed).random(count)
     a, b = both[:, :dimensions], both[:, dimensions:]
-    blends = [np.where(np.arange(dimensions) == k, b, a) for k in range(dimensions)]
-    return np.vstack([a, b, *blends])
+    return np.vstack([a, b, *[np.where(np.arange(dimensions) == k, b, a) for k in range(dimensions)]])
 
 
 def indices(values: np.ndarray, dimensions: int) -> _Indices:

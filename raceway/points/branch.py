@@ -357,8 +357,7 @@ def growth_of_swing(branch: Branch, point: Point) -> float:
 
 def resonance(solution: Solved) -> str:
     """What outweighs the response to the force: a harmonic of it at which the ring vibrates by itself; empty where none does."""
-    angles = _angles(solution)
-    motion = displacements(solution, angles) / solution.problem.weight
+    motion = displacements(solution, _angles(solution)) / solution.problem.weight
     sizes = np.linalg.norm(np.fft.rfft(motion, axis=0)[1:], axis=1)
     order = (1 + int(sizes.argmax())) / _turns(solution)
     if order == 1.0:

@@ -301,8 +301,7 @@ class Findings:
         part = self._whole_part
         if part is None:
             return {}
-        pairs = zip(self.varied, part, strict=True)
-        return {axis.key: axis.ends[end] for axis, end in pairs if end is not None}
+        return {axis.key: axis.ends[end] for axis, end in zip(self.varied, part, strict=True) if end is not None}
 
     @cached_property
     def factorials(self) -> dict[str, Factorial]:
@@ -489,10 +488,9 @@ def _courses(comparison: Findings) -> list[str]:
         changes = {c: math.log1p(c.percent / 100.0) for c in along if c.percent is not None}
         if len(changes) < 2 or max(changes.values()) - min(changes.values()) < _HARDLY:
             continue
-        partners = [key for key in factorial.keys if key != axis.key]
         partner = comparison.axis(
             max(
-                partners,
+                [key for key in factorial.keys if key != axis.key],
                 key=lambda key: max(
                     (abs(e.log_change) for e in factorial.effects if set(e.term) == {axis.key, key}), default=0.0
                 ),
@@ -554,11 +552,10 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
             parts.append(f"{_axis_ends(comparison.axis(key))} changes it by {change}")
         elif abs(effect.log_change) + factorial.error >= _HARDLY and not effect.resolved:
             # An end of another axis may resolve what its mean does not.
-            other_ends = [(other, end) for other in factorial.keys if other != key for end in (0, 1)]
             clear_ends = [
                 f"; with {other} = {shown(comparison.axis(other).ends[end])} {percent(change_there)}"
-                for other, end in other_ends
-                if (change_there := factorial.resolved_change(key, {other: end}))
+                for other, end in product(factorial.keys, (0, 1))
+                if other != key and (change_there := factorial.resolved_change(key, {other: end}))
             ]
             unclear.append(f"{key} ({percent(effect.log_change)}{''.join(clear_ends)})")
         elif max(abs(e.log_change) for e in factorial.effects if key in e.term) + factorial.error < _HARDLY:

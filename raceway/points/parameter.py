@@ -133,8 +133,7 @@ class Parameter:
 
     def model(self, p: float) -> Model:
         """Model of the scene at a value of the key."""
-        scene = self.scene(p)
-        return build_model(scene)
+        return build_model(self.scene(p))
 
     def static_state(self, p: float) -> tuple[Model, Equilibrium]:
         """Model and static equilibrium."""

@@ -382,8 +382,7 @@ def labelled(study: Precision) -> Dataset:
     RacewayError
         xarray is missing.
     """
-    content = study.to_dict()
-    rows = content["rows"]
+    rows = study.to_dict()["rows"]
     variables = {
         quantity.name: ("setting", np.array([row[quantity.name] for row in rows], dtype=float), quantity.labels)
         for quantity in PRECISION

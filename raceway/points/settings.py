@@ -364,8 +364,7 @@ def _all(values: Values, relative: float) -> Values:
 
 def _direct(first: Setting, extra: Tables, runner: Runner) -> Reference | None:
     """The steady orbit solved for directly, by whatever integrator is made for that."""
-    registry = runner.registry
-    for name, method in ((entry.name, entry.plugin) for entry in registry.of_kind("integrator")):
+    for name, method in ((entry.name, entry.plugin) for entry in runner.registry.of_kind("integrator")):
         if not method.steady:
             continue
         options = {field.name for field in attrs.fields(method)}

@@ -58,10 +58,9 @@ class Workload(Answer):
 
     def to_dict(self) -> Tables:
         """All numbers; times in seconds, sizes in bytes."""
-        counts = ("points", "looped", "runs", "refused", "stored")
         return {
             "title": self.title,
-            **{name: getattr(self, name) for name in counts},
+            **{name: getattr(self, name) for name in ("points", "looped", "runs", "refused", "stored")},
             "predicted_wall_s": self.seconds,
             "predicted_at_most": self.at_most,
             "predicted_bytes": self.bytes or None,

@@ -196,8 +196,7 @@ class Bearing:
         """Whether the rows differ in nothing but places, directions, preloads and azimuths."""
         if not self.row:
             return True
-        alike = {attrs.evolve(bearing, first_ball_azimuth_deg=0.0) for bearing in self.of_rows}
-        return len(alike) == 1
+        return len({attrs.evolve(bearing, first_ball_azimuth_deg=0.0) for bearing in self.of_rows}) == 1
 
     @property
     def balls_in_all(self) -> int:

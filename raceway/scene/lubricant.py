@@ -61,8 +61,7 @@ class Walther:
 def mineral_thinning(viscosity: Number, temperature: Number) -> Number:
     """beta [1/K] of the mineral oil that has this kinematic viscosity [mm2/s] at a temperature [C], between those of ``GRADES``."""
     at, logarithm = least(largest(temperature, COLDEST), HOTTEST), log(viscosity)
-    oils = [Walther(*pair) for pair in GRADES.values()]
-    nodes = [(log(oil.viscosity(at)), oil.thinning(at)) for oil in oils]
+    nodes = [(log(oil.viscosity(at)), oil.thinning(at)) for oil in (Walther(*pair) for pair in GRADES.values())]
     thinning = nodes[0][1]
     for (low, first), (high, last) in pairwise(nodes):
         thinning = where(logarithm > low, (last - first) / (high - low) * (least(logarithm, high) - low) + first, thinning)

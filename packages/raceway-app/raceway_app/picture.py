@@ -222,6 +222,5 @@ def write_file(kind: str, scene: Scene, path: Path, progress: Callable[[str, int
     axis = axes_of(scene, {}).get("speed")
     if axis is None:
         raise SceneError.at("excitation.speed_rpm", None, "is needed: ROSS reads coefficients over speed")
-    swept = sweep(scene, {axis.key: f"{axis.low}:{axis.high}:21"}, progress=progress)
-    export_ross(swept, path)
+    export_ross(sweep(scene, {axis.key: f"{axis.low}:{axis.high}:21"}, progress=progress), path)
     return [str(path)]

@@ -110,8 +110,7 @@ class RollingBearing(_Element):
         z = np.array([self.across(self.node_bearing.dynamic_stiffness(w, w)) for w in axis])
         slow = np.maximum(axis, 1e-3)
         stiffness = {f"k{name}": z.real[:, row, column] for name, (row, column) in _ENTRIES.items()}
-        damping = {f"c{name}": z.imag[:, row, column] / slow for name, (row, column) in _ENTRIES.items()}
-        return stiffness | damping
+        return stiffness | {f"c{name}": z.imag[:, row, column] / slow for name, (row, column) in _ENTRIES.items()}
 
     @property
     def frame(self) -> np.ndarray:

@@ -67,8 +67,7 @@ class NodeBearing:
         if speed not in self._equilibria:
             self._equilibria.clear()  # calls in a row are for one speed; models of elastic bodies are large
             kinematics = attrs.evolve(self.scene.kinematics, spin_speed_rpm=speed * 30.0 / pi)
-            scene = attrs.evolve(self.scene, kinematics=kinematics)
-            model = build_model(scene)
+            model = build_model(attrs.evolve(self.scene, kinematics=kinematics))
             self._equilibria[speed] = model, solve_equilibrium(model)
         return self._equilibria[speed]
 
@@ -100,8 +99,7 @@ class NodeBearing:
         """
         full = np.zeros(5, dtype=complex)
         full[self.moving] = load
-        scene = attrs.evolve(self.at_rest(speed)[0].scene, excitation=harmonic_load(speed, full))
-        model = build_model(scene)
+        model = build_model(attrs.evolve(self.at_rest(speed)[0].scene, excitation=harmonic_load(speed, full)))
         record = simulate(model, solve_equilibrium(model)).record
         turning = np.exp(-1j * speed * record.time) * (2.0 / len(record.time))
         return np.asarray(turning @ record.displacement[:, self.moving])

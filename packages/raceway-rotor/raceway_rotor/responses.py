@@ -156,8 +156,7 @@ class _Balance:
         start = np.linalg.solve(slope, self.response)
         load, runs = self._search(start, slope, self._size(gain @ start))
         loads = [load[block] for block, _ in self._by_block()]
-        z = [b.stiffness_on(w, f, b.motion(w, f)) for f, b in zip(loads, self.bearings, strict=True)]
-        return loads, z, runs
+        return loads, [b.stiffness_on(w, f, b.motion(w, f)) for f, b in zip(loads, self.bearings, strict=True)], runs
 
     def _search(self, start: np.ndarray, slope: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, int]:
         def difference(load: np.ndarray) -> np.ndarray:

@@ -399,8 +399,7 @@ def balance(free: Rotor, bearing: Bearing) -> State:
     def apart(load: np.ndarray) -> np.ndarray:
         return bearing.answer(speed, load[0], load[1]) - free.at_ring(load[0], load[1])
 
-    size = np.abs(bearing.compliance @ start)
-    load, runs = find_root(apart, start.astype(complex), gain, size)
+    load, runs = find_root(apart, start.astype(complex), gain, np.abs(bearing.compliance @ start))
     deflection, slope = free.at_ring(*load)
     return State(speed, load[0], load[1], deflection, slope, free.at_sensor(*load), bearing.mass, bearing.coupling, runs)
 

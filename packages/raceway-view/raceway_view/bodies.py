@@ -100,8 +100,7 @@ def _section(race: np.ndarray, seat: np.ndarray, azimuth: float, sense: float) -
 def ball(diameter: float, rows: int = 24, columns: int = 36) -> Surface:
     """A ball at the origin."""
     latitude, longitude = np.linspace(0.0, pi, rows + 1), np.linspace(0.0, 2.0 * pi, columns + 1)
-    line = np.column_stack([np.cos(latitude), np.sin(latitude)])
-    normals = _swept(line, longitude)
+    normals = _swept(np.column_stack([np.cos(latitude), np.sin(latitude)]), longitude)
     return Surface(0.5 * diameter * normals, normals, _grid(columns + 1, rows + 1))
 
 
@@ -266,8 +265,7 @@ class BearingSolids:
 
         shape = ring_shape(self.shape, inner)
         outline = shape.outline
-        arc = shape.surface(np.linspace(*outline.edges, 17))
-        race = np.concatenate([outline.left[:-1], arc, outline.right[1:]])
+        race = np.concatenate([outline.left[:-1], shape.surface(np.linspace(*outline.edges, 17)), outline.right[1:]])
         seat = np.column_stack([race[:, 0], np.interp(race[:, 0], *outline.seat.T)])
         lines = [_MM * (line * [side, 1.0] + [axial, 0.0]) for line in (race, seat)]
         return (lines[0][::-1], lines[1][::-1]) if side < 0.0 else (lines[0], lines[1])
@@ -275,10 +273,9 @@ class BearingSolids:
     def balls(self, state: Snapshot) -> list[Solid]:
         """Each ball with the load of its inner contact."""
         solid = ball(self.diameter)
-        z = len(state.azimuth)
         return [
             Solid(f"ball {k}", solid.moved(centre), load=float(state.load[k]), ball=k)
-            for k, centre in zip(range(z), self.centres(state), strict=True)
+            for k, centre in zip(range(len(state.azimuth)), self.centres(state), strict=True)
         ]
 
     def arrows(self, state: Snapshot, top: float) -> list[Solid]:

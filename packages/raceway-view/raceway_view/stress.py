@@ -110,8 +110,7 @@ def field_files(result: Result) -> dict[str, bytes]:
     RacewayError
         pyvista or its system libraries are missing.
     """
-    pyvista = pyvista_of()
-    grid = _new_grid(pyvista, StressFields.of(result))
+    grid = _new_grid(pyvista_of(), StressFields.of(result))
     balls = result.equilibrium.contact_force[: result.model.system.ball_count]
     most = int(np.argmax(balls))
     title = f"{result.title}\nvon Mises stress at the elements' centres, section through ball {most}, {balls[most]:.4g} N, x to the right"

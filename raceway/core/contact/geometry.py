@@ -42,8 +42,7 @@ class BallBearing:
     @classmethod
     def of(cls, bearing: object, centred: bool = False) -> BallBearing:
         """The lengths of the same names of a scene's bearing, or of one of its rows."""
-        lengths = {field.name: getattr(bearing, field.name) for field in attrs.fields(cls)[:-1]}
-        return cls(**lengths, centred=centred)
+        return cls(**{field.name: getattr(bearing, field.name) for field in attrs.fields(cls)[:-1]}, centred=centred)
 
     @property
     def centre_distance(self) -> float:

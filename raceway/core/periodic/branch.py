@@ -282,8 +282,7 @@ class Branch:
             displacement = float(np.abs(path.q / problem.weight).max())
             if sweeps > 1 and correction <= 1e-2 * self.tolerance * max(size, 1e-3 * self.length) + 1e-14 * displacement:
                 tangent = solution[:, 1] / np.linalg.norm(solution[:, 1])
-                solved = Solved(problem, path, linear, size, True, sweeps, correction)
-                return path, parameter, tangent, solved
+                return path, parameter, tangent, Solved(problem, path, linear, size, True, sweeps, correction)
         raise ConvergenceError("the corrector does not converge")
 
 
@@ -340,5 +339,4 @@ def apart(point: Point) -> np.ndarray:
     back = rotations(np.array([-0.5 * problem.symmetry.angle]))[0]
     first = np.concatenate([path.q[0], path.v[0]])
     second = np.concatenate([back @ path.q[middle], back @ path.v[middle]])
-    scale = np.tile(problem.weight, 2)
-    return np.asarray((second - first) / scale)
+    return np.asarray((second - first) / np.tile(problem.weight, 2))

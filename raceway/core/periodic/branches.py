@@ -252,8 +252,7 @@ def _continued_to(
     except ConvergenceError:
         begin = _by_force_steps(far, q, tangent, search.ROUGH)
     branch = Branch(at, abs(ratio - 1.0), begin.solved.size, search.ROUGH, search.MOST)
-    points = branch.follow(branch.start(begin.solved, ratio, sense), 0.1, 1.0)
-    for before, after in pairwise(islice(points, POINTS)):
+    for before, after in pairwise(islice(branch.follow(branch.start(begin.solved, ratio, sense), 0.1, 1.0), POINTS)):
         if (after.parameter - 1.0) * sense >= 0.0:
             return refine(solve(at(1.0), _towards(before, after, 1.0), 1e-2 * tolerance), tolerance)
         if (after.folded and not through) or (after.parameter - ratio) * sense < 0.0:

@@ -107,8 +107,7 @@ def divided(nodes: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarra
     """New nodes with interval k in parts[k] equal parts, and for each new interval the old one that it lies in."""
     parent = np.repeat(np.arange(len(parts)), parts)
     inside = np.arange(len(parent)) - np.repeat(np.cumsum(parts) - parts, parts)
-    start = nodes[parent] + np.diff(nodes)[parent] * inside / parts[parent]
-    return np.append(start, nodes[-1]), parent
+    return np.append(nodes[parent] + np.diff(nodes)[parent] * inside / parts[parent], nodes[-1]), parent
 
 
 def resampled(problem: Problem, path: Path, nodes: np.ndarray, parent: np.ndarray) -> Path:
@@ -164,8 +163,7 @@ def refine(solution: Solved, tolerance: float) -> Refined:
     sweeps, evaluations = solution.sweeps, solution.sweeps * solution.path.intervals * s
     for rounds in range(_ROUNDS):
         error = estimate(solution)
-        m = solution.path.intervals
-        evaluations += m * len(problem.rule.tried)
+        evaluations += solution.path.intervals * len(problem.rule.tried)
         if error.error <= max(tolerance, solution.rounding) or rounds == _ROUNDS - 1:
             break
         target = tolerance * solution.size

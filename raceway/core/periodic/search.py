@@ -177,9 +177,8 @@ class Recorded:
     def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
         """The same motion on a mesh; parameters as of ``Neighbour``'s."""
         w, inner = problem.speed, problem.angles(nodes)
-        still = standing(problem, q, nodes)
         return attrs.evolve(
-            still,
+            standing(problem, q, nodes),
             q=self._at(self.displacement, nodes / w),
             v=self._at(self.velocity, nodes / w) / w,
             a=self._at(self.acceleration, inner / w) / w**2,

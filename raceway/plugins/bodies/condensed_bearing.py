@@ -194,8 +194,7 @@ def build(problem: Problem, plan: ScenePlan) -> _CondensedBearing:
     _refuse_dashpots(problem, plan, stiff, bodies)
     angles = _contact_angles(problem, stiff) if plan.keeps(BETWEEN_BALLS) else None
     system = elastic_system(surrogate(stiff.system), bodies, angles)
-    guess = place_ring(problem, stiff.basis, system)
-    return _CondensedBearing(stiff.basis, system, guess, stiff, bodies, angles)
+    return _CondensedBearing(stiff.basis, system, place_ring(problem, stiff.basis, system), stiff, bodies, angles)
 
 
 @attrs.frozen(eq=False)
@@ -243,8 +242,7 @@ class _CondensedBearing(BuiltBearing):
 
     def mesh_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """Relative change of the diagonal stiffness when rings are meshed twice as coarse: an upper bound of the error."""
-        problem = model.problem
-        coarse = elastic_bodies(problem, self.rigid.basis, _COARSER)
+        coarse = elastic_bodies(model.problem, self.rigid.basis, _COARSER)
         system = elastic_system(surrogate(self.rigid.system), coarse, self.angles)
         system.table[:, ring.SHIFT] = model.system.table[:, ring.SHIFT]
         try:

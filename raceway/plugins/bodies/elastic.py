@@ -95,11 +95,10 @@ def elastic_cost(problem: Problem) -> _ElasticCost | None:
     neighbour = _NEIGHBOUR[resultants] * solve
     if not method.inertial:
         return _ElasticCost(cells, unknowns, memory, 0.0, first, neighbour, neighbour)
-    plain = int(problem.bodies.formulation != "one_point")
     step = (
         _STEP[resultants] * solve + 0.2 * (1 - resultants) * setup
         if method.implicit
-        else cells * _FORCE_S[plain] + _PYTHON_S
+        else cells * _FORCE_S[int(problem.bodies.formulation != "one_point")] + _PYTHON_S
     )
     start = 4.0 * neighbour + setup if problem.integrator.start == "orbit" else 0.0
     return _ElasticCost(cells, unknowns, memory, _stable_step(problem), first, start, step)

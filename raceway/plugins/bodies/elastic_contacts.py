@@ -109,7 +109,6 @@ class ElasticBodies(BuiltBearing):
         across = np.stack([self.bearing.setup.turn(k)[:, 2] for k in range(len(cage))])
         force = bodies.assembly.reactions(y) - cage @ across  # the ideal cage stands on the ground
         energies = bodies.energies(y, np.zeros_like(y)) | {"external": float(bodies.load @ y)}
-        mesh = contacts.pop("mesh", {})
         return {
             "rigid_rings": rigid_rings(self.rigid, self.guess)[0],
             "mesh": {
@@ -120,7 +119,7 @@ class ElasticBodies(BuiltBearing):
                 "hourglass_coefficient": model.problem.bodies.hourglass
                 if model.problem.bodies.formulation == "one_point"
                 else None,
-                **mesh,
+                **contacts.pop("mesh", {}),
             },
             "reaction_n": dict(zip("xyz", force.tolist(), strict=True)),
             "unbalanced_n": float(np.abs((force + model.system.load[:3]) * model.system.free[:3]).max()),

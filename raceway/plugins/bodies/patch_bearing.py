@@ -95,8 +95,7 @@ class _NodalBearing(BuiltBearing):
         """The state and the contacts' answers at the equilibrium, inner races first."""
         system = model.system.without(CAGE)
         assert isinstance(system, PatchSystem)
-        now = system.evaluate(equilibrium.displacement, ball=equilibrium.ball)
-        return now, system.pressures()
+        return system.evaluate(equilibrium.displacement, ball=equilibrium.ball), system.pressures()
 
     def pressure_field(self, model: Model, equilibrium: Equilibrium, ball: int, inner: bool = True) -> PressureField:
         """Pressures of one contact at the equilibrium."""
@@ -182,8 +181,7 @@ class _NodalBearing(BuiltBearing):
     @staticmethod
     def _compared(coarser: Callable[[], Ring], model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:
         try:
-            coarse = coarser()
-            q, _, _ = attrs.evolve(coarse, load=model.system.load).solve_equilibrium(equilibrium.displacement)
+            q, _, _ = attrs.evolve(coarser(), load=model.system.load).solve_equilibrium(equilibrium.displacement)
         except RacewayError as why:
             return None, Estimate.FEWER_POINTS_FAILED(why=why)
         weight = np.array([1.0, 1.0, 1.0, model.system.arm, model.system.arm])

@@ -74,12 +74,11 @@ def labelled(result: RunResult) -> Any:
     from raceway.core.ring.ring import COORDINATES
 
     state, z, names = result.equilibrium, result.model.system.ball_count, list(COORDINATES)
-    angles = np.degrees([state.angle_inner, state.angle_outer])
     arrays: list[tuple[Quantity, object]] = [
         (quantities.DISPLACEMENT, state.displacement),
         (quantities.STIFFNESS, state.stiffness),
         (quantities.BALL_LOAD, state.contact_force.reshape(2, z)),
-        (quantities.CONTACT_ANGLE, angles),
+        (quantities.CONTACT_ANGLE, np.degrees([state.angle_inner, state.angle_outer])),
     ]
     coordinates: dict[str, object] = {
         "dof": names,
@@ -95,11 +94,10 @@ def labelled(result: RunResult) -> Any:
     if result.simulation is not None:
         record = result.simulation.record
         coordinates[quantities.TIME.name] = (quantities.TIME.dims, record.time, quantities.TIME.labels)
-        loads = record.contact_force.reshape(len(record.time), 2, z)
         arrays += [
             (quantities.MOTION, record.displacement),
             (quantities.FORCE, record.force),
-            (quantities.CONTACT_FORCE, loads),
+            (quantities.CONTACT_FORCE, record.contact_force.reshape(len(record.time), 2, z)),
         ]
     if result.identification is not None:
         numbers = (
@@ -118,5 +116,4 @@ def labelled(result: RunResult) -> Any:
     ends = {quantity: quantity.of(result) for quantity in quantities.ENDS.values()}
     arrays += [(quantity, value) for quantity, value in ends.items() if value is not None]
     variables = {quantity.name: (quantity.dims, values, quantity.labels) for quantity, values in arrays}
-    attributes = {"title": result.title, "warnings": "\n".join(result.warnings)}
-    return labelled_dataset(variables, coordinates, attributes)
+    return labelled_dataset(variables, coordinates, {"title": result.title, "warnings": "\n".join(result.warnings)})

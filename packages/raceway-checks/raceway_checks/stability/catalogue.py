@@ -58,8 +58,7 @@ _EXCITED: Tables = {"excitation.kind": "bidirectional", "excitation.speed_rpm": 
 
 def transient_integrators(registry: Registry) -> list[Entry]:
     """Integrators that march through time with inertia.  One that finds a steady orbit instead says ``steady = True``."""
-    integrators = registry.of_kind("integrator")
-    return [entry for entry in integrators if entry.plugin.inertial and not entry.plugin.steady]
+    return [entry for entry in registry.of_kind("integrator") if entry.plugin.inertial and not entry.plugin.steady]
 
 
 def transient(registry: Registry) -> list[str]:

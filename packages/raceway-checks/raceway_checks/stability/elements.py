@@ -40,8 +40,7 @@ def slender_steps(rows: Rows, _bench: None, aspect: float) -> None:
 
 
 def _growth(op: HexOperator, dt: float) -> float:
-    rng = np.random.default_rng(3)
-    u = rng.standard_normal(op.points.shape) * 1e-12
+    u = np.random.default_rng(3).standard_normal(op.points.shape) * 1e-12
     mass = op.lumped_mass()
     u -= np.average(u, axis=0, weights=mass)
     v, first = np.zeros_like(u), float(np.abs(u).max())

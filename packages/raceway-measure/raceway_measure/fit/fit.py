@@ -102,8 +102,7 @@ def fit(
 def _refuse_foreign(record: Signals | None, by_force: bool, scene: bool, mass: bool, sloping: bool) -> None:
     """``SceneError`` for an argument that does not belong to the data."""
     if by_force and scene:
-        message = "a record of force and displacement is fitted by a linear model: omit it"
-        raise SceneError.at("scene", None, message)
+        raise SceneError.at("scene", None, "a record of force and displacement is fitted by a linear model: omit it")
     if sloping and (by_force or record is None):
         data = (
             "the signals of a rig, without a force" if by_force else "the signals of a rig over time; the data are a table"

@@ -141,8 +141,7 @@ def spectra_of(signals: Signals) -> _Spectra:
     present = [pair for pair in _ONE if columns.keys() >= {*pair}]
     pairs = _TWO if columns.keys() >= {*_TWO[0], *_TWO[1]} else present[:1]
     if not pairs or columns.keys() >= {"force", "y", "z"}:
-        with_force = any(name.startswith("force") for name in columns)
-        missing = "displacement along its axis" if with_force else "force"
+        missing = "displacement along its axis" if any(name.startswith("force") for name in columns) else "force"
         raise SceneError.at(
             source, None,
             "force and displacement along the same axis are needed: time_s, force_n, x_um, or force_y_n, force_z_n, y_um, z_um of two axes. "

@@ -239,8 +239,7 @@ class ElasticSystem:
             if contact.friction is not None:
                 full_state |= contact.friction.state()
         q, v, _, _, ball = self._seen(s.u, s.v)
-        a = self._seen(s.u, s.a)[1]
-        return Motion(q, v, a, ball, ball.copy(), full_state=full_state)
+        return Motion(q, v, self._seen(s.u, s.a)[1], ball, ball.copy(), full_state=full_state)
 
     def motion_of(self, y: np.ndarray, v: np.ndarray, a: np.ndarray) -> Motion:
         """A motion with unknowns, velocities and accelerations (size,) whose forces balance."""
@@ -305,9 +304,8 @@ class ElasticSystem:
         """Energies [J] at the last ``internal``."""
         a = self.assembly
         u = a.nodal(y)
-        elastic = a.elastic_energy(y, u)
         return {
-            "elastic": elastic,
+            "elastic": a.elastic_energy(y, u),
             "kinetic": float(0.5 * v @ self.mass_times(v)),
             "contact": 0.0 if self.contact is None else self.contact.energy(),
             "friction": 0.0 if self.contact is None else self.contact.friction_energy(),

@@ -132,8 +132,7 @@ def nodal_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assembly)
         a, b = g.ellipses(s.modulus)[0].semi_axes(s.reference_load)
         damping = s.contact_damping / (np.pi * float(a) * float(b))
     friction = CoulombFriction(s.friction, sticking_stiffness(s, area)) if s.friction > 0.0 else None
-    law = PlaceLaw(s.law, s.params(pair, area), s.state_size, damping)
-    return NodalContact(pairs, assembly.nodes, law, friction)
+    return NodalContact(pairs, assembly.nodes, PlaceLaw(s.law, s.params(pair, area), s.state_size, damping), friction)
 
 
 def resultant_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assembly) -> ResultantContact:

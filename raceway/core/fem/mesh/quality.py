@@ -92,15 +92,13 @@ def refuse_doubled(mesh: HexMesh, body: str) -> None:
     MeshError
         How many, and where the first is.
     """
-    nodes = np.sort(mesh.cells, axis=1)
-    _, first, counts = np.unique(nodes, axis=0, return_index=True, return_counts=True)
+    _, first, counts = np.unique(np.sort(mesh.cells, axis=1), axis=0, return_index=True, return_counts=True)
     if (counts > 1).any():
         cell = int(first[counts > 1].min())
         raise MeshError(
             f"`{body}`: {int((counts - 1).sum())} cells are duplicated; the first is cell {cell}: remove the copies"
         )
-    numbers = np.unique(mesh.cells)
-    points = mesh.points[numbers]
+    points = mesh.points[np.unique(mesh.cells)]
     grain = 1e-9 * float(np.ptp(points, axis=0).max())
     _, first, counts = np.unique(np.round(points / grain), axis=0, return_index=True, return_counts=True)
     if (counts > 1).any():

@@ -120,8 +120,7 @@ class RingSection:
 
 def _legendre(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Legendre's polynomials to ``_DEGREE`` at z (n,), (degree + 1, n), and their derivatives."""
-    identity = np.eye(_DEGREE + 1)
-    slopes = np.polynomial.legendre.legder(identity, axis=1)
+    slopes = np.polynomial.legendre.legder(np.eye(_DEGREE + 1), axis=1)
     value = np.polynomial.legendre.legvander(z, _DEGREE).T
     return value, slopes @ value[:-1]
 

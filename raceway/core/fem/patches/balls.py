@@ -231,12 +231,10 @@ class Balls:
                 couple[k] += more.couple
                 by_place[k, at] += more.couple_by_place
         excess = (answer - force).reshape(-1)
-        stiffness = [state.stiffness for state in contact_states]
         contact_stiffness, ball_stiffness, ring_stiffness, by_section_turn = self._together(
-            stiffness, excess, contact_states, cross_coupling, applied.spring
+            [state.stiffness for state in contact_states], excess, contact_states, cross_coupling, applied.spring
         )
         acting = self.loads + applied.push - applied.spring * position
-        balance = self._both.T @ (force.reshape(-1) + ring_stiffness) + acting.reshape(-1)
         return LinearisedBalls(
             contact_states,
             force,
@@ -244,7 +242,7 @@ class Balls:
             ring_stiffness,
             contact_stiffness,
             ball_stiffness,
-            balance,
+            self._both.T @ (force.reshape(-1) + ring_stiffness) + acting.reshape(-1),
             by_section_turn,
             couple,
             by_place,

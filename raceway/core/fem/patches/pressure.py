@@ -195,8 +195,7 @@ def _by_law(gap: np.ndarray, rate: np.ndarray, law: PointLaw, start: np.ndarray,
         if len(active):
             more[active] = -cho_solve(_factor(compliance, active, -by_gap[active]), residual[active], check_finite=False)
         step = residual + compliance @ more
-        part = 1.0 if now < before else 0.5
-        w = w + part * step
+        w = w + (1.0 if now < before else 0.5) * step
         before = now
     else:
         raise ConvergenceError(f"the pressures of the contact law did not converge in {_LIMIT} iterations")
@@ -377,8 +376,7 @@ class Contact:
             if state is None or not state.viscous.any()
             else -load_slope.T @ (state.viscous[:, None] * slope)
         )
-        at_edge = self._ends(nodes, force)
-        normal = ContactState(force, stiffness, viscous, nodes, load, penetration, at_edge)
+        normal = ContactState(force, stiffness, viscous, nodes, load, penetration, self._ends(nodes, force))
         return normal if slipping is None else self._friction_forces(normal, position, slipping, -load_slope)
 
     def mean_stiffness(self, position: np.ndarray) -> np.ndarray:

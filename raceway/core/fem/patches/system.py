@@ -279,10 +279,9 @@ class PatchSystem(SteppedRing):
         s = self.scalars
         if s[layout.GYROSCOPIC] == 0.0:
             return None
-        groove = self.pool.patches[0].race.groove
         return Gyroscopic(
             float(s[layout.GYROSCOPIC]), float(s[layout.BALL_OVER_PITCH]), (float(s[layout.SHARE_INNER]), float(s[layout.SHARE_OUTER])), float(s[layout.DIAMETER]),
-            groove, float(s[layout.TRACTION]),
+            self.pool.patches[0].race.groove, float(s[layout.TRACTION]),
         )  # fmt: skip
 
     @property
@@ -379,8 +378,7 @@ class PatchSystem(SteppedRing):
         return q, ball, count
 
     def stress_free_slip(self, q: np.ndarray, ball: np.ndarray, t: float = 0.0) -> np.ndarray:
-        still = self.without(layout.FRICTION)
-        still.evaluate(q, ball=ball, t=t)
+        self.without(layout.FRICTION).evaluate(q, ball=ball, t=t)
         row = self.pool.row(self.table)
         turn = self._grooves(q, np.zeros(5), t).turning @ q
         assert row.last is not None
@@ -397,8 +395,7 @@ class PatchSystem(SteppedRing):
 
     def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
-        first = attrs.evolve(self.surrogate, load=self.load / parts)
-        q_part, ball, _ = first.solve_equilibrium(q)
+        q_part, ball, _ = attrs.evolve(self.surrogate, load=self.load / parts).solve_equilibrium(q)
         if not self.table[:, layout.CENTRIFUGAL].any():
             ball = np.zeros_like(ball)  # weightless balls of rigid bodies have no place of their own
         total = 0

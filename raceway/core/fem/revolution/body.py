@@ -309,8 +309,7 @@ class Revolution:
 
     def harmonic(self, n: int) -> csr_matrix:
         """(m, m) csc_matrix, the real symmetric system of harmonic n; rows in the order of ``unknowns`` [N/m]."""
-        row = self._places(self.unknowns)
-        return self._pencil(row).at(2.0 * np.pi * n / self.divisions)
+        return self._pencil(self._places(self.unknowns)).at(2.0 * np.pi * n / self.divisions)
 
     @property
     def unknowns(self) -> np.ndarray:
@@ -400,13 +399,11 @@ class Revolution:
         from scipy.sparse import diags_array
         from scipy.sparse.linalg import LinearOperator, eigsh
 
-        unknowns = self.unknowns
-        mass = np.repeat(self.sector.mass, 3)[unknowns]
+        mass = np.repeat(self.sector.mass, 3)[self.unknowns]
         scale = 1.0 / np.sqrt(mass)
         out = []
         for n in harmonics:
-            matrix = self.harmonic(int(n))
-            unit_diagonal = (diags_array(scale) @ matrix @ diags_array(scale)).tocsc()
+            unit_diagonal = (diags_array(scale) @ self.harmonic(int(n)) @ diags_array(scale)).tocsc()
             rigid = len(self._rigid_motions(int(n))[0]) if self.seat == "free" else 0
             # Far below the elastic eigenvalues, far above the rounding of the largest.
             shift = 1e-9 * float(unit_diagonal.diagonal().max())
