@@ -19,9 +19,9 @@ INPUTS = {"points": np.arange(6.0).reshape(3, 2), "count": 3, "seat": "clamped",
 @pytest.fixture(autouse=True)
 def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path))
-    array_cache._warn_unwritable.cache_clear()
+    array_cache._warn.cache_clear()
     yield tmp_path / "arrays"
-    array_cache._warn_unwritable.cache_clear()
+    array_cache._warn.cache_clear()
 
 
 class Maker:
@@ -165,7 +165,7 @@ def test_a_folder_that_others_may_write_is_not_used(folder, mode):
     get(Maker())
     folder.chmod(mode)
     folder.parent.chmod(0o755)
-    array_cache._warn_refused.cache_clear()
+    array_cache._warn.cache_clear()
     make = Maker()
     with pytest.warns(RuntimeWarning, match="are not stored: others may write in"):
         get(make), get(make)

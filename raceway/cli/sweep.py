@@ -250,9 +250,7 @@ def sweep(
     if (resume or retry_failed) and not exists(folder):
         warnings.warn(f"`{folder}` holds no sweep to resume: a new one is started", stacklevel=2)
     task = prepare(tables, points_swept, folder, plugins, resume or retry_failed or plan, quantities)
-    if plan:
-        return workload(task, pool)
-    return _answer(task, pool, force, retry_failed, scheduler, csv, choice, progress)
+    return workload(task, pool) if plan else _answer(task, pool, force, retry_failed, scheduler, csv, choice, progress)
 
 
 def _answer(

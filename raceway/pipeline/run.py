@@ -387,9 +387,7 @@ class Allowance:
     def of(cls, plan: ScenePlan, patience: float) -> Allowance:
         """Without an end where the plan knows no more than what a run takes at least."""
         seconds = max(plan.predicted_wall_s, _LEAST_S)
-        if plan.at_least or patience == inf:
-            return cls(seconds, inf)
-        return cls(seconds, patience, bytes=plan.predicted_bytes)
+        return cls(seconds, inf) if plan.at_least or patience == inf else cls(seconds, patience, bytes=plan.predicted_bytes)
 
     @property
     def taken(self) -> float:

@@ -224,10 +224,7 @@ def _as_grid(part: Dataset, axes: ReadTables, constants: ReadTables) -> Dataset:
         return part
     attributes_of = {key: dict(part[key].attrs) for key in keys}
     part = part.drop_vars([LIST], errors="ignore")
-    if len(keys) == 1:
-        part = part.swap_dims({LIST: keys[0]})
-    else:
-        part = part.set_index(point=keys).unstack(LIST)
+    part = part.swap_dims({LIST: keys[0]}) if len(keys) == 1 else part.set_index(point=keys).unstack(LIST)
     part = _in_order(part, axes)
     for key, attributes in attributes_of.items():
         part[key].attrs.update(attributes)

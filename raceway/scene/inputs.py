@@ -54,9 +54,8 @@ def tidy(value: object, depth: int = 0) -> Any:
             if not unit:
                 return numbers
             return [f"{number!r} {unit}" for number in numbers] if isinstance(numbers, list) else f"{numbers!r} {unit}"
-        if hasattr(value, "tolist"):  # numpy's arrays and numbers, data arrays of xarray through their values
-            return value.tolist()
-        return copy.deepcopy(value)
+        # numpy's arrays and numbers, data arrays of xarray through their values
+        return value.tolist() if hasattr(value, "tolist") else copy.deepcopy(value)
     except RacewayError:
         raise
     except Exception:  # whatever a foreign object makes of being asked

@@ -267,9 +267,7 @@ def lubricant_mistakes(law: object, lubricant: Lubricant | None) -> list[Mistake
     keys = [f"contact.{key.name}" for key in attrs.fields(Oil) if getattr(law, key.name) != key.default]
     if lubricant is not None and keys:
         return [Mistake("lubricant", None, f"the oil is given twice: delete [lubricant], or {', '.join(keys)}")]
-    if lubricant is None and not law.known:
-        return [Mistake("contact", None, f"no viscosity is given: {_WAYS}")]
-    return []
+    return [] if lubricant is not None or law.known else [Mistake("contact", None, f"no viscosity is given: {_WAYS}")]
 
 
 def _oil_of(oil: Oil) -> dict[str, Number]:

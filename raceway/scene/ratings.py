@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache
 
 import attrs
 import numpy as np
@@ -71,15 +70,9 @@ def _rating(bearing: Bearing, key: str, by_geometry: Number, formula: Callable[[
     entry = preset_of(bearing.preset, bearing.maker)
     if entry is None or key not in entry.ratings:
         return by_geometry, "geometry"
-    return entry.ratings[key] * (by_geometry / formula(_catalogue_row(entry.name, bearing.maker))), "catalogue"
+    return entry.ratings[key] * (by_geometry / formula(_ball_row(entry.table))), "catalogue"
 
 
 def _ball_row(numbers: Mapping[str, Number]) -> BallRow:
     count, ball, pitch, angle, inner, outer = (numbers.get(key) for key in _GEOMETRY)
     return BallRow(count, ball, pitch, np.radians(0.0 if angle is None else angle), inner, outer)
-
-
-@cache
-def _catalogue_row(name: str, maker: str | None) -> BallRow:
-    entry = preset_of(name, maker)
-    return _ball_row({} if entry is None else entry.table)

@@ -296,9 +296,7 @@ def as_scene(source: SceneSource, *changes: Change, plugins: Iterable[str | Path
         A plug-in file that is missing, fails to import or adds nothing.
     """
     registry = registry_with(plugins)
-    if isinstance(source, Scene) and not changes:
-        return source
-    return as_given(source).changed(*changes).scene(registry)
+    return source if isinstance(source, Scene) and not changes else as_given(source).changed(*changes).scene(registry)
 
 
 def evolve(scene: Any, *changes: Change) -> Scene:

@@ -70,7 +70,7 @@ def kept(
     A folder that cannot be written, or must not be used, costs one warning a process and nothing else.
     """
     if fault := refusal(folder()):
-        _warn_refused(fault)
+        _warn(f"are not stored: {fault}. Every run computes them again.")
         return _contiguous(make())
     names = tuple(sources)
     digest = hashlib.sha256(f"{_FORMAT} {kind} {_source_key(names)}".encode())
@@ -238,7 +238,10 @@ def _write(path: Path, kind: str, label: str, arrays: Mapping[str, np.ndarray], 
     except OSError as why:
         with suppress(OSError):
             scratch.unlink()
-        _warn_unwritable(str(path.parent), why.strerror or str(why))
+        _warn(
+            f"cannot be stored in {path.parent} ({why.strerror or why}); the next run computes it again. Set "
+            "RACEWAY_CACHE_DIR to a writable folder with space, or free space by raceway dev cache --clear."
+        )
         return
     # The least recently used entries above the limit go, and what killed processes left; the newest entry stays.
     entries = []
@@ -260,19 +263,5 @@ def _write(path: Path, kind: str, label: str, arrays: Mapping[str, np.ndarray], 
 
 
 @cache
-def _warn_unwritable(folder: str, why: str) -> None:
-    warnings.warn(
-        f"the compliances of the bodies cannot be stored in {folder} ({why}); the next run computes it again. Set "
-        "RACEWAY_CACHE_DIR to a writable folder with space, or free space by raceway dev cache --clear.",
-        RuntimeWarning,
-        stacklevel=4,
-    )
-
-
-@cache
-def _warn_refused(fault: str) -> None:
-    warnings.warn(
-        f"the compliances of the bodies are not stored: {fault}. Every run computes them again.",
-        RuntimeWarning,
-        stacklevel=4,
-    )
+def _warn(why: str) -> None:
+    warnings.warn(f"the compliances of the bodies {why}", RuntimeWarning, stacklevel=4)

@@ -143,9 +143,7 @@ def memory_for(size: int) -> Iterator[None]:
 
 def why_unreadable(why: OSError | ValueError) -> str:
     """What an exception of reading a text file says to people."""
-    if isinstance(why, UnicodeDecodeError):
-        return "it is not UTF-8 text"
-    return getattr(why, "strerror", None) or str(why)
+    return "it is not UTF-8 text" if isinstance(why, UnicodeDecodeError) else getattr(why, "strerror", None) or str(why)
 
 
 def without_nan(value: Any) -> Any:
@@ -156,9 +154,7 @@ def without_nan(value: Any) -> Any:
         return [without_nan(v) for v in value]
     if hasattr(value, "item"):  # a scalar of numpy
         value = value.item()
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def write_json(content: object, path: Path) -> Path:

@@ -171,9 +171,7 @@ def _has(result: Result, name: str) -> bool:
     if name == "ball_load":
         # With gyroscopic moments traction takes part of a row's force.
         return len(scene.bearing.rows) > 1 and problem.kinematics.gyroscopic == "none"
-    if name == "kyy_tilts_follow":
-        return scene.supports.tilt == "free"
-    return name in KNOWN or name in result.quantities
+    return scene.supports.tilt == "free" if name == "kyy_tilts_follow" else name in KNOWN or name in result.quantities
 
 
 def _panel(

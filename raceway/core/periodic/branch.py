@@ -212,10 +212,7 @@ class Branch:
     def _linearise(self, problem: Problem, path: Path, parameter: float) -> tuple[Eliminated, np.ndarray] | None:
         """The linearisation, with the derivative by the parameter, and its report."""
         push = problem.push(path.nodes)
-        if self.slope is not None:
-            by = self.slope(problem, path)
-        else:
-            by = self._difference(problem, path, parameter)
+        by = self._difference(problem, path, parameter) if self.slope is None else self.slope(problem, path)
         out, report = problem.eliminated(path.nodes), np.zeros(3)
         success = condense(problem.equations, problem.mesh(path.nodes), path.samples(push, by), out, report)
         return (out, report) if success == path.intervals and np.isfinite(report).all() else None

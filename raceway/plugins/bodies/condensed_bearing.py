@@ -256,9 +256,7 @@ class _CondensedBearing(BuiltBearing):
 
     def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """Of a ball's stiffness by what its contacts' calibration leaves; the largest of all loaded balls."""
-        if not model.traits.calibrated:
-            return untold(model)
-        return calibration_error(self.compliances, model, equilibrium)
+        return calibration_error(self.compliances, model, equilibrium) if model.traits.calibrated else untold(model)
 
     def ring_section(self, model: Model, inner: bool) -> Profile:
         """The mesh of a ring's section that its compliance was computed on, for pictures."""

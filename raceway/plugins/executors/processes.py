@@ -27,8 +27,7 @@ class Serial:
     name: ClassVar[str] = "serial"
 
     def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
-        for number, points in batches:
-            yield number, work(points)
+        yield from ((number, work(points)) for number, points in batches)
 
 
 #: What a process may take to import the program, beyond the patience with its first batch [s].

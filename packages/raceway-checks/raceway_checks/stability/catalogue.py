@@ -105,8 +105,13 @@ def catalogue(registry: Registry, tables: ReadTables | None = None) -> tuple[Cas
     cases = _any_scene(base, registry, own=tables is not None)
     if tables is not None:
         return tuple(cases)
+    messages = (
+        Case(name, f"scenes:{measure}", {}, {"tables": base, "changes": changes, "words": words, "reason": reason})
+        for measure, kind in (("refusal", "refusals"), ("warning", "warnings"))
+        for name, changes, words, reason in _DATA[kind]
+    )
     parts = (_contacts(base, registry), _scenes(base, registry), _points(base, registry), _elastic(base, registry))
-    return (*cases, *(case for part in parts for case in part), *_messages(base), *_elements())
+    return (*cases, *(case for part in parts for case in part), *messages, *_elements())
 
 
 def _any_scene(base: Tables, registry: Registry, own: bool) -> Iterator[Case]:
@@ -221,14 +226,6 @@ def _elastic(base: Tables, registry: Registry) -> Iterator[Case]:
     yield case("friction 1.0, a force acts at once", "scenes:rubbing", {**_EXCITED, "contact.friction": 1.0})
     for name in transient(registry):
         yield case("a force acts at once", "scenes:sudden_force", _EXCITED, integrator=name)
-
-
-def _messages(base: Tables) -> Iterator[Case]:
-    """Scenes that are refused, or that users are warned about."""
-    for measure, messages in (("refusal", _DATA["refusals"]), ("warning", _DATA["warnings"])):
-        for name, changes, words, reason in messages:
-            arguments = {"tables": base, "changes": changes, "words": words, "reason": reason}
-            yield Case(name, f"scenes:{measure}", {}, arguments)
 
 
 def _elements() -> Iterator[Case]:

@@ -388,8 +388,7 @@ def compute(case: Case, registry: Registry) -> list[Verified]:
     """The rows of one case; a solver that fails makes a row that says why."""
     rows: list[Verified] = []
     try:
-        for row in COMPUTED[case.id](case, registry):
-            rows.append(row)
+        rows.extend(COMPUTED[case.id](case, registry))
     except RacewayError as why:
         rows.append(case.row("the rest of the case", None, None, None, str(why)))
     return rows

@@ -473,9 +473,7 @@ class ElasticBearing:
     def cage_forces(self, y: np.ndarray) -> np.ndarray:
         """(Z, 4) what the ideal cage carries: force along the orbit [N], moments about orbit, radius and axis [N m]."""
         a = self.system.assembly
-        if a.cage is None:
-            return np.zeros((self.ball_count, 4))
-        return a.cage.force(a.nodal(y)).reshape(-1, 4)
+        return np.zeros((self.ball_count, 4)) if a.cage is None else a.cage.force(a.nodal(y)).reshape(-1, 4)
 
     def _ring(self, mesh: HexMesh, inner: bool) -> Body:
         s = self.setup

@@ -155,7 +155,9 @@ class ElasticRing(SteppedRing):
         """(size,) undeformed bodies at the equilibrium of rigid ones near q (5,)."""
         displacement, balls, _ = rigid.solve_equilibrium(q)
         if not balls[:, 1].any():
-            balls = self._on_the_line(displacement, balls)
+            # Weightless balls lie between the groove centres: their first column is the distance.
+            centre, _ = self.centre_vectors(displacement)
+            balls = np.asarray(centre / np.linalg.norm(centre, axis=1, keepdims=True) * balls[:, :1])
         return self.bodies.guess(displacement, balls)
 
     def _alone(self, q: np.ndarray, axial: float) -> np.ndarray:
@@ -195,11 +197,6 @@ class ElasticRing(SteppedRing):
                 compliance = motions[:, :5] + motions[:, :5].T - motions @ np.stack([image(u) for u in motions], axis=1)
         stiffness = np.linalg.inv(0.5 * (compliance + compliance.T)) - self.stiffness
         return np.asarray(0.5 * (stiffness + stiffness.T))
-
-    def _on_the_line(self, q: np.ndarray, places: np.ndarray) -> np.ndarray:
-        """(Z, 2) places of weightless balls, which lie between the groove centres: their first column is the distance."""
-        centre, _ = self.centre_vectors(q)
-        return np.asarray(centre / np.linalg.norm(centre, axis=1, keepdims=True) * places[:, :1])
 
 
 #: Angle of the excitation between the equilibria that tell velocity and acceleration [rad].

@@ -180,9 +180,7 @@ class HexOperator:
 
     def range_hourglass_energy(self, r: int, u: Floats) -> float:
         """``hourglass_energy`` [J] of one range of elements at u (3 n,) [m]."""
-        if self.formulation != "one_point":
-            return 0.0
-        return float(range_hourglass_energy(r, self._mesh, u))
+        return float(range_hourglass_energy(r, self._mesh, u)) if self.formulation == "one_point" else 0.0
 
     def stable_step(self) -> float:
         """Stable step of central differences with the lumped mass [s], from the elements' eigenvalues."""

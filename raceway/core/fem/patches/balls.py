@@ -135,9 +135,7 @@ class AppliedLoads:
 
     def of(self, contact: int) -> SlipState | None:
         """The part of one contact."""
-        if not self.slip:
-            return None
-        return SlipState(float(self.turn[contact % len(self.turn)]), self.slip[contact])
+        return SlipState(float(self.turn[contact % len(self.turn)]), self.slip[contact]) if self.slip else None
 
 
 @attrs.frozen(eq=False)
