@@ -21,7 +21,7 @@ def ring_of(axial: float) -> Any:
     return settled(COARSE | {"load": {"axial": axial}})[0].system
 
 
-@pytest.mark.parametrize("axial", [2300.0, 2500.0, 2700.0, 2950.0])
+@pytest.mark.parametrize("axial", [2300.0, 2950.0])
 def test_an_equilibrium_leads_to_its_neighbour_in_a_few_iterations(axial: float):
     """A fifth of the load more, across it: no point opens or closes, and Newton's method converges quadratically."""
     ring = ring_of(axial)

@@ -105,7 +105,11 @@ def test_no_number_is_discarded(maps: dict[int, Path], forces: dict[int, Path], 
         assert instance.messages == ["an input is not a finite number: it keeps its value"]
 
 
-@pytest.mark.parametrize("name", FORCES)
+#: A hypothesis of moments, one with growth, another law, a pair; others by night.
+QUICK = ("shared", "traction", "penalty", "DB")
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name not in QUICK)) for name in FORCES])
 def test_force_is_that_of_the_kernels(tmp_path: Path, name: str) -> None:
     """Both stop at a step of a ball whose square is rounding of its approach; stiffness keeps the step itself."""
     paths = exported(tmp_path, FORCES[name], kind="force")
@@ -202,19 +206,8 @@ def test_sources_compile_without_a_warning_and_are_short(
         sources = list((folder / "sources").glob("*.[ch]"))
         assert sum(len(source.read_text().splitlines()) for source in sources) <= 600
         for compiler in compilers:
-            command = [
-                compiler,
-                "-std=c99",
-                "-O2",
-                "-Wall",
-                "-Wextra",
-                "-Werror",
-                "-c",
-                f"fmi{path.stem[-1]}.c",
-                "-o",
-                "bearing.o",
-            ]
-            subprocess.run(command, cwd=folder / "sources", check=True)
+            flags = ("-std=c99", "-O2", "-Wall", "-Wextra", "-Werror", "-c", "-o", "bearing.o")
+            subprocess.run([compiler, *flags, f"fmi{path.stem[-1]}.c"], cwd=folder / "sources", check=True)
 
 
 def test_a_title_is_no_code(tmp_path: Path) -> None:
