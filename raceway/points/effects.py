@@ -358,9 +358,7 @@ class Findings:
     def courses(self) -> list[Course]:
         """Of each quantity along each axis of three or more numbers, for every combination of the others."""
         courses = []
-        for axis in self.varied:
-            if not axis.numeric or len(axis.values) < 3:
-                continue
+        for axis in (axis for axis in self.varied if axis.numeric and len(axis.values) >= 3):
             series: dict[tuple[str, ...], list[Row]] = {}
             other_keys = [varied_axis.key for varied_axis in self.axes if varied_axis is not axis]
             for row in self.rows:
@@ -386,11 +384,8 @@ def _same(a: object, b: object) -> bool:
 
 def _course(quantity: str, good: list[Row], doubtful: int, axis: Axis, at: Tables) -> Course:
     values = [row.value(quantity) or 0.0 for row in good]
-    reaches = (
-        len(good) > 1
-        and min(values) > 0.0
-        and all(any(_same(row.point[axis.key], end) for row in good) for end in axis.ends)
-    )
+    at_ends = all(any(_same(row.point[axis.key], end) for row in good) for end in axis.ends)
+    reaches = len(good) > 1 and min(values) > 0.0 and at_ends
     runs = trend(values, [row.error_of(quantity) for row in good]) if len(good) > 1 else "unknown"
     percent = 100.0 * (values[-1] / values[0] - 1.0) if reaches else None
     return Course(quantity, axis.key, at, runs, percent, doubtful)
@@ -442,12 +437,8 @@ def in_few_words(comparison: Findings) -> list[str]:
         words.append(f"Some are at the ends of the axes, so the effects hold for {_settings(comparison.held)} only.")
     notes = [*words, *(f"Note: {note}." for note in comparison.notes)]
     if not comparison.factorials:
-        why = (
-            "too many of the runs at the ends of the axes cannot be used"
-            if comparison.varied
-            else "every axis has one value"
-        )
-        return [f"No effects: {why}.", *notes]
+        fault = "too many of the runs at the ends of the axes cannot be used"
+        return [f"No effects: {fault if comparison.varied else 'every axis has one value'}.", *notes]
     first = next(iter(comparison.factorials))
     ranking, *further = _main_effects(comparison, first)
     return [ranking, *further, *notes, *_interactions(comparison, first)]
@@ -565,18 +556,13 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
     none = "no axis affects it" if unclear else "no axis moves it"
     order = "On average" if len(parts) < 2 else "On average, strongest first:"
     words = [f"{label} lies between {min(values):.2f} and {max(values):.2f} {unit}. {order} {'; '.join(parts) or none}."]
-    if unclear:
-        words.append(
-            f"{label}, within the runs' errors of {100.0 * factorial.error:.2g} % and so not resolved: {enumeration(unclear)}."
-        )
-    if weak:
-        words.append(
-            f"{label} on average hardly depends on {enumeration(weak)}, but does so together with other axes (see below)."
-        )
-    if inert:
-        words.append(
-            f"{label} hardly depends on {enumeration(inert)}: no effect of it, alone or with others, reaches 0.5 %."
-        )
+    within = f"within the runs' errors of {100.0 * factorial.error:.2g} %"
+    for keys, sentence in (
+        (unclear, ", {within} and so not resolved: {keys}."),
+        (weak, " on average hardly depends on {keys}, but does so together with other axes (see below)."),
+        (inert, " hardly depends on {keys}: no effect of it, alone or with others, reaches 0.5 %."),
+    ):
+        words += [label + sentence.format(within=within, keys=enumeration(keys))] if keys else []
     return words
 
 
@@ -607,8 +593,8 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
     for effect in large[:_MOST_INTERACTIONS]:
         # (the axis that is held, the axis that is moved): numbers are moved, else the weaker of the two.
         main = {e.term[0]: abs(e.log_change) for e in factorial.effects if len(e.term) == 1}
-        a, b = sorted((comparison.axis(key) for key in effect.term), key=lambda axis: (axis.numeric, -main[axis.key]))
-        partner, other = a, b
+        axes = (comparison.axis(key) for key in effect.term)
+        partner, other = sorted(axes, key=lambda axis: (axis.numeric, -main[axis.key]))
         changes = [factorial.log_change(other.key, {partner.key: end}) for end in (0, 1)]
         words.append(
             f"{label}, interaction of {partner.key} and {other.key}: with {partner.key} = {shown(partner.ends[0])}, "
@@ -620,10 +606,7 @@ def _interactions(comparison: Findings, quantity: str) -> list[str]:
         words.append(f"{label}, three or more axes together: {terms}.")
     if not large and not high and len(factorial.keys) > 1:
         most = max(abs(e.log_change) for e in factorial.effects if len(e.term) > 1)
-        if most + factorial.error < _HARDLY:
-            words.append(f"{label} has no interaction above 0.5 %: the axes act independently.")
-        else:
-            words.append(
-                f"{label}: no interaction is resolved from the runs' errors (the largest would be {percent(most)})."
-            )
+        none = f"{label} has no interaction above 0.5 %: the axes act independently."
+        unknown = f"{label}: no interaction is resolved from the runs' errors (the largest would be {percent(most)})."
+        words.append(none if most + factorial.error < _HARDLY else unknown)
     return words

@@ -222,10 +222,8 @@ class Precision(Answer):
         """Everything, as plain tables for JSON."""
         rows = list[Tables]()
         for row in self.judged:
-            cost: Mapping[str, object] = row["cost"] or {}
-            judgement: Mapping[str, object] = row
-            base = {"base": row["physics"] == self.base}
-            rows.append({name: {**cost, **judgement, **base}.get(name) for name in _COLUMNS})
+            known: Tables = {**(row["cost"] or {}), **row, "base": row["physics"] == self.base}
+            rows.append({name: known.get(name) for name in _COLUMNS})
         return {
             "title": self.title,
             "reference": _reference_table(self.references[self.base]),
@@ -245,8 +243,14 @@ class Precision(Answer):
         RacewayError
             xarray is missing.
         """
-
-        return labelled(self)
+        rows = self.to_dict()["rows"]
+        variables = {
+            quantity.name: ("setting", np.array([row[quantity.name] for row in rows], dtype=float), quantity.labels)
+            for quantity in PRECISION
+        }
+        names = np.array([text["setting"].lstrip("* ") for text in self.table()], dtype=object)
+        more = {name: ("setting", np.array([row[name] for row in rows], dtype=object)) for name in ("family", "status")}
+        return labelled_dataset({**variables, **more}, {"setting": names}, {"title": self.title})
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw relative error over the run's time [s], with the front of what no other setting beats.
@@ -292,15 +296,13 @@ class Precision(Answer):
         front, texts = set(self.front(self.base)), list[dict[str, str]]()
         for index, row in enumerate(self.judged):
             cost = row["cost"]
-            text = {"setting": ("* " if index in front else "  ") + _words_of(row["setting"])}
-            text["error"] = _error_of(row)
+            text = {"setting": ("* " if index in front else "  ") + _words_of(row["setting"]), "error": _error_of(row)}
             text["own estimate"] = "" if row["own_error"] is None else f"{row['own_error']:.1e}"
             text["order"] = "" if row["order"] is None else f"{row['order']:.2f}"
-            text["wall ms"] = "" if cost is None else f"{1e3 * cost['wall_s']:.1f}"
-            text["cpu ms"] = "" if cost is None else f"{1e3 * cost['cpu_s']:.1f}"
+            for name, key in (("wall ms", "wall_s"), ("cpu ms", "cpu_s")):
+                text[name] = "" if cost is None else f"{1e3 * cost[key]:.1f}"
             text["steps"] = "" if cost is None else str(cost["steps"])
-            text["status"] = "" if row["status"] == "completed" else row["status"]
-            texts.append(text)
+            texts.append(text | {"status": "" if row["status"] == "completed" else row["status"]})
         return texts
 
     def texts(self, pictures: bool) -> dict[str, str]:
@@ -372,24 +374,6 @@ def _words_of(setting: Tables) -> str:
         return f"{table} {shown(value)}" if last == "kind" else f"{last} {shown(value)}"
 
     return ", ".join(word(key, value) for key, value in setting.items()) or "the scene itself"
-
-
-def labelled(study: Precision) -> Dataset:
-    """Error, time and value of every setting.
-
-    Raises
-    ------
-    RacewayError
-        xarray is missing.
-    """
-    rows = study.to_dict()["rows"]
-    variables = {
-        quantity.name: ("setting", np.array([row[quantity.name] for row in rows], dtype=float), quantity.labels)
-        for quantity in PRECISION
-    }
-    names = np.array([text["setting"].lstrip("* ") for text in study.table()], dtype=object)
-    more = {name: ("setting", np.array([row[name] for row in rows], dtype=object)) for name in ("family", "status")}
-    return labelled_dataset({**variables, **more}, {"setting": names}, {"title": study.title})
 
 
 #: Runs of each setting, and the longest predicted run [s].

@@ -84,9 +84,7 @@ def result_picture(result: Result, state: Snapshot) -> Tables:
     dict : title, bearing, warnings, rows (quantity, value, remark), left_out, columns and balls (of the inner and the outer race), polar
         (azimuth [deg], load inner, load outer [N]), orbit ((n, 2) [um], or None)
     """
-    content = result.content
-    parts = screen(content)
-    balls = content["equilibrium"]["balls"]
+    parts, balls = screen(result.content), result.content["equilibrium"]["balls"]
     polar = [[ball["azimuth_deg"], ball["load_inner_n"], ball["load_outer_n"]] for ball in balls]
     return {
         "title": parts.title, "bearing": parts.bearing, "warnings": parts.warnings, "left_out": parts.left_out,
@@ -148,12 +146,8 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
                 raise RacewayError(f"no curves: {compiled.why_slow}; `raceway sweep` computes them point by point")
             points = {axis.key: axis.numbers()}
             columns = compiled.looped(points)
-            answer: Tables = {
-                **columns,
-                "points": axis.numbers(),
-                "reason": compiled.with_reasons(points, columns)["reason"],
-            }
-            answer["rows"] = len(scene.bearing.rows)
+            reasons = compiled.with_reasons(points, columns)["reason"]
+            answer: Tables = {**columns, "points": axis.numbers(), "reason": reasons, "rows": len(scene.bearing.rows)}
         except RacewayError as why:
             if str(why) not in [panel["why"] for panel in panels]:
                 panels.append({"panel": "", "axis": name, "label": axis.label, "why": str(why), "lines": []})

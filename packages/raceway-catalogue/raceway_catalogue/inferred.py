@@ -114,9 +114,7 @@ class Inferred(Answer):
         """Plain tables: numbers with uncertainty and reason, checks, the table [bearing]."""
         return {
             "names": list(self.printed.names),
-            "practice": self.practice,
-            "share": self.share,
-            "other": self.other,
+            **{name: getattr(self, name) for name in ("practice", "share", "other")},
             "numbers": {key: attrs.asdict(number) for key, number in self.numbers.items()},
             "checks": [{**attrs.asdict(check), "error": check.error} for check in self.checks],
             "stiffness_error": self.stiffness_error,

@@ -46,14 +46,8 @@ class FMU(Answer):
 
     def to_dict(self) -> Tables:
         variables = [{"causality": part, **attrs.asdict(variable)} for variable, part in self.unit.variables]
-        unit = self.unit
-        return {
-            "title": self.title,
-            "model": unit.name,
-            "description": unit.words,
-            "variables": variables,
-            "notes": self.notes,
-        }
+        named = {"title": self.title, "model": self.unit.name, "description": self.unit.words}
+        return {**named, "variables": variables, "notes": self.notes}
 
     @property
     def rows(self) -> list[dict[str, str]]:

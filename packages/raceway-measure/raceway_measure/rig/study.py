@@ -90,8 +90,7 @@ class _Point:
             "true": {
                 K.name: true,
                 C.name: state.damping,
-                "tilt_locked_stiffness": state.locked[0],
-                "tilt_locked_damping": state.locked[1],
+                **dict(zip(("tilt_locked_stiffness", "tilt_locked_damping"), state.locked, strict=True)),
                 "force_n": abs(state.force),
                 "force_over_half_unbalance": 2.0 * abs(state.force) / self.unbalance_force,
                 "moment_nm": abs(state.moment),
@@ -148,9 +147,7 @@ class _RigStudy(Answer):
                 "rig": {**attrs.asdict(self.rig), "mass_kg": self.rig.mass, "disc_mass_kg": self.rig.disc_mass},
                 "critical_speed_rpm": self.critical,
                 "rows": [point.to_dict() for point in self.points],
-                "failed": self.failed,
-                "worst": self.worst,
-                "worst_by_cause": self.worst_by_cause,
+                **{name: getattr(self, name) for name in ("failed", "worst", "worst_by_cause")},
             }
         )
 
