@@ -19,9 +19,7 @@ from pathlib import Path
 from raceway.core.deferred import DeferredKernel
 
 _STUB = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
-_PLACES = {
-    alias.name: f"raceway.{node.module}" for node in _STUB.body if isinstance(node, ast.ImportFrom) for alias in node.names
-}
+_PLACES = {a.name: f"raceway.{node.module}" for node in _STUB.body if isinstance(node, ast.ImportFrom) for a in node.names}
 
 __all__ = sorted(_PLACES)
 

@@ -285,11 +285,7 @@ def _by_flags(about: Command, error: RacewayError | None) -> RacewayError | None
     """Mistakes in arguments of the front under the names that the command line has for them."""
     if not isinstance(error, SceneError):
         return error
-    flags = {
-        name: f"--{option.flag or name.replace('_', '-')}"
-        for name, option in about.options.items()
-        if option and not option.positional
-    }
+    flags = {k: f"--{o.flag or k.replace('_', '-')}" for k, o in about.options.items() if o and not o.positional}
     return SceneError([attrs.evolve(m, path=flags.get(str(m.path), m.path)) for m in error.mistakes])
 
 

@@ -51,9 +51,7 @@ def _walk(schema: ReadTables, path: str) -> Iterator[tuple[str, str]]:
         yield path, ""
     for form in forms:
         boolean = ["true", "false"] if form.get("type") == "boolean" else []
-        yield from (
-            (path, str(word)) for word in [*form.get("enum", boolean), *([form["const"]] if "const" in form else [])]
-        )
+        yield from ((path, str(w)) for w in [*form.get("enum", boolean), *([form["const"]] if "const" in form else [])])
         for name, below in form.get("properties", {}).items():
             yield from _walk(below, f"{path}.{name}" if path else name)
 

@@ -74,9 +74,7 @@ class _AllCommands(_CommandsByName):
 
         further = default_registry().mapping("raceway_commands")
         by_name = {heading: sorted(commands, key=lambda about: about.name) for heading, commands in further.items()}
-        return {
-            heading: (*self.sections.get(heading, ()), *by_name.get(heading, ())) for heading in {**self.sections, **by_name}
-        }
+        return {head: (*self.sections.get(head, ()), *by_name.get(head, ())) for head in {**self.sections, **by_name}}
 
     def _lines(self) -> dict[str, list[tuple[str, str]]]:
         """With those of packages, as these list them: none is imported."""

@@ -81,9 +81,7 @@ def measured_factors(
     turns = np.maximum(3e4 / np.pi * np.asarray(speed) * pitch_diameter, 1e-9)
     apart = np.min([np.maximum(np.maximum(one.slowest / turns, turns / one.fastest), 1.0) for one in known], axis=0)
     wide, sizes = _MARGIN * np.minimum(apart**_BY_SPEED, _WIDEST), np.log([one.pitch_diameter for one in known])
-    low, high = (
-        np.interp(np.log(pitch_diameter), sizes, [getattr(one, end) for one in known]) for end in ("least", "largest")
-    )
+    low, high = (np.interp(np.log(pitch_diameter), sizes, [getattr(w, end) for w in known]) for end in ("least", "largest"))
     return np.minimum(low, 1.0) / wide, np.maximum(high, 1.0) * wide
 
 

@@ -222,9 +222,7 @@ class Registry:
                 fault = Fault(implementation.plugin_name, f"`{hook}` raises {type(why).__name__}: {why}")
                 self.faults += [] if fault in self.faults else [fault]
                 continue
-            merged |= {
-                key: merged.get(key, ()) + value if isinstance(value, tuple) else value for key, value in answer.items()
-            }
+            merged |= {key: merged.get(key, ()) + v if isinstance(v, tuple) else v for key, v in answer.items()}
         return merged
 
     def find_any(self, text: str) -> Entry:

@@ -254,9 +254,7 @@ class Gradients:
         scene = self.model.scene
         alone = self.model.traits.contacts_alone and not why_not(scene, False)
         if alone and not (self.orbit and scene.kinematics.orbiting):
-            answers |= self._by_columns(
-                [key for key in keys if key.path not in answers and not why_no_column(scene, key.path)]
-            )
+            answers |= self._by_columns([k for k in keys if k.path not in answers and not why_no_column(scene, k.path)])
         for count, key in enumerate(keys):
             if on_progress is not None:
                 on_progress("keys", count, len(keys))
@@ -328,9 +326,7 @@ class Gradients:
         usable = [k for k in range(len(keys)) if fine[0] and fine[1 + 2 * k] and fine[2 + 2 * k]]
         if not usable:
             return {}
-        sides = {
-            side: {name: value[offset::2][usable] for name, value in values.items()} for side, offset in ((-1, 1), (1, 2))
-        }
+        sides = {side: {k: value[offset::2][usable] for k, value in values.items()} for side, offset in ((-1, 1), (1, 2))}
         base = {name: value[0] for name, value in values.items()}
         answers, uneven = _gradients([keys[k] for k in usable], np.array(steps)[usable], sides, base)
         if uneven and relative > _LEAST_STEP:

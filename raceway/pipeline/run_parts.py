@@ -57,10 +57,7 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
         value = ", ".join(f"{1e-6 * side['largest_shear_pa']:.0f}" for side in fine)
         lines = []
         if fine:
-            bodies, depths = (
-                ", ".join(side["body"] for side in fine),
-                ", ".join(f"{1e6 * side['depth_m']:.0f}" for side in fine),
-            )
+            bodies, depths = (", ".join(s["body"] for s in fine), ", ".join(f"{1e6 * s['depth_m']:.0f}" for s in fine))
             lines.append(f"{bodies}, {depths} µm deep")
         if coarse:
             worst, key = min(((side, key) for side in coarse for key in _CELLS), key=lambda pair: pair[0][pair[1]])

@@ -288,9 +288,7 @@ class SteadyMotions:
             return None
         self.last = record
         frequency = model.excitation.frequency_hz
-        return stiffness(
-            *(synchronous_phasor(record.time, signal, frequency) for signal in (record.force, record.displacement))
-        )
+        return stiffness(*(synchronous_phasor(record.time, x, frequency) for x in (record.force, record.displacement)))
 
 
 def model_at_speed(model: Model, speed: float) -> Model | None:

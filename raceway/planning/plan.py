@@ -220,10 +220,7 @@ class Check(Shown):
     def _facts(self) -> tuple[str, list[Fact]]:
         count = len(self.mistakes)
         title = "no mistakes" if self.ok else f"{count} mistake{'' if count == 1 else 's'}"
-        rows = [
-            (mistake.path, "" if mistake.value is None else repr(mistake.value), mistake.message)
-            for mistake in self.mistakes
-        ]
+        rows = [(m.path, "" if m.value is None else repr(m.value), m.message) for m in self.mistakes]
         return title, [*rows, *(("warning", "", text) for text in self.warnings)]
 
     def to_dict(self) -> Tables:

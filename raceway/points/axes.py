@@ -411,9 +411,7 @@ def sampled(ranges: Vary, design: str, seed: int = 0) -> Design:
 
     engine = (qmc.Sobol if kind == "sobol" else qmc.LatinHypercube)(len(ends_of), rng=np.random.default_rng(seed))
     columns = qmc.scale(engine.random(count), *zip(*ends_of.values(), strict=True)).T
-    return Design(
-        tuple(Axis(key, tuple(column.tolist())) for key, column in zip(ends_of, columns, strict=True)), listed=True
-    )
+    return Design(tuple(Axis(key, tuple(x.tolist())) for key, x in zip(ends_of, columns, strict=True)), listed=True)
 
 
 def box(ranges: Vary) -> dict[str, tuple[float, float]]:

@@ -134,12 +134,7 @@ class Band(Answer):
                 f"the nominal {', '.join(far)} lies outside the band: the answer jumps within the tolerances to another motion or contact "
                 "state; raceway follow shows where"
             )
-        shares = [
-            share
-            for indices_by_name in (self.first, self.total)
-            for name in indices_by_name
-            for share in indices_by_name[name]
-        ]
+        shares = [share for of in (self.first, self.total) for indices_of in of.values() for share in indices_of]
         if any(abs(share - 0.5) > 0.5 + _ROUGH for share in shares):
             sentences.append(f"indices beyond 0 and 1 by more than {_ROUGH:g}: too few samples, use more --samples")
         return sentences
@@ -448,9 +443,7 @@ def uncertainty(
             read = as_scene(scene, plugins=plugins)
             widths = tolerances_of(read, tolerances or stated_tolerances(read))
             count, steady = (len(widths) + 2) * samples, read if read.excitation is None else _steady(read)
-            loop = function(
-                steady, [tolerance.key.path for tolerance in widths], ["K" if steady.excitation else "kyy"], threads=1
-            )
+            loop = function(steady, [t.key.path for t in widths], ["K" if steady.excitation else "kyy"], threads=1)
             if loop.why_slow:
                 seconds, _ = run_times(count, lambda _: steady.to_dict(), default_registry(), planned=1)
                 return Workload(

@@ -55,9 +55,7 @@ def values_of(result: Result) -> Tables:
             values[name] = value.tolist()
         elif value is not None and math.isfinite(value):
             values[name] = float(value)
-    return values | {
-        name: value for name, value in result.quantities.items() if isinstance(value, float) and math.isfinite(value)
-    }
+    return values | {name: v for name, v in result.quantities.items() if isinstance(v, float) and math.isfinite(v)}
 
 
 #: Status of points that have numbers.

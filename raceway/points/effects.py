@@ -413,9 +413,7 @@ def explain(comparison: Findings) -> list[str]:
         text += ", as geometric means over the other settings"
         text += f", at {_settings(comparison.held)}" if comparison.held else ""
         text += f"; the runs' own errors move them by at most {100.0 * error:.2g} %." if error else "."
-        unknown = sum(
-            row.doubt is None and not row.estimated and bool(row.result["identification"]) for row in comparison.rows
-        )
+        unknown = sum(r.doubt is None and not r.estimated and bool(r.result["identification"]) for r in comparison.rows)
         text += f" {unknown} runs without an estimated error are taken as exact." if unknown else ""
     return [*words, text]
 
@@ -535,9 +533,7 @@ def _main_effects(comparison: Findings, quantity: str) -> list[str]:
                 share = f"; {100.0 * effect.share / (1.0 - largest.share):.2g} % of the rest"
             else:
                 share = f"; {100.0 * effect.share:.3g} % of the variation"
-            ends = [
-                [factorial.resolved_change(key, {other: end}) for end in (0, 1)] for other in factorial.keys if other != key
-            ]
+            ends = [[factorial.resolved_change(key, {by: end}) for end in (0, 1)] for by in factorial.keys if by != key]
             remark = ", a mean of rises and falls" if any(low * high < 0.0 for low, high in ends) else ""
             change = f"{percent(effect.log_change)} ({about.read(effect.difference or 0.0):+.2f} {unit}{share}{remark})"
             parts.append(f"{_axis_ends(comparison.axis(key))} changes it by {change}")

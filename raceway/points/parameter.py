@@ -107,10 +107,7 @@ class Parameter:
             )
             raise SceneError.at("kinematics.orbiting", True, words)
         first, between, last = (self._ring_at(p) for p in (self.first, self.value(_BETWEEN), self.last))
-        parts = {
-            field.name: tuple(getattr(system, field.name) for system in (first, between, last))
-            for field in attrs.fields(System)
-        }
+        parts = {f.name: tuple(getattr(system, f.name) for system in (first, between, last)) for f in attrs.fields(System)}
         differing = {name: (a, b, c) for name, (a, b, c) in parts.items() if not (_equal(a, b) and _equal(a, c))}
         if not differing:
             raise SceneError.at(self.key, None, "has no effect on the motion: there is no branch over it")

@@ -163,9 +163,7 @@ class Store:
         with told(self.path):
             if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):
                 raise _damage(self.path, "its pages are inconsistent")
-            sound = {
-                record[0]: self._sound(*record) for record in self._connection.execute(f"SELECT {_COLUMNS} FROM points")
-            }
+            sound = {r[0]: self._sound(*r) for r in self._connection.execute(f"SELECT {_COLUMNS} FROM points")}
         known_keys = set(keys or sound)
         bad = {key for key in known_keys if not sound.get(key, False)}
         strange = {key for key in set(sound) - known_keys if not sound[key]}  # runs of points that a block has left are not

@@ -70,19 +70,14 @@ def survey(tables: ReadTables, design: Design, registry: Registry) -> _Survey:
     if mistakes:
         raise SceneError(mistakes)
     paths = {name: Path(name) for name in sorted(files)}
-    digests = {
-        name: hashlib.sha256(path.read_bytes()).hexdigest()[:24] if path.is_file() else "missing"
-        for name, path in paths.items()
-    }
+    digests = {k: hashlib.sha256(p.read_bytes()).hexdigest()[:24] if p.is_file() else "missing" for k, p in paths.items()}
     return _Survey(first, frozenset(plugins), digests, tuple(notes))
 
 
 def _others(design: Design, continuous: Collection[str]) -> Iterator[tuple[str, str, Tables]]:
     """(where, key that differs from the first point, point); of numbers at continuous keys the ends: rules are intervals."""
     first = design.point(0)
-    ends = {
-        axis.key: (int(axis.column.argmin()), int(axis.column.argmax())) for axis in design.axes if axis.key in continuous
-    }
+    ends = {a.key: (int(a.column.argmin()), int(a.column.argmax())) for a in design.axes if a.key in continuous}
     if design.listed:
         numbers = chain(*ends.values()) if len(ends) == len(design.axes) else range(design.size)
         yield from ((f"point {n + 1}: ", "", design.point(n)) for n in dict.fromkeys(numbers) if n)

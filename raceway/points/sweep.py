@@ -203,9 +203,7 @@ def prepare(
     except SceneError as error:
         # Who asks for a motion at speed 0 is told how a stiffness from 0 r/min is had.
         more = (f". {_FROM_ZERO}" if each.path == SPEED and each.value == 0 else "" for each in error.mistakes)
-        mistakes = [
-            attrs.evolve(each, message=each.message + words) for each, words in zip(error.mistakes, more, strict=True)
-        ]
+        mistakes = [attrs.evolve(m, message=m.message + words) for m, words in zip(error.mistakes, more, strict=True)]
         raise SceneError(mistakes) from None
     for note in overview.notes:
         warnings.warn(note, stacklevel=2)

@@ -172,9 +172,7 @@ class Bearing:
         rows = places_of(word, 0.0 if word == "single" else self.row_distance or self.width or 0.0)
         if not self.row:
             return rows
-        places = [
-            position if row.position is None else row.position for row, (_, position) in zip(self.row, rows, strict=True)
-        ]
+        places = [x if row.position is None else row.position for row, (_, x) in zip(self.row, rows, strict=True)]
         return tuple((1.0 if sign == "+" else -1.0, position) for sign, position in zip(self.signs, places, strict=True))
 
     @cached_property

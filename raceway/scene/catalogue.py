@@ -339,9 +339,7 @@ def geometry_of(bearing: ReadTables, tables: ReadTables) -> Tables | None:
         for key in ("axial", "radial"):
             same[key] = [min(same[key][0], part[key][0]), max(same[key][1], part[key][1])]
     axial, radial = (max(geometry[key] for geometry in presets) for key in ("stiffness_error", "radial_stiffness_error"))
-    alike = all(
-        (one["maker"], one["inferred_from"]) == (presets[0]["maker"], presets[0]["inferred_from"]) for one in presets
-    )
+    alike = all((p["maker"], p["inferred_from"]) == (presets[0]["maker"], presets[0]["inferred_from"]) for p in presets)
     maker, source = (presets[0]["maker"], presets[0]["inferred_from"]) if alike else (None, None)
     whose = f"{maker}'s geometry inferred" if maker else "geometry inferred" + (f" from {source}'s prints" if source else "")
     first = f"stiffness uncertain by about {100.0 * axial:.0f} % axially, {100.0 * radial:.0f} % radially"

@@ -234,6 +234,4 @@ def _with_parts(part: Any, changes: _Changes, replace: Callable[..., object] = a
         groups.setdefault(step, []).append((further, value))
     if not fields:
         return tuple(_with_parts(value, groups[k], replace) if k in groups else value for k, value in enumerate(part))
-    return replace(
-        part, **{str(name): _with_parts(getattr(part, str(name)), group, replace) for name, group in groups.items()}
-    )
+    return replace(part, **{str(k): _with_parts(getattr(part, str(k)), group, replace) for k, group in groups.items()})

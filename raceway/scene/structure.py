@@ -229,9 +229,7 @@ def _mistakes(error: BaseException, value: object, cls: object, path: str) -> li
     if isinstance(error, cattrs.errors.ClassValidationError):
         mistakes: list[Mistake] = []
         notes, plain = error.group_exceptions()
-        strange = [
-            key for each in plain if isinstance(each, cattrs.errors.ForbiddenExtraKeysError) for key in each.extra_fields
-        ]
+        strange = [key for e in plain if isinstance(e, cattrs.errors.ForbiddenExtraKeysError) for key in e.extra_fields]
         for inner, note in notes:
             here = value.get(note.name) if isinstance(value, dict) else None
             where = f"{path}.{note.name}" if path else note.name
@@ -256,9 +254,7 @@ def _mistakes(error: BaseException, value: object, cls: object, path: str) -> li
         ]
     if isinstance(error, cattrs.errors.IterableValidationError) and isinstance(value, list | tuple):
         places, _ = error.group_exceptions()
-        return [
-            m for inner, note in places for m in _mistakes(inner, value[int(note.index)], note.type, f"{path}[{note.index}]")
-        ]
+        return [m for inner, at in places for m in _mistakes(inner, value[int(at.index)], at.type, f"{path}[{at.index}]")]
     if isinstance(error, cattrs.errors.BaseValidationError):
         return [m for inner in error.exceptions for m in _mistakes(inner, value, cls, path)]
     plain_value = None if isinstance(value, dict) else value

@@ -118,11 +118,7 @@ class Mounting:
     @property
     def changes(self) -> dict[str, float]:
         """Temperatures and interferences that are not zero, by key."""
-        return {
-            key: value
-            for key, value in attrs.asdict(self).items()
-            if value and not key.endswith(("bore", "diameter", "material"))
-        }
+        return {k: v for k, v in attrs.asdict(self).items() if v and not k.endswith(("bore", "diameter", "material"))}
 
     @property
     def fitted(self) -> bool:

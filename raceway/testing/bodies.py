@@ -156,9 +156,7 @@ def _is_key(scene: Scene, path: str) -> bool:
     if part is None or key in ("", "kind"):
         return True
     plugins = [getattr(part, f.name) for f in attrs.fields(type(part)) if "plugin" in f.metadata][:1]
-    return key.partition(".")[0] in {
-        f.name for each in (part, *plugins) if each is not None for f in attrs.fields(type(each))
-    }
+    return key.partition(".")[0] in {f.name for e in (part, *plugins) if e is not None for f in attrs.fields(type(e))}
 
 
 def _force_imbalance(model: Model, q: np.ndarray, ball: np.ndarray) -> float:

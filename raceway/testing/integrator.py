@@ -301,9 +301,7 @@ class IntegratorSuite(Suite):
         for system in (linear_system(), contact_system()):
             start, schedule = _start(method, system), Schedule(PERIOD / 60, 60, 2)
             in_loop, from_python = (integrate(each, system, start, schedule) for each in (method, FromPython(method)))
-            worst = max(
-                worst, *(_apart(getattr(in_loop, word), getattr(from_python, word)) for word in _coordinates(method))
-            )
+            worst = max(worst, *(_apart(getattr(in_loop, w), getattr(from_python, w)) for w in _coordinates(method)))
         # Iterations that end at 1e-9 of the forces may leave as much in each of 120 steps, resonance or not.
         require(worst < 1e-6, f"the drivers differ by {worst:.2g} of the motion")
         return f"they differ by {worst:.1e} of the motion"

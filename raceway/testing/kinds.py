@@ -233,9 +233,7 @@ class QuantitySuite(Suite):
         plugin = _of_scene(plugin, tables)
         loads = [0.8 * tables["load"]["axial"], tables["load"]["axial"]]
         points = _column_points(tables, loads)
-        before = {
-            name: copy.deepcopy(getattr(points, name)) for name in ("load", "contact_angle", "displacement", "stiffness")
-        }
+        before = {k: copy.deepcopy(getattr(points, k)) for k in ("load", "contact_angle", "displacement", "stiffness")}
         values = quantities_at(plugin, points)
         for name, was in before.items():
             require(np.array_equal(getattr(points, name), was, equal_nan=True), f"`{name}` of the points is changed")

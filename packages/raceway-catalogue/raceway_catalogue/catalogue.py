@@ -227,9 +227,7 @@ def _entry(preset: Preset, picture: Path | None) -> _Listing:
     ]
     parts: list[Part] = [Words(preset.title, "bold"), sections(rows)]
     if preset.printed:
-        errors = [
-            f"{key.replace('_error', '').replace('_', ' ')} {100.0 * error:+.2f} %" for key, error in preset.printed.items()
-        ]
+        errors = [f"{key.replace('_error', '').replace('_', ' ')} {100.0 * e:+.2f} %" for key, e in preset.printed.items()]
         parts.append(f"against what the maker prints: {', '.join(errors)}")
     if geometry:
         parts.append(geometry["words"])

@@ -162,10 +162,7 @@ class _InferredTable(Answer):
 
     def to_dict(self) -> Tables:
         """A row a size, and the summary."""
-        rows = [
-            _fields(answer) if isinstance(answer, Inferred) else {"name": answer[0], "refused": answer[1]}
-            for answer in self.answers
-        ]
+        rows = [_fields(a) if isinstance(a, Inferred) else {"name": a[0], "refused": a[1]} for a in self.answers]
         return {"table": self.table, "maker": self.maker, "rows": rows, "summary": self.summary}
 
     def _sentences(self) -> list[str]:

@@ -151,9 +151,7 @@ class Inferred(Answer):
         for check in self.checks:
             stiff = check.quantity.endswith("stiffness")
             value = number(1e-6 * check.printed, "N/µm") if stiff else number(1e-3 * check.printed, "kN")
-            rows.append(
-                (f"{check.quantity}, {check.contact_angle_deg:g} deg", value, f"met with {100.0 * check.error:+.2f} %")
-            )
+            rows += [(f"{check.quantity}, {check.contact_angle_deg:g} deg", value, f"met with {100.0 * check.error:+.2f} %")]
         error = f"geometry inferred: axial stiffness uncertain by about {100.0 * self.stiffness_error:.0f} %"
         return [Words(self.printed.title, "bold"), sections(rows), error]
 
@@ -326,9 +324,7 @@ def _grooves(size: Printed, best: Candidate, conformity: float | None) -> tuple[
         curves = stiffnesses(size, best.ball_count, best.ball_diameter, _TRIED, _TRIED)
         stiffnesses_printed = np.array([pair.stiffness for pair in size.pairs])
         # Stiffness falls as grooves widen.
-        each = [
-            float(np.interp(k, curve[::-1], _TRIED[::-1])) for k, curve in zip(stiffnesses_printed, curves.T, strict=True)
-        ]
+        each = [float(np.interp(k, row[::-1], _TRIED[::-1])) for k, row in zip(stiffnesses_printed, curves.T, strict=True)]
         middle = float(np.median(each))
         if not _TRIED[0] < middle < _TRIED[-1]:
             usual = stiffnesses(size, best.ball_count, best.ball_diameter, CONFORMITY, CONFORMITY)

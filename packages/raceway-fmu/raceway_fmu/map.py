@@ -205,9 +205,7 @@ def map_unit(
         f.refuse_time(_LEAST_POINTS, "a map needs at least these. `raceway sweep` computes a table of fewer")
     corners = [column.ravel() for column in np.meshgrid(*(np.linspace(*ends, 3) for ends in ranges.values()))]
     scales = _samples(f, names, corners).items()
-    outputs = [
-        _variable(name) for name, (value, scale) in scales if name in names or np.any(np.abs(value) > _ROUNDING * scale)
-    ]
+    outputs = [_variable(name) for name, (v, scale) in scales if name in names or np.any(np.abs(v) > _ROUNDING * scale)]
 
     def quantities(columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         found = _samples(f, names, columns)

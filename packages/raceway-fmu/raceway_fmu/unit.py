@@ -174,9 +174,7 @@ def _xml(root: ET.Element) -> bytes:
 
 def _add(parent: ET.Element, tag: str, **attributes: object) -> ET.Element:
     """An element with those attributes that are not None."""
-    texts = {
-        name: value if isinstance(value, str) else repr(value) for name, value in attributes.items() if value is not None
-    }
+    texts = {name: v if isinstance(v, str) else repr(v) for name, v in attributes.items() if v is not None}
     return ET.SubElement(parent, tag, texts)
 
 

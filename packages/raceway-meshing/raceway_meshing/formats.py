@@ -132,9 +132,7 @@ def used_only(path: Path, points: np.ndarray, cells: np.ndarray, node_sets: Read
         in_cells[cells] = True
         if not in_cells.all():
             number = np.cumsum(in_cells) - 1
-            node_sets = {
-                name: number[n[in_cells[n]]] for name, nodes in node_sets.items() for n in [np.asarray(nodes, dtype=int)]
-            }
+            node_sets = {k: number[n[in_cells[n]]] for k, nodes in node_sets.items() for n in [np.asarray(nodes, dtype=int)]}
             points, cells = points[in_cells], number[cells]
     try:
         return HexMesh(points, cells, dict(node_sets), dict(facet_sets))

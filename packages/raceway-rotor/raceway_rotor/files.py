@@ -156,16 +156,10 @@ def _small(name: str, fields: Sequence[object]) -> str:
 
 def _large(name: str, fields: Sequence[object]) -> list[str]:
     """Lines of four fields of 16 characters; an entry fills pairs of lines."""
-    texts = [
-        ("" if field is None else f"{float(field):.9E}" if isinstance(field, float | np.floating) else str(field))
-        for field in fields
-    ]
+    texts = ["" if x is None else f"{float(x):.9E}" if isinstance(x, float | np.floating) else str(x) for x in fields]
     rows = [texts[k : k + 4] for k in range(0, len(texts), 4)]
     rows += [[""]] if len(rows) % 2 else []
-    return [
-        "".join([f"{f'{name}*' if k == 0 else '*':8}", *(f"{text:>16}" for text in row)]).rstrip()
-        for k, row in enumerate(rows)
-    ]
+    return ["".join([f"{f'{name}*' if k == 0 else '*':8}", *(f"{x:>16}" for x in r)]).rstrip() for k, r in enumerate(rows)]
 
 
 def ansys_text(table: Coefficients, head: Sequence[str], number: int) -> str:
@@ -306,12 +300,8 @@ class _Program:
 
 
 PROGRAMS = {
-    "nastran": _Program(
-        "Nastran", _nastran_notes, lambda table, head, number, node, _: _nastran_text(table, head, number, node)
-    ),
+    "nastran": _Program("Nastran", _nastran_notes, lambda *of: _nastran_text(*of[:4])),
     "ansys": _Program("Ansys", _ansys_notes, lambda table, head, number, *_: ansys_text(table, head, number)),
     "csv": _Program("CSV", lambda *_: _NUMBERS_NOTES, lambda table, head, *_: _csv_text(table, head)),
-    "json": _Program(
-        "JSON", lambda *_: _NUMBERS_NOTES, lambda table, head, _number, _node, tag: _json_text(table, head, tag)
-    ),
+    "json": _Program("JSON", lambda *_: _NUMBERS_NOTES, lambda table, head, _n, _k, tag: _json_text(table, head, tag)),
 }

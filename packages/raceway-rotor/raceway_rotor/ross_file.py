@@ -90,9 +90,7 @@ def ross_notes(table: Coefficients, generation: int) -> tuple[str, ...]:
         name: float(np.max(np.abs(ross_spline(table.axis, values) - values))) / (sizes[name[0]] or 1.0)
         for name, values in columns.items()
     }
-    changes = {
-        name: f"{change:.1e}" if change < 1e-3 else f"{change:.1%}" for name, change in smoothing.items() if change > 1e-12
-    }
+    changes = {name: f"{by:.1e}" if by < 1e-3 else f"{by:.1%}" for name, by in smoothing.items() if by > 1e-12}
     return (
         *notes,
         "ROSS 2 does not pass through the points: it smooths with a bound of 1 N/m, or 1 N s/m, a point, which is a lot for a "

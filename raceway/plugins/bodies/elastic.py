@@ -110,9 +110,7 @@ def _by_superelements(problem: Problem, mesh: Tables, cells: int, unknowns: int)
     parts = {str(body["name"]): int(body["cells"]) for body in mesh["bodies"]}
     if _equal_sectors(problem):
         parts |= {name: parts[name] // count for name in ("inner_ring", "outer_ring") if name in parts}
-    sizes = {
-        name: n / _PART_CELLS for name, n in parts.items() if not name.startswith("ball") or name.endswith(("_00", "_0"))
-    }
+    sizes = {k: n / _PART_CELLS for k, n in parts.items() if not k.startswith("ball") or k.endswith(("_00", "_0"))}
     largest = max(sizes.values(), default=0.0)
     factor = _FACTOR_S * sum(n**2 for n in sizes.values())
     memory = _BYTES + _POINT_BYTES * cells + _PEAK_BYTES * largest ** (4.0 / 3.0)

@@ -307,10 +307,7 @@ def _maker(problem: Problem, spacing: Spacing) -> Callable[[Reach], tuple[Patch,
     bulk = float(getattr(problem.mesh, "element_size", BULK))
     rings = Solid(b.rings.young, b.rings.poisson, bulk=bulk)
     steel = Solid(b.balls.young, b.balls.poisson, bulk=bulk)
-    seats = [
-        value if isinstance(value, float) else "clamped"
-        for value in (problem.supports.inner_seat, problem.supports.outer_seat)
-    ]
+    seats = [k if isinstance(k, float) else "clamped" for k in (problem.supports.inner_seat, problem.supports.outer_seat)]
 
     def make(reach: Reach) -> tuple[Patch, Patch]:
         grid = spacing.holding(reach.widest)

@@ -131,9 +131,7 @@ class Unidirectional(Amplitude):
 
     @classmethod
     def examples(cls, **options: object) -> list[Self]:
-        return [
-            force for angle in (0.0, 130.0) for force in super(Unidirectional, cls).examples(direction_deg=angle, **options)
-        ]
+        return [force for a in (0.0, 130.0) for force in super(Unidirectional, cls).examples(direction_deg=a, **options)]
 
     @property
     def sense(self) -> int:

@@ -66,9 +66,7 @@ class Bench:
     @property
     def scene(self) -> Scene:
         """The scene; a change to None takes the key out."""
-        tables = tables_at(
-            self.tables, {key: value for key, value in self.changes.items() if value is not None}, self.registry
-        )
+        tables = tables_at(self.tables, {key: v for key, v in self.changes.items() if v is not None}, self.registry)
         for key in (key for key, value in self.changes.items() if value is None):
             tables = without(tables, key)
         return scene_from_dict(tables, self.registry)

@@ -111,9 +111,7 @@ class Fitted(Answer):
         """Sentences that a reader of the numbers needs."""
         answer, out = self.estimate, []
         for combination in answer.undetermined:
-            parts = [
-                f"{name} {change:+.3g} {self._numbers[name][2]}".rstrip() for name, change in combination.changes.items()
-            ]
+            parts = [f"{name} {by:+.3g} {self._numbers[name][2]}".rstrip() for name, by in combination.changes.items()]
             names, moves = " and ".join(combination.changes), f"moves them by {combination.moves:.2g} standard errors"
             together, remedy = "", "Do not free it"
             if len(parts) > 1:

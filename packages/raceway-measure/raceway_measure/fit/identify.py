@@ -445,9 +445,7 @@ def identify_recording(
             state, [with_tilt_of(shaft, state, state.sensor + with_run_out * (exp(1j * turn) - 1.0)) for turn in angles]
         ),
         "window": _largest_change(state, [with_tilt_of(shaft, state, response.fourier)]),
-        "tilt": _largest_change(
-            state, [with_tilt_of(shaft, state, state.sensor, factor) for factor in (1.0 / stiffer, stiffer)]
-        ),
+        "tilt": _largest_change(state, [with_tilt_of(shaft, state, state.sensor, k) for k in (1.0 / stiffer, stiffer)]),
     }
     states = {word: with_tilt_of(other, state, state.sensor) for word, other in changed_rotors(rig, component.speed).items()}
     states["tilt stiffness of the bearing +10 %"] = with_tilt_of(shaft, state, state.sensor, 1.1)

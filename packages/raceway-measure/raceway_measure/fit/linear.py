@@ -191,10 +191,7 @@ def free_parts(names: Sequence[str], spectra: _Spectra, mass: float | None) -> l
     omega = float(spectra.omega.mean())
     size = float(np.linalg.norm(spectra.force) / np.linalg.norm(spectra.displacement))
     sizes = {"K": size, "C": size / omega, "mass": size / omega**2}
-    return [
-        Free(part, _UNITS[_word(part)], sizes["K"] if part in ("K", "kyy", "kzz") else 0.0, sizes[_word(part)])
-        for part in parts
-    ]
+    return [Free(p, _UNITS[_word(p)], sizes["K"] if p in ("K", "kyy", "kzz") else 0.0, sizes[_word(p)]) for p in parts]
 
 
 def _word(part: str) -> str:

@@ -115,9 +115,7 @@ def table_of(
         columns = {header: _file_numbers(header, values, word) for header, values in arrays.items()}
         sizes = {header: len(values) for header, values in columns.items()}
         if len(set(sizes.values())) > 1:
-            raise ValueError(
-                f"the columns differ in length: {', '.join(f'{header} {size}' for header, size in sizes.items())}"
-            )
+            raise ValueError(f"the columns differ in length: {', '.join(f'{h} {n}' for h, n in sizes.items())}")
     except ValueError as why:
         raise SceneError.at(name, None, str(why)) from None
     values = np.column_stack(list(columns.values()))
@@ -171,9 +169,7 @@ class Signals:
         """Samples, duration and columns, in words."""
         time = self.columns["time"]
         signals = []
-        for name, half in {
-            name: 0.5 * float(np.ptp(values)) for name, values in self.columns.items() if name != "time"
-        }.items():
+        for name, half in {k: 0.5 * float(np.ptp(v)) for k, v in self.columns.items() if k != "time"}.items():
             uncertainty = f" (+- {1e6 * half:.4g} µm)" if name in ("y", "z") else ""
             signals.append(name + (f" (+- {half:.4g} N)" if name.startswith("force") else uncertainty))
         return f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {', '.join(signals) or 'nothing but time'}"
@@ -344,9 +340,7 @@ def read_tdms(path: Path) -> dict[str, np.ndarray]:
     if not channels:
         raise ValueError("has no channels: save the signals, too")
     columns: dict[str, np.ndarray] = {}
-    steps, starts = (
-        [channel.properties.get(f"wf_{name}", 0.0) for channel in channels] for name in ("increment", "start_offset")
-    )
+    steps, starts = ([c.properties.get(f"wf_{name}", 0.0) for c in channels] for name in ("increment", "start_offset"))
     clocks = {channel.name: (len(channel), *clock) for channel, *clock in zip(channels, steps, starts, strict=True)}
     if len(clocks) < len(channels):
         raise ValueError("two groups have channels of one name: save one measurement in a file")

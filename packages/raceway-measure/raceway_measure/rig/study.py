@@ -197,9 +197,7 @@ class _RigStudy(Answer):
         rows, worst = [], self.worst
         for point in self.points:
             ratios = {reading.correction: reading.stiffness / point.state.stiffness for reading in point.readings}
-            cells = {
-                name: cell for name, cell in point.cells.items() if name not in ("force N", "over m e w²/2", "sensor µm")
-            }
+            cells = {k: cell for k, cell in point.cells.items() if k not in ("force N", "over m e w²/2", "sensor µm")}
             rows.append(cells | {words: f"{ratios[name]:.3f}" for name, words in _SHOWN.items()})
         speeds = ", ".join(f"{value:.0f} r/min on {name}" for name, value in self.critical.items())
         yield Words(self.title, "bold")

@@ -298,10 +298,7 @@ def _patch(mesh: HexMesh, name: str) -> dict[str, dict[str, float]]:
 def _widest(patches: list[dict[str, dict[str, float]]]) -> dict[str, dict[str, float]] | None:
     if not patches:
         return None
-    return {
-        word: {"min": min(p[word]["min"] for p in patches), "max": max(p[word]["max"] for p in patches)}
-        for word in patches[0]
-    }
+    return {k: {"min": min(p[k]["min"] for p in patches), "max": max(p[k]["max"] for p in patches)} for k in patches[0]}
 
 
 def _edges(mesh: HexMesh, cells: np.ndarray) -> np.ndarray:
