@@ -18,18 +18,8 @@ def collected(folder: Path, **environment):
     """What pytest says of a test for each need, in an environment."""
     path = folder / "test_each_need.py"
     path.write_text(FILE)
-    words = (
-        "-m",
-        "pytest",
-        "-q",
-        "-p",
-        "no:cacheprovider",
-        "-p",
-        "checks.validation.system_libraries",
-        "-c",
-        ROOT / "pyproject.toml",
-    )
-    return python(*words, path, cwd=ROOT, **{"CI": "", "RACEWAY_TEST_ALL": ""} | environment)
+    words = "-m pytest -q -p no:cacheprovider -p checks.validation.system_libraries -c".split()
+    return python(*words, ROOT / "pyproject.toml", path, cwd=ROOT, **{"CI": "", "RACEWAY_TEST_ALL": ""} | environment)
 
 
 def test_on_a_bare_machine_they_are_skipped_with_one_closing_line(tmp_path):

@@ -27,14 +27,8 @@ CODES = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 _PATIENCE_S = 5.0
 _COMMAND, _COUNT, _SEED = "python -m checks signals", 100, 17
 _SWEEP = ("sweep", str(SCENE), "--set", "integrator.kind=periodic", "--grid", "excitation.speed_rpm=10980:15000:160")
-_COMPARE = (
-    "compare",
-    str(SCENE),
-    "--vary",
-    "excitation.kind=unidirectional,bidirectional",
-    "--vary",
-    "load.axial=400:1200:4",
-)
+_AXES = ("--vary", "excitation.kind=unidirectional,bidirectional", "--vary", "load.axial=400:1200:4")
+_COMPARE = ("compare", str(SCENE), *_AXES)
 COMMANDS = {
     "run": ("run", str(SCENE), "--pictures"),
     "sweep, serial": _SWEEP,

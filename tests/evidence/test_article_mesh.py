@@ -158,13 +158,8 @@ def test_ball_loads_displacement_and_stiffness_of_condensed_bodies(claim):
                 moved.append(abs(mesh["displacement"][axis] / condensed["displacement"][axis] - 1.0))
         stiffness[case] = abs(mesh["stiffness"][1][1] / condensed["stiffness"][1][1] - 1.0)
     assert len(moved) >= 5
-    claim(
-        "four cases: ball loads over the largest: largest difference",
-        max(loads),
-        at_most=0.01,
-        **OWN,
-        source=CONDENSED_LIMIT,
-    )
+    quantity = "four cases: ball loads over the largest: largest difference"
+    claim(quantity, max(loads), at_most=0.01, **OWN, source=CONDENSED_LIMIT)
     claim("four cases: x and y: largest relative difference", max(moved), at_most=0.01, **OWN, source=CONDENSED_LIMIT)
     for case, apart in stiffness.items():
         claim(f"{case}: kyy, relative difference", apart, at_most=0.01, **OWN, source=CONDENSED_LIMIT,

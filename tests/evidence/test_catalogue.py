@@ -108,13 +108,8 @@ def test_deep_groove_bearings_and_rollers_by_number(claim):
     assert len(deep) == 254
     errors = [abs(error) for one in deep for error in one.printed.values()]
     quantity = "printed ratings of 254 deep-groove designations: dynamic and static, largest relative error"
-    claim(
-        quantity,
-        max(errors),
-        at_most=0.01,
-        basis="published",
-        source="ISO 281, ISO 76; NSK, Rolling bearings, CAT. No. E1102e",
-    )
+    source = "ISO 281, ISO 76; NSK, Rolling bearings, CAT. No. E1102e"
+    claim(quantity, max(errors), at_most=0.01, basis="published", source=source)
     nmb, _ = inferred("nmb_deep_groove")
     right = [nmb["ball_count_right"] * nmb["internals_printed"]]
     named = {one.name: one.table for one in deep}
@@ -209,13 +204,8 @@ def test_printed_stiffness_lies_within_what_a_result_says(claim):
     own = np.median(np.abs(of_scenes("ntn")[0][:, :, 0]), axis=0)
     for word, error, limit in zip(("axial", "radial"), own, (0.01, 0.03), strict=True):
         quantity = f"{word} stiffnesses of 50 pairs of NTN's series 70 by their own designations: relative error, median"
-        claim(
-            quantity,
-            error,
-            at_most=limit,
-            basis="published",
-            source="NTN-SNR, ULTAGE, 2015; groove and angle are fitted to it",
-        )
+        source = "NTN-SNR, ULTAGE, 2015; groove and angle are fitted to it"
+        claim(quantity, error, at_most=limit, basis="published", source=source)
 
 
 def test_spread_between_makers(claim):

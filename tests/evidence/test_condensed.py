@@ -43,12 +43,8 @@ WALLS = {3.24: (30.0, 62.0), 2.0: (32.48, 59.52), 1.24: (34.0, 58.0)}
 def test_separate_program(claim, tilt):
     found = quantities(settled(tables(tilt))[1])
     quantity, bounds = f"{SCENE}, tilt {tilt}: largest relative error of", {"at_most": 0.01, "basis": "own other method"}
-    claim(
-        f"{quantity} displacements and stiffness",
-        largest(found, SAME_LAW[tilt]),
-        **bounds,
-        source=f"{PROTOTYPE}, the same law",
-    )
+    source = f"{PROTOTYPE}, the same law"
+    claim(f"{quantity} displacements and stiffness", largest(found, SAME_LAW[tilt]), **bounds, source=source)
     source = f"{PROTOTYPE}, 8 points per semi-axis"
     moved = {name: value for name, value in POINTS[tilt].items() if not name.startswith("k")}
     claim(f"{quantity} displacements, against points", largest(found, moved), **bounds, source=source)
@@ -74,13 +70,8 @@ def test_surface_points(claim, tilt):
         ours, theirs = (quantities(settled(tables(tilt, points, load=load))[1]) for points in (None, 8))
         ratios.append([ours[name] / theirs[name] - 1.0 for name in ours if tilt == "free" or name != "tilt_z"])
     quantity = f"{SCENE}, tilt {tilt}: displacements and stiffness, mean of five loads: largest difference"
-    claim(
-        quantity,
-        np.abs(np.mean(ratios, axis=0)).max(),
-        at_most=0.01,
-        basis="own other method",
-        source="own 8 points per semi-axis",
-    )
+    source = "own 8 points per semi-axis"
+    claim(quantity, np.abs(np.mean(ratios, axis=0)).max(), at_most=0.01, basis="own other method", source=source)
 
 
 def test_elements(claim):

@@ -40,13 +40,8 @@ def test_reference(claim):
     reference, rows = studied()
     best = min(row["error"] for row in rows if row["family"] != "steady orbit")
     quantity = "bound of the reference over the error of the best transient row, the article's scene"
-    claim(
-        quantity,
-        reference["error"] / best,
-        at_most=1.0 / EXACT,
-        basis="own other method",
-        source="Newmark and central differences",
-    )
+    source = "Newmark and central differences"
+    claim(quantity, reference["error"] / best, at_most=1.0 / EXACT, basis="own other method", source=source)
     wrong = sum((apart(row, reference) <= EXACT * reference["error"]) != row["at_bound"] for row in rows)
     quantity = "rows marked as known to the bound only, though they are not, or the other way round"
     claim(quantity, wrong, at_most=0, basis="closed form", source=f"those within ten bounds, of {len(rows)}")
@@ -114,13 +109,8 @@ def test_kernels(claim, tmp_path):
         f"{where}: cache files that it adds or rewrites", changed, at_most=0, basis="closed form", source=f"of {len(before)}"
     )
     source = "a loop takes addresses: one signature for every combination"
-    claim(
-        f"{where}: signatures that the time loops gain",
-        max(first[2], second[2]),
-        at_most=0,
-        basis="closed form",
-        source=source,
-    )
+    quantity = f"{where}: signatures that the time loops gain"
+    claim(quantity, max(first[2], second[2]), at_most=0, basis="closed form", source=source)
 
 
 def test_predicted_time(claim):

@@ -65,20 +65,11 @@ def test_ball_on_a_groove(claim, nodes, mesh, within):
         penalty.append(found.penalty_share)
         rest.append(1e9 * (found.approach - float(HERTZ.approach(load))) / load)
     where = f"ball on a groove, 100, 300, 1000 N, {nodes:g} elements per semi-axis"
-    claim(
-        f"{where}: peak pressure at points and nodes: largest relative error",
-        max(points + at_nodes),
-        at_most=within,
-        **HERTZIAN,
-    )
+    quantity = f"{where}: peak pressure at points and nodes: largest relative error"
+    claim(quantity, max(points + at_nodes), at_most=within, **HERTZIAN)
     source = "a contact of no penalty; a hundredth of its approach"
-    claim(
-        f"{where}: share of the approach that is penalty: largest",
-        max(penalty),
-        at_most=0.01,
-        basis="closed form",
-        source=source,
-    )
+    quantity = f"{where}: share of the approach that is penalty: largest"
+    claim(quantity, max(penalty), at_most=0.01, basis="closed form", source=source)
     source = "a structural compliance does not depend on the load; 0.1 nm/N is 1 % of Hertz's at 1000 N"
     quantity = f"{where}: (approach - Hertz's) / load: spread"
     claim(quantity, max(rest) - min(rest), at_most=0.1, unit="nm/N", basis="closed form", source=source)
@@ -113,22 +104,12 @@ def test_bearing_in_nodal_contact(claim):
     found = {name: 1e6 * result["equilibrium"]["displacement"][name] for name in ("x", "y")}
     found |= {"largest": inner.max(), "smallest": inner.min()}
     where = "bearing of 63 120 elements, 1000 N axial, 500 N radial"
-    claim(
-        f"{where}: balls that are mirror images: largest difference",
-        mirror,
-        at_most=1e-3,
-        basis="closed form",
-        source="symmetry",
-    )
+    quantity = f"{where}: balls that are mirror images: largest difference"
+    claim(quantity, mirror, at_most=1e-3, basis="closed form", source="symmetry")
     for word, names, within in (("ball loads", ("largest", "smallest"), 0.02), ("displacements", ("x", "y"), 0.05)):
         error = largest(found, {name: CONDENSED_BEARING[name] for name in names})
-        claim(
-            f"{where}: {word}: largest relative error",
-            error,
-            at_most=within,
-            **OWN,
-            source="condensed bodies; coarse elements",
-        )
+        source = "condensed bodies; coarse elements"
+        claim(f"{where}: {word}: largest relative error", error, at_most=within, **OWN, source=source)
     source = "CalculiX with facets, 334 CPU-s, before this program existed"
     claim(f"{where}: CPU time over CalculiX's", cpu / 334.0, at_most=1.0, basis="other program", source=source)
 
@@ -139,11 +120,8 @@ def test_stresses_below_a_contact(claim, formulation):
     meshes = [below(100.0, nodes, formulation, growth=growth, coarse=1e-3) for nodes, growth in HALVED.items()]
     assert min(side.cells for side in meshes[-1]) >= 4.0
     where, bounds = f"{formulation}, 100 N, 4 elements down to Hertz's depth", {"at_most": 0.05, **HERTZIAN}
-    claim(
-        f"{where}: largest shear stress: relative error",
-        max(abs(s.shear / s.hertz_shear - 1.0) for s in meshes[-1]),
-        **bounds,
-    )
+    quantity = f"{where}: largest shear stress: relative error"
+    claim(quantity, max(abs(s.shear / s.hertz_shear - 1.0) for s in meshes[-1]), **bounds)
     depth = [[abs(side.depth / side.hertz_depth - 1.0) for side in mesh] for mesh in meshes]
     claim(f"{where}: its depth: relative error", max(depth[-1]), **bounds)
     rate = min(log2(first / last) / 2.0 for first, last in zip(depth[0], depth[-1], strict=True))
@@ -279,13 +257,8 @@ def test_kernels(claim):
     claim("assembled product over force kernel: least", min(row["csr_over_force"] for row in rows), at_least=2.5, **once)
     claim("readable loop over force kernel: least", min(row["readable_over_force"] for row in rows), at_least=5.0, **once)
     claim("explicit step over force alone: largest", max(row["step_over_force"] for row in rows), at_most=2.0, **once)
-    claim(
-        "memory of the explicit step",
-        max(row["bytes_per_element"] for row in rows),
-        at_most=1000.0,
-        unit="B/element",
-        **once,
-    )
+    quantity = "memory of the explicit step"
+    claim(quantity, max(row["bytes_per_element"] for row in rows), at_most=1000.0, unit="B/element", **once)
     first, second = (row["renumbered_over_force"] for row in rows)
     quantity = "random numbering, renumbered, over ordered"
     claim(f"{quantity}, 1e5 elements", first, at_most=1.2, **once)

@@ -121,11 +121,8 @@ def test_bearing_by_two_integrators(claim, bearing):
     source = "34 480 and 40 steps"
     claim(f"{where}: displacements: largest difference", apart, **bounds, source=source)
     claim(f"{where}: contact forces: largest difference", loads, **bounds, source=source)
-    claim(
-        f"{where}: change of the energy: largest",
-        max(drift(one.energies) or 0.0 for one in (explicit, implicit)),
-        **CONSERVED,
-    )
+    quantity = f"{where}: change of the energy: largest"
+    claim(quantity, max(drift(one.energies) or 0.0 for one in (explicit, implicit)), **CONSERVED)
     share = largest_share(explicit.energies, "hourglass", "elastic")
     why = "one element to the semi-axis: its bending and contact are hourglass modes"
     source = "a mode that real bodies do not have; coefficient 0.05"

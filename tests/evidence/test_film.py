@@ -55,13 +55,8 @@ def test_heat_of_the_inlet_of_oils(claim):
                 skf = skf_reduction(2e4, diameter, 1e-6 * line.viscosity(celsius))
                 away = max(away, abs(float(thermal_reduction(np.array(loading))) - skf))
     quantity = "thermal reduction less SKF's, VG 10 to 100, 40 to 80 C, n d_m to 2e6: largest distance"
-    claim(
-        quantity,
-        away,
-        at_most=0.12,
-        basis="published",
-        source="SKF's inlet factor of the friction moment, a fit for all bearings",
-    )
+    source = "SKF's inlet factor of the friction moment, a fit for all bearings"
+    claim(quantity, away, at_most=0.12, basis="published", source=source)
     pairs = []
     for law in (HERTZ, {**OIL, "inlet_heating": "none"}, OIL):
         one = run(scene_from_dict({"bearing": SPINDLE, "contact": law, "kinematics": {"spin_speed_rpm": 18000.0}}))

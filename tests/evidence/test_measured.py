@@ -94,13 +94,8 @@ def test_inverted_beam(claim):
                 kept.append(noisy[-1] * state.stiffness / found.uncertainty[0])
     where = "three speeds, two loads, sensor inside and outside"
     source = "the bearing that made the signals; a fifth of what 1 % of the shaft's diameter changes"
-    claim(
-        f"K of clean signals, {where}: largest relative error",
-        max(clean),
-        at_most=0.01,
-        basis="own other method",
-        source=source,
-    )
+    quantity = f"K of clean signals, {where}: largest relative error"
+    claim(quantity, max(clean), at_most=0.01, basis="own other method", source=source)
     quantity = f"K with {DISTURBED}, {SEEDS} seeds, {where}: largest relative error"
     claim(quantity, max(noisy), at_most=0.03, basis="own other method", source="the bearing that made the signals")
     share = min(float(np.mean(np.array(kept) <= 1.0)) for kept in ratios.values())
@@ -122,26 +117,15 @@ def test_damping(claim):
         widths.append(rms([(one.state.damping - state.damping) / one.uncertainty[1] for one in noisy]))
     where = "bearing with 3000 N s/m, 13 000 r/min, 400 and 2000 N"
     source = "the bearing that made the signals"
-    claim(
-        f"C of clean signals, {where}: largest relative error",
-        max(clean),
-        at_most=0.01,
-        basis="own other method",
-        source=source,
-    )
+    quantity = f"C of clean signals, {where}: largest relative error"
+    claim(quantity, max(clean), at_most=0.01, basis="own other method", source=source)
     quantity = f"C of {SEEDS} records each, {where}: rms of error over half-width"
     claim(quantity, min(widths), **WIDTH, misses=WIDE.format(10, 11))
 
 
 def test_time_of_the_study(claim):
-    claim(
-        "processor time of the study of six points",
-        studied()[1],
-        at_most=60.0,
-        unit="s",
-        basis="regression",
-        source="a minute",
-    )
+    quantity = "processor time of the study of six points"
+    claim(quantity, studied()[1], at_most=60.0, unit="s", basis="regression", source="a minute")
 
 
 NOISE, RECORDS = (0.0, 0.01, 0.02, 0.05), 200
@@ -206,21 +190,10 @@ def test_contact_angle_fitted_to_signals(claim, tmp_path):
             covered.append(abs(assumed.equivalent_stiffness - state.stiffness) <= assumed.equivalent_stiffness_error)
     where = f"contact angle 17 and 19 deg, scene 15 deg, {len(angles)} records of the rig"
     source = "the bearing that made the signals"
-    claim(
-        f"{where}: largest error of the fitted angle",
-        max(angles),
-        at_most=0.2,
-        unit="deg",
-        basis="own other method",
-        source=source,
-    )
-    claim(
-        f"{where}: largest relative error of the fitted K",
-        max(stiffness),
-        at_most=0.01,
-        basis="own other method",
-        source=source,
-    )
+    quantity = f"{where}: largest error of the fitted angle"
+    claim(quantity, max(angles), at_most=0.2, unit="deg", basis="own other method", source=source)
+    quantity = f"{where}: largest relative error of the fitted K"
+    claim(quantity, max(stiffness), at_most=0.01, basis="own other method", source=source)
     quantity = f"{where}: share of true K within the 95 % of `raceway identify`, tilt stiffness included"
     claim(quantity, float(np.mean(covered)), at_least=SHARE, basis="closed form", source="95 %, one of twelve may miss")
 

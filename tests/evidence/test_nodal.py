@@ -113,13 +113,8 @@ def test_friction_of_a_bearing(claim, force):
         pairs.append((found["equivalent_stiffness"], found["equivalent_damping"]))
     stiffness, damping = np.divide(*pairs)
     quantity, bounds = f"rotating {force:g} N on 1 kN, friction 0.03, 4 points over resultants", {"near": 1.0, **OWN}
-    claim(
-        f"{quantity}: stiffness",
-        stiffness,
-        within=0.05,
-        **bounds,
-        source="slip of Mindlin's annulus; friction is 3 % of a load",
-    )
+    source = "slip of Mindlin's annulus; friction is 3 % of a load"
+    claim(f"{quantity}: stiffness", stiffness, within=0.05, **bounds, source=source)
     why = "a resultant has Mindlin's first stiffness until it slides, points give half as much again before they do"
     source = "all contacts slide: the same mu Q over the same way"
     claim(f"{quantity}: damping", damping, within=0.15, **bounds, source=source, misses=why if force == 200.0 else "")

@@ -186,14 +186,8 @@ def test_curve_over_speed(claim):
         spent.append(time.process_time() - begun)
     kinds = [label.kind for label in curve.labels]
     assert len(curve.rows) >= 200 and curve.end == "" and len(curve.unstable) == 3 and kinds.count(FOLD) == 2
-    claim(
-        "processor time of a curve of 200 orbits",
-        min(spent),
-        at_most=5.0,
-        unit="s",
-        basis="regression",
-        source="while one waits",
-    )
+    source = "while one waits"
+    claim("processor time of a curve of 200 orbits", min(spent), at_most=5.0, unit="s", basis="regression", source=source)
     fold = next(label.point for label in curve.labels if label.kind == FOLD)
     pairs = [label.point for label in curve.labels if label.kind == PAIR and label.point is not None]
     balance, turn, flow = [], [], []

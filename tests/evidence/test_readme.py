@@ -38,14 +38,8 @@ def test_a_run_takes_about_a_second(claim, tmp_path):
     processor_seconds(*words)
     least = min(processor_seconds(*words) for _ in range(3))
     quantity = "`raceway run examples/minimal.toml`, kernels compiled: least processor time of three"
-    claim(
-        quantity,
-        least,
-        at_most=BUSY,
-        unit="s",
-        basis="regression",
-        source="'about a second', on a shared machine twice that",
-    )
+    source = "'about a second', on a shared machine twice that"
+    claim(quantity, least, at_most=BUSY, unit="s", basis="regression", source=source)
 
 
 @pytest.mark.night
@@ -64,12 +58,7 @@ def test_lines(claim):
     claim("lines of README's scene", len(scene), at_most=10, basis="regression", source="'a scene of ten lines'")
     code = block("example").split("import raceway as rw\n")[1]
     lines = 2 + sum(bool(line.strip()) for line in code.splitlines())
-    claim(
-        "lines of README's Python, from import to plot",
-        lines,
-        at_most=10,
-        basis="regression",
-        source="'ten lines of Python'",
-    )
+    source = "'ten lines of Python'"
+    claim("lines of README's Python, from import to plot", lines, at_most=10, basis="regression", source=source)
     tutorials = len(list((ROOT / "docs" / "tutorials").glob("*.md")))
     claim("tutorials", tutorials, at_least=4, at_most=4, basis="regression", source="'four tutorials'")

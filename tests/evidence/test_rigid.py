@@ -152,14 +152,8 @@ def test_gyroscopic_moments(claim):
             angles.append(np.abs([np.arctan2(*(e - place)) - ai, np.arctan2(*place) - ao]).max())
     where = "gyroscopic moments, 30 000 r/min, 400 N axial, 112 N radial"
     claim(f"{where}: ball loads: largest relative error", max(loads), at_most=1e-7, basis="own other method", source=source)
-    claim(
-        f"{where}: contact angles: largest error",
-        max(angles),
-        at_most=1e-8,
-        unit="rad",
-        basis="own other method",
-        source=source,
-    )
+    quantity = f"{where}: contact angles: largest error"
+    claim(quantity, max(angles), at_most=1e-8, unit="rad", basis="own other method", source=source)
 
 
 @pytest.mark.parametrize("hypothesis", SHARES)

@@ -22,13 +22,8 @@ def test_table_in_ross(claim):
     quantity = (
         "coefficients in ROSS at the points of our tables, by element, by file, over speed and frequency: largest difference"
     )
-    claim(
-        quantity,
-        off,
-        at_most=1e-12,
-        basis="closed form",
-        source="interpolation goes through its points; ROSS 2 by `element()`",
-    )
+    source = "interpolation goes through its points; ROSS 2 by `element()`"
+    claim(quantity, off, at_most=1e-12, basis="closed form", source=source)
     off = max(abs(one["critical"]) for one in found)
     quantity = "critical speed in ROSS of a symmetric rigid rotor on our tables: relative difference"
     claim(quantity, off, at_most=1e-3, basis="closed form", source="M w^2 = 2 K(w); the shaft's own bending is 1e-5")

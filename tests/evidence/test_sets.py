@@ -162,14 +162,8 @@ def test_run_ups(claim):
     found = run(load_scene("examples/run_up.toml")).identification
     largest = max(abs(z.imag / w) for w, z in found.series)
     source = "no damping; m (w' + 2 w A' / A) / w, which must not show, is 12 to 31 N s/m"
-    claim(
-        "examples/run_up.toml: C, largest of the series",
-        largest,
-        at_most=1.0,
-        unit="N s/m",
-        basis="closed form",
-        source=source,
-    )
+    quantity = "examples/run_up.toml: C, largest of the series"
+    claim(quantity, largest, at_most=1.0, unit="N s/m", basis="closed form", source=source)
 
 
 def test_run_ups_through_a_resonance(claim):
@@ -192,13 +186,8 @@ def test_run_ups_through_a_resonance(claim):
         alone.append(float((stated / own).max()))
     where = "order_tracking over run-ups through a resonance and far below it"
     source = "steady orbits at every seventh window; never stated too small"
-    claim(
-        f"{where}: error of Z over the stated one, largest",
-        max(covered),
-        at_most=1.01,
-        basis="own other method",
-        source=source,
-    )
+    quantity = f"{where}: error of Z over the stated one, largest"
+    claim(quantity, max(covered), at_most=1.01, basis="own other method", source=source)
     quantity = f"{where}: error over that of the record alone, largest"
     source = "one record gives the error to a factor: a motion that lags behind its force is not linear in the lag"
     claim(quantity, max(alone), at_most=5.0, basis="own other method", source=source)

@@ -41,25 +41,13 @@ def test_all_cases(claim):
     study = stability(every=True, kept=KEPT)
     failed = [row for row in study.rows if row.verdict == "failed"]
     source = f"limits of {len(study.rows)} rows of {study.cases} cases"
-    claim(
-        "rows that are not as expected",
-        len(failed),
-        at_most=0,
-        basis=OWN,
-        source=source,
-        misses="the rows of two cases below",
-    )
+    quantity = "rows that are not as expected"
+    claim(quantity, len(failed), at_most=0, basis=OWN, source=source, misses="the rows of two cases below")
     for name, why in KNOWN.items():
         count = sum(row.case == name for row in failed)
         of = sum(row.case == name for row in study.rows)
-        claim(
-            f"{name}: rows of {of} that are not as expected",
-            count,
-            at_most=0,
-            basis=OWN,
-            source="limits of the rows",
-            misses=why,
-        )
+        quantity = f"{name}: rows of {of} that are not as expected"
+        claim(quantity, count, at_most=0, basis=OWN, source="limits of the rows", misses=why)
     others = [row for row in failed if row.case not in KNOWN]
     assert not others, others[:5]
     claim("all other cases: rows that are not as expected", len(others), at_most=0, basis=OWN, source=source)
@@ -100,13 +88,8 @@ def _energy(claim, rows):
         for words, bound in (("all contacts stay closed", 1e-6), ("contacts open", 1e-3)):
             found = [row.observed for row in trends if row.setting["integrator"] == name and row.note == words]
             quantity = f"energy's trend in a million steps, {name}, {words}"
-            claim(
-                quantity,
-                max(found),
-                at_most=bound,
-                basis=CLOSED,
-                source=f"conserved, or lost as the method is made to; {len(found)} laws",
-            )
+            source = f"conserved, or lost as the method is made to; {len(found)} laws"
+            claim(quantity, max(found), at_most=bound, basis=CLOSED, source=source)
     falls = [row for row in rows if row.case == "chatter"]
     for name, step in sorted({(row.setting["integrator"], row.setting["step/period"]) for row in falls}):
         found = [row.observed for row in falls if (row.setting["integrator"], row.setting["step/period"]) == (name, step)]

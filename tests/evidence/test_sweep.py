@@ -41,13 +41,8 @@ def test_overhead(claim):
 
 def test_memory(claim):
     few, many = (sweeps.timed(count)["peak_bytes"] for count in (200, 2000))
-    claim(
-        "peak memory of 2000 points over that of 200",
-        many / few,
-        at_most=1.05,
-        basis="closed form",
-        source="rows are on disk",
-    )
+    source = "rows are on disk"
+    claim("peak memory of 2000 points over that of 200", many / few, at_most=1.05, basis="closed form", source=source)
 
 
 def test_warm_starts(claim):

@@ -64,17 +64,8 @@ class Application:
     """``raceway app`` as a process; ``address`` of its page."""
 
     def __init__(self, folder: Path, scene: str = "", *options: str) -> None:
-        words = [
-            sys.executable,
-            "-m",
-            "raceway",
-            "app",
-            *([scene] if scene else []),
-            "--no-browser",
-            "--json",
-            "--out",
-            str(folder),
-        ]
+        words = [sys.executable, "-m", "raceway", "app", *([scene] if scene else [])]
+        words += ["--no-browser", "--json", "--out", str(folder)]
         self.begun = time.monotonic()
         self.process = subprocess.Popen(
             [*words, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ

@@ -273,18 +273,7 @@ def test_foreign_law_is_a_table(tmp_path: Path) -> None:
         ({"contact": {"friction": 0.03}}, "contact.friction"),
         ({"contact": {"kind": "film"}, "lubricant": {"oil": "VG 32", "temperature_c": 60.0}}, "contact.kind"),
         ({"bodies": {"kind": "condensed"}}, "bodies.kind"),
-        (
-            {
-                "bearing": {
-                    "preset": "B7206C",
-                    "arrangement": "DB",
-                    "preload": 300.0,
-                    "preload_kind": "spring",
-                    "row_distance": 0.016,
-                }
-            },
-            "bearing.preload_kind",
-        ),
+        ({"bearing": FORCES["DB"]["bearing"] | {"preload_kind": "spring"}}, "bearing.preload_kind"),
     ],
 )
 def test_force_refuses_what_is_no_function_of_the_displacement(changes: dict[str, dict[str, object]], key: str) -> None:
