@@ -178,7 +178,7 @@ def test_nohup_is_respected():
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGTERM])
 def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_path):
-    words = "--set integrator.kind=newmark --grid load.axial=400:2000:30 --out".split()
+    words = ["--set", "integrator.kind=newmark", "--grid", "load.axial=400:2000:30", "--out"]
     command = [sys.executable, "-m", "raceway", "sweep", str(ARTICLE), *words, str(tmp_path / "s")]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
     end = time.monotonic() + PATIENCE_S

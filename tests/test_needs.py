@@ -18,7 +18,7 @@ def collected(folder: Path, **environment):
     """What pytest says of a test for each need, in an environment."""
     path = folder / "test_each_need.py"
     path.write_text(FILE)
-    words = "-m pytest -q -p no:cacheprovider -p checks.validation.system_libraries -c".split()
+    words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "checks.validation.system_libraries", "-c"]
     return python(*words, ROOT / "pyproject.toml", path, cwd=ROOT, **{"CI": "", "RACEWAY_TEST_ALL": ""} | environment)
 
 

@@ -57,7 +57,16 @@ class Copy:
 
     def pytest(self, tests: list[str], cache: Path, quick: bool, limit: float | None = LIMIT_S) -> tuple[int, str]:
         """Exit code of pytest (-1: beyond the limit) and its output."""
-        words = "-m pytest -q -x -p no:cacheprovider -p no:checks.processor_time".split()  # a fault may take its time
+        words = [
+            "-m",
+            "pytest",
+            "-q",
+            "-x",
+            "-p",
+            "no:cacheprovider",
+            "-p",
+            "no:checks.processor_time",
+        ]  # a fault may take its time
         command = [sys.executable, *words, *(["-m", QUICK] if quick else []), *tests]
         try:
             done = subprocess.run(
