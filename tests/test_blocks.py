@@ -35,12 +35,9 @@ Processes = built_in("executor", "processes")
 Serial = built_in("executor", "serial")
 
 STATIC: dict[str, Any] = {
-    "title": "static",
-    "bearing": {"preset": "B7206C"},
-    "load": {"axial": 1000.0},
-    "supports": {"tilt": "free"},
+    "title": "static", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "supports": {"tilt": "free"},
     "kinematics": {"spin_speed_rpm": 9000.0},
-}
+}  # fmt: skip
 #: The motion of a tenth of a micrometre about it, contacts with dashpots.
 ROTATING: dict[str, Any] = {
     "rotor": {"mass": 2.0, "damping": 50.0},

@@ -383,12 +383,9 @@ def test_ctrl_c_ends_a_command_with_130_one_line_and_whole_files(name, seen, fol
 #: Free text, and what has a form of its own beside a scene.
 TEXTS = {"--tag", "--maker", "--scheduler"}
 PATHS = {
-    "--plugin": "missing.py",
-    "--scene": "missing.toml",
-    "--list": "missing.csv",
-    "--design": "missing.toml",
+    "--plugin": "missing.py", "--scene": "missing.toml", "--list": "missing.csv", "--design": "missing.toml",
     "--slow-roll": "missing.csv",
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", plain())

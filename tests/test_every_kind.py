@@ -15,17 +15,10 @@ from tests.test_docs import FILES
 ROOT = Path(__file__).parents[1]
 #: The plug-ins of docs/plugins.md and examples/plugins by kind.
 OWN = {
-    "contact_law": "power_law.py",
-    "excitation": "pulse.py",
-    "integrator": "damped.py",
-    "identifier": "three_harmonics.py",
-    "mesher": "one_cell.py",
-    "format": "json_mesh.py",
-    "quantity": "pressure_ratio.py",
-    "executor": "backwards.py",
-    "bodies": "radial_balls.py",
-    "study": "hardening.py",
-}
+    "contact_law": "power_law.py", "excitation": "pulse.py", "integrator": "damped.py", "identifier": "three_harmonics.py",
+    "mesher": "one_cell.py", "format": "json_mesh.py", "quantity": "pressure_ratio.py", "executor": "backwards.py",
+    "bodies": "radial_balls.py", "study": "hardening.py",
+}  # fmt: skip
 
 REPORT = '''
 from pathlib import Path

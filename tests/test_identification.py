@@ -158,12 +158,9 @@ def response(integrator, share, identifier="fft_1x", **changes):
 
 
 KINDS = [
-    {},
-    {"kinematics": {"ball_inertia": False}},
-    {"kinematics": {"gyroscopic": "outer_race"}},
-    {"kinematics": {"gyroscopic": "traction"}},
-    {"load": {"radial": [300.0, 0.0]}},
-]
+    {}, {"kinematics": {"ball_inertia": False}}, {"kinematics": {"gyroscopic": "outer_race"}},
+    {"kinematics": {"gyroscopic": "traction"}}, {"load": {"radial": [300.0, 0.0]}},
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("changes", KINDS)

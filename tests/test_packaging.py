@@ -108,12 +108,8 @@ def test_the_readme_scene_runs():
 
 #: Folders -> which of `checks` and `tests` their modules may import.
 MAY_IMPORT = {
-    "raceway": "",
-    "packages/*/raceway_*": "",
-    "checks": "checks",
-    "packages/*/tests": "checks",
-    "tests": "checks tests",
-}
+    "raceway": "", "packages/*/raceway_*": "", "checks": "checks", "packages/*/tests": "checks", "tests": "checks tests",
+}  # fmt: skip
 
 
 def imported(path):

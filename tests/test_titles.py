@@ -38,17 +38,9 @@ def test_the_second_line_says_what_was_changed(title, changes, expected):
 
 def test_other_titles_and_changes_make_other_folders():
     changes = [
-        "",
-        "a = 5",
-        "a = -5",
-        "a = 0.5",
-        "a = [0, 5]",
-        "f = x/y",
-        "f = x y",
-        "f = x-y",
-        "k = " + "1, " * 60,
+        "", "a = 5", "a = -5", "a = 0.5", "a = [0, 5]", "f = x/y", "f = x y", "f = x-y", "k = " + "1, " * 60,
         "k = " + "1, " * 61,
-    ]
+    ]  # fmt: skip
     names = [slug(f"T\n{line}") for line in changes]
     assert names[:3] == ["T", "T-a=5", "T-a=-5"]
     titles = [

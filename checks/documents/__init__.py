@@ -63,21 +63,10 @@ m, N, Pa, J, W, g, s, Hz, rad with prefixes n, u (µ), m, c, k, M, G; in, lb, oz
 
 #: Tables in the order in which people write them: with the kind of plug-in that each names.
 _ORDER = (
-    ("bearing", None),
-    ("supports", None),
-    ("rotor", None),
-    ("load", None),
-    ("excitation", "excitation"),
-    ("bodies", "bodies"),
-    ("mesh", "mesher"),
-    ("contact", "contact_law"),
-    ("lubricant", None),
-    ("heat", None),
-    ("kinematics", None),
-    ("mounting", None),
-    ("integrator", "integrator"),
-    ("identifier", "identifier"),
-)
+    ("bearing", None), ("supports", None), ("rotor", None), ("load", None), ("excitation", "excitation"),
+    ("bodies", "bodies"), ("mesh", "mesher"), ("contact", "contact_law"), ("lubricant", None), ("heat", None),
+    ("kinematics", None), ("mounting", None), ("integrator", "integrator"), ("identifier", "identifier"),
+)  # fmt: skip
 _NOTES = {
     "bearing": "`preset` names a bearing of [the catalogue](catalogue.md). Without it the required keys and `contact_angle_deg` or "
     "`radial_clearance` are needed. `raceway catalogue --materials` lists materials.",

@@ -33,28 +33,15 @@ _LAWS: list[dict[str, Any]] = [
 ]  # fmt: skip
 #: Keys with the ranges of their numbers.
 _RANGES: dict[str, tuple[float, float]] = {
-    "load.axial": (150.0, 2500.0),
-    "load.radial[0]": (-60.0, 60.0),
-    "load.moment[1]": (-0.3, 0.3),
-    "bearing.conformity_inner": (0.508, 0.54),
-    "bearing.conformity_outer": (0.51, 0.54),
-    "bearing.contact_angle_deg": (12.0, 30.0),
-    "bearing.preload": (100.0, 900.0),
-    "bearing.rings.young": (1.9e11, 2.2e11),
-    "bearing.balls.young": (2.0e11, 3.2e11),
-    "bearing.balls.density": (3000.0, 7900.0),
-    "bearing.ball_diameter": (6.0e-3, 7.0e-3),
-    "mounting.inner_temperature": (0.0, 15.0),
-    "mounting.shaft_interference": (0.0, 8e-6),
-    "kinematics.radial_expansion": (0.0, 3e-6),
-    "supports.tilt": (1e3, 1e6),
-    "contact.temperature_c": (20.0, 100.0),
-    "contact.viscosity": (0.005, 0.1),
-    "contact.starvation": (0.3, 1.0),
-    "contact.cubic": (1e16, 1e18),
-    "contact.thickness": (5e-8, 5e-7),
-    "contact.calibrate_at": (50.0, 200.0),
-}
+    "load.axial": (150.0, 2500.0), "load.radial[0]": (-60.0, 60.0), "load.moment[1]": (-0.3, 0.3),
+    "bearing.conformity_inner": (0.508, 0.54), "bearing.conformity_outer": (0.51, 0.54),
+    "bearing.contact_angle_deg": (12.0, 30.0), "bearing.preload": (100.0, 900.0), "bearing.rings.young": (1.9e11, 2.2e11),
+    "bearing.balls.young": (2.0e11, 3.2e11), "bearing.balls.density": (3000.0, 7900.0),
+    "bearing.ball_diameter": (6.0e-3, 7.0e-3), "mounting.inner_temperature": (0.0, 15.0),
+    "mounting.shaft_interference": (0.0, 8e-6), "kinematics.radial_expansion": (0.0, 3e-6), "supports.tilt": (1e3, 1e6),
+    "contact.temperature_c": (20.0, 100.0), "contact.viscosity": (0.005, 0.1), "contact.starvation": (0.3, 1.0),
+    "contact.cubic": (1e16, 1e18), "contact.thickness": (5e-8, 5e-7), "contact.calibrate_at": (50.0, 200.0),
+}  # fmt: skip
 _REGISTRY = registry_with([Path(__file__).with_name("laws.py")])
 _OUTPUTS = ("displacement", "stiffness", "largest_ball_load", "ball_load")
 _MOTION = ("z_real", "z_imag", "equivalent_stiffness", "forward_amplitude", "largest_multiplier")

@@ -53,18 +53,12 @@ def made(axes: dict[str, Any], tables: dict[str, Any] | None = None, **changed: 
     for n, value in enumerate((6e7, 2e8, 3e8, 2e4, 3e4)):
         spring[..., n, n] = value
     values = {
-        "z_real": ("N/m", k - MASS * w**2),
-        "z_imag": ("N/m", w * c),
-        "equivalent_stiffness": ("N/m", k),
-        "equivalent_damping": ("N s/m", c),
-        "force_amplitude": ("N", 3.195e-4 * w**2),
-        "frequency": ("Hz", w / (2.0 * np.pi)),
-        "mass": ("kg", np.full(shape, MASS)),
-        "forward_amplitude": ("m", 1e-6 + 0.0 * w),
-        "backward_amplitude": ("m", 1e-14 + 0.0 * w),
-        "p0": ("Pa", 1.5e9 + 0.0 * w),
-        "error_total": ("1", 1e-7 + 0.0 * w),
-    }
+        "z_real": ("N/m", k - MASS * w**2), "z_imag": ("N/m", w * c), "equivalent_stiffness": ("N/m", k),
+        "equivalent_damping": ("N s/m", c), "force_amplitude": ("N", 3.195e-4 * w**2),
+        "frequency": ("Hz", w / (2.0 * np.pi)), "mass": ("kg", np.full(shape, MASS)),
+        "forward_amplitude": ("m", 1e-6 + 0.0 * w), "backward_amplitude": ("m", 1e-14 + 0.0 * w),
+        "p0": ("Pa", 1.5e9 + 0.0 * w), "error_total": ("1", 1e-7 + 0.0 * w),
+    }  # fmt: skip
     values |= {name: (values[name][0], function(at)) for name, function in changed.items() if name in values}
     variables: dict[str, Any] = {
         name: (names, array, {"units": unit, "long_name": name.replace("_", " ")}) for name, (unit, array) in values.items()

@@ -12,16 +12,10 @@ from raceway.planning import cost
 #: Processor times [s] of whole runs on the reference machine, as report cost measures them: what a test can
 #: hold a prediction against without a clock.  All but start-up, 1.2 s, is what the predictions tell apart.
 MEASURED_S = {
-    "rigid, friction, 60 turns": 2.04,
-    "rigid, 300 turns": 3.0,
-    "rigid, 300 turns of 2880 steps": 5.45,
-    "rigid, central_difference, 300 turns": 3.28,
-    "rigid, periodic, internal resonance": 4.59,
-    "rigid, run-up": 2.98,
-    "condensed": 2.96,
-    "condensed, 100 turns": 2.90,
-    "condensed, pressures at points": 5.37,
-}
+    "rigid, friction, 60 turns": 2.04, "rigid, 300 turns": 3.0, "rigid, 300 turns of 2880 steps": 5.45,
+    "rigid, central_difference, 300 turns": 3.28, "rigid, periodic, internal resonance": 4.59, "rigid, run-up": 2.98,
+    "condensed": 2.96, "condensed, 100 turns": 2.90, "condensed, pressures at points": 5.37,
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", MEASURED_S)

@@ -134,12 +134,8 @@ LIGHT = {"load": {"axial": 400.0}, "rotor": {"mass": 2.0}}
 
 def run_up(first, last, seconds, unbalance, identifier, **common):
     excitation = {
-        "kind": "run_up",
-        "first_speed_rpm": first,
-        "speed_rpm": last,
-        "duration_s": seconds,
-        "unbalance": unbalance,
-    }
+        "kind": "run_up", "first_speed_rpm": first, "speed_rpm": last, "duration_s": seconds, "unbalance": unbalance,
+    }  # fmt: skip
     return ran(**common, excitation=excitation, identifier=identifier, integrator={"steps_per_turn": 120})
 
 
