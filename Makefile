@@ -45,7 +45,7 @@ ross: $(VENV)-docs/.installed ## the tests under the rotor program ROSS
 
 wheel: $(VENV)/.all ## a wheel in dist with compiled kernels, installed into an empty environment without extras, which runs a scene
 	rm -rf dist build && mkdir -p build/source
-	cp -r raceway README.md LICENSE pyproject.toml build/source
+	tar -c --exclude=__pycache__ raceway README.md LICENSE pyproject.toml | tar -x -C build/source
 	$(BIN)/python -m checks.kernels build/source/raceway/data/kernels
 	$(BIN)/python -m build --wheel --no-isolation --outdir dist build/source
 	$(PYTHON) -m venv build/wheel

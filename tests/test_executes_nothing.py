@@ -66,8 +66,9 @@ def traps(tmp_path):
 
 
 @pytest.mark.needs("gmsh")
-@pytest.mark.parametrize("command", ["check", "plan"])
-@pytest.mark.parametrize(("kind", "code"), [("step", 0), ("brep", 0), ("geo", 2)])
+@pytest.mark.parametrize(
+    ("command", "kind", "code"), [("check", "step", 0), ("plan", "brep", 0), ("check", "geo", 2), ("plan", "geo", 2)]
+)
 def test_check_and_plan_execute_nothing(traps, command, kind, code):
     before = sorted(traps.iterdir())
     environment = {"PYTHONDONTWRITEBYTECODE": 1, "RACEWAY_CACHE_DIR": traps / "cache"}

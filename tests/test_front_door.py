@@ -341,13 +341,11 @@ def documented(name):
     return rw if name in VALUES else getattr(rw, name)
 
 
-#: Names whose examples draw with pyvista.
-DRAWN = ("View", "view")
+#: Names whose examples draw with pyvista: the same.
+DRAWN = {"view": [pytest.mark.needs("pyvista")], "View": [pytest.mark.needs("pyvista"), pytest.mark.slow]}
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(one, marks=[pytest.mark.needs("pyvista")] if one in DRAWN else []) for one in rw.__all__]
-)
+@pytest.mark.parametrize("name", [pytest.param(one, marks=DRAWN.get(one, ())) for one in rw.__all__])
 def test_a_public_name_has_words_and_an_example_that_runs(name, monkeypatch):
     monkeypatch.chdir(ROOT)
     one = documented(name)

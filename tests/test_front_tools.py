@@ -221,6 +221,7 @@ def test_columns_that_are_alike_are_one():
     assert constant == ["kxx = 60 N/µm at all points", "0 at all points: kyz, kzy, cyy, cyz, czy, czz"]
 
 
+@pytest.mark.slow
 @pytest.mark.needs("pyvista")
 def test_a_view_of_a_result_keeps_its_pictures_in_memory(tmp_path):
     found = rw.view(rw.run(STATIC))

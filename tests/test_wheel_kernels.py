@@ -49,7 +49,7 @@ def test_a_first_run_compiles_nothing(wheel, tmp_path):
     assert use(placed(wheel), tmp_path, **LEVEL) == (1, 0)
 
 
-@pytest.mark.parametrize("cpu", ["generic", "nehalem"])
+@pytest.mark.parametrize("cpu", [pytest.param("generic", marks=pytest.mark.slow), "nehalem"])
 def test_a_processor_without_avx2_compiles(wheel, tmp_path, cpu):
     assert use(placed(wheel), tmp_path, NUMBA_CPU_NAME=cpu, NUMBA_CPU_FEATURES="") == (0, 1)
 

@@ -142,6 +142,7 @@ def test_nodes_of_the_groove_bore_and_sides_lie_on_them():
     assert (outward < 0.0).all()
 
 
+@pytest.mark.slow
 def test_the_articles_mesh_has_its_size_and_is_good():
     scene = load_scene(EXAMPLES / "b7206_article_mesh.toml")
     assert scene_from_dict(scene.to_dict()).mesh == scene.mesh
