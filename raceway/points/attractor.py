@@ -24,7 +24,7 @@ from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.floquet import transfer
 from raceway.core.periodic.refinement import states
 from raceway.core.periodic.search import highest_order
-from raceway.core.record import Motion, Schedule
+from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.kernels.layout import DAMPING
 from raceway.core.ring.ring import Ring
 from raceway.core.time.schemes import integrate
@@ -38,6 +38,8 @@ from raceway.storage.tables import Tables
 OnProgress = Callable[[str, int, int], None]
 #: Steps a turn, and those that are recorded; the step's error moves a settled orbit by some 1e-4.
 _STEPS, _RECORDED = 360, 24
+#: Explicit steps over their stable limit, up to which they are taken: contacts may become four times as stiff.
+_EXPLICIT = 0.5
 #: Turns in which the force grows on a ring at rest.
 _RAMP = 40
 #: Disturbance at the start over the orbit's size, along the disturbance that grows most.
@@ -152,16 +154,23 @@ def _end_of(
 ) -> Attractor:  # fmt: skip
     """The motion from a start, by its last turns."""
     on_steps = None if on_progress is None else (lambda step, total: on_progress("beside unstable orbits", step, total))
-    newmark = default_registry().find("integrator", "newmark").plugin()
+
+    def moved(ring: Ring) -> Record:
+        begin = start(ring)
+        now = ring.evaluate(begin.q, ball=begin.ball)
+        # Central differences need one evaluation a step, without tangents, and make half of Newmark's error.
+        explicit = schedule.dt <= _EXPLICIT * ring.damped_time_step(now.stiffness, now.damping)
+        kind = default_registry().find("integrator", "central_difference" if explicit else "newmark")
+        return integrate(kind.plugin(), ring, begin, schedule, on_steps)
+
     try:
         try:
-            record, without_dashpots = integrate(newmark, system, start(system), schedule, on_steps), False
+            record, without_dashpots = moved(system), False
         except RacewayError:
             # The dashpots' force jumps where a contact closes, and a ball may have no equilibrium within the jump.
             if system.scalars[DAMPING] == 0.0:
                 raise
-            bare, without_dashpots = system.without(DAMPING), True
-            record = integrate(newmark, bare, start(bare), schedule, on_steps)
+            record, without_dashpots = moved(system.without(DAMPING)), True
     except RacewayError as why:
         return Attractor(parameter, FAILED, turns, why=str(why))
     last, w = min(_JUDGED, turns // 2), 2.0 * np.pi / (schedule.dt * _STEPS)
