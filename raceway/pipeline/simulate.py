@@ -135,8 +135,7 @@ def simulate(
     stride = recording_stride(steps_per_turn, turns, method.inertial)
     schedule = Schedule(period / steps_per_turn, steps_per_turn, turns, stride, ramp * period)
     motion = _motion(model, equilibrium, start, schedule.dt)
-    if near is not None:
-        motion = attrs.evolve(motion, near=near.whole.solution, stay=stay)
+    motion = attrs.evolve(motion, near=None if near is None else near.whole.solution, stay=stay)
     label = f"{model.problem.integrator.kind}, {schedule.steps} steps"
     progress = None if on_progress is None else (lambda step, total: on_progress(label, step, total))
     record = integrate(method, model.system, motion, schedule, progress)

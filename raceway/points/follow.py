@@ -14,10 +14,8 @@ from raceway.answers.answer import Interrupted
 from raceway.answers.progress import ShowProgress, telling
 from raceway.core.periodic.branch import Branch, Point, apart
 from raceway.core.periodic.branch import doubled as doubled_branch
-from raceway.core.periodic.collocation import Path as OrbitPath
 from raceway.core.periodic.collocation import solve
-from raceway.core.periodic.refinement import motion_at
-from raceway.core.periodic.search import MOST, directly, highest_order, mesh_of
+from raceway.core.periodic.search import MOST, directly, highest_order
 from raceway.core.periodic.special_points import DOUBLING, located, special_points
 from raceway.core.periodic.steady import find
 from raceway.errors import ConvergenceError
@@ -297,7 +295,7 @@ class _Continuation:
                 curve.end = "" if end == self.parameter.last else f"the branch comes back to {end:.6g}"
                 return False
             size = min(size * self.branch.growth(ahead), _MOST / max(abs(ahead.tangent[-1]), 1e-300))
-            here = self._on_fit_mesh(ahead)
+            here = ahead
         curve.end = f"left after {self.points} orbits at {here.parameter:.6g} (--points)"
         return False
 
@@ -357,21 +355,3 @@ class _Continuation:
             curve.notes.append(
                 f"{span} a fold, peak or change of stability or contact is not located, use a smaller --aim ({why})"
             )
-
-    def _on_fit_mesh(self, point: Point) -> Point:
-        """The same orbit on a mesh that is fit for the fastest vibration at the present speed."""
-        problem, path = point.solved.problem, point.solved.path
-        nodes = mesh_of(problem, point.highest)
-        intervals = len(nodes) - 1
-        if intervals > path.intervals or 2 * intervals < path.intervals and point.error < 1e-2 * ERROR:
-            q, v, *_ = motion_at(problem, path, nodes)
-            *_, a, ball, rate = motion_at(problem, path, problem.angles(nodes))
-            parts = (np.ascontiguousarray(part) for part in (q, v, a, ball, rate))
-            try:
-                orbit = solve(problem, OrbitPath(nodes, *parts), 1e-2 * ERROR)
-                again = self.branch.start(orbit, point.parameter, float(np.sign(point.tangent[-1])))
-            except ConvergenceError:
-                return point
-            if float(again.tangent @ point.tangent) > 0.9 and again.error <= max(ERROR, point.error):
-                return again
-        return point

@@ -202,10 +202,10 @@ def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
 
     points : tables of scenes that differ in axial load, speed and tilt stiffness
     """
-    rows, near = list(_looped(points, registry)), None
-    for k in reversed(range(len(points))):
-        here, there = ({**tables, "excitation": None} for tables in (points[k], points[min(k + 1, len(points) - 1)]))
-        near = near if here == there else None
+    rows, near, last = list(_looped(points, registry)), None, None
+    order = sorted(range(len(points)), key=lambda k: (points[k]["load"]["axial"], points[k]["excitation"]["speed_rpm"], k))
+    for k in reversed(order):
+        near, last = near if points[k]["load"] == last else None, points[k]["load"]
         rows[k], near = (rows[k], near) if rows[k] else _point_row(points[k], registry, near)
     return [row for row in rows if row]
 
@@ -246,7 +246,7 @@ def _point_row(tables: Tables, registry: Registry, near: Result | None) -> tuple
     try:
         scene = scene_from_dict(tables, registry)
         try:
-            result = run(scene, registry, near=near, stay=near is not None)
+            result = run(scene, registry, near=near, stay=True)
         except ConvergenceError as why:
             if not scene.integrator.method.steady:
                 raise

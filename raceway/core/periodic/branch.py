@@ -17,6 +17,7 @@ Analysis, 3rd ed. (2010), chapter 4.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import cached_property
 
 import attrs
@@ -25,11 +26,14 @@ import numpy as np
 from raceway.core.periodic.collocation import Path, Problem, Solved, gap, renew, stiff
 from raceway.core.periodic.floquet import Floquet, floquet_of, transfer
 from raceway.core.periodic.intervals import FORCE, IMBALANCE, Change, Eliminated, condense, imbalances, spread
-from raceway.core.periodic.refinement import Estimate, divided, estimate, resampled
+from raceway.core.periodic.refinement import Estimate, divided, estimate, fitting, motion_at, sampled_at
+from raceway.core.periodic.search import mesh_of
 from raceway.core.periodic.turn import Symmetry, rotations
 from raceway.errors import ConvergenceError
 
 _LIMIT = 12
+#: Part of the intervals, or of the longest one, from which on a motion is solved for once more on a mesh that fits it.
+_FEWER = 0.7
 #: Relative step of the difference quotient by the parameter.
 _DIFFERENCE = 1e-6
 
@@ -79,6 +83,7 @@ class Branch:
     slope : (problem, path) -> (m s, 5) derivative of the balance of forces by the parameter; None for a difference quotient
     fastest : parameter -> highest natural frequency [rad/s], which multipliers are fit for; 0: as exact as the mesh
     aim : deviation that steps are chosen for; None: by the number of corrections
+    widest : interval of the mesh that the branch began with [rad], of all where vibrations do not decide
     """
 
     problem_at: Callable[[float], Problem]
@@ -89,15 +94,16 @@ class Branch:
     slope: Callable[[Problem, Path], np.ndarray] | None = None
     fastest: Callable[[float], float] = lambda _: 0.0
     aim: float | None = None
+    widest: float = np.inf
 
     def start(self, solution: Solved, parameter: float, sense: float = 1.0) -> Point:
         """The first point, from a motion that is known; ``sense``: the side to which the parameter goes."""
         n2 = 2 * len(solution.problem.free)
         across = np.zeros(n2 + 1)
         across[-1] = sense
-        _, _, tangent, linear = self._correct(solution.path, parameter, across, None)
-        error = self._estimate(linear, tangent).error
-        return Point(parameter, linear, error, tangent, False, highest=self._order(linear, parameter))
+        _, tangent, linear, error = self._correct(solution.path, parameter, across, None)
+        self.widest = float(np.diff(solution.path.nodes).max())
+        return Point(parameter, linear, error.error, tangent, False, highest=self._order(linear, parameter))
 
     def along(self, path: Path, parameter: float, tangent: np.ndarray) -> Point:
         """The point of an orbit that is known, with a direction to leave it by.
@@ -162,24 +168,30 @@ class Branch:
         trial, _ = _shifted_path(path, solution.problem.free, solution.eliminated, size * self.displacement(here), dp)
         trial = attrs.evolve(trial, ball=path.ball.copy(), rate=path.rate.copy())
         at = here.parameter + dp
-        path, parameter, tangent, last = self._correct(trial, at, here.tangent, (trial, at))
-        error = self._estimate(last, tangent)
+        parameter, tangent, last, error = self._correct(trial, at, here.tangent, (trial, at))
         for _ in range(4):
-            if error.error <= self.tolerance or 2 * path.intervals > self.most_intervals:
+            if error.error <= self.tolerance or 2 * last.path.intervals > self.most_intervals:
                 break
             parts = np.where((error.defect > 0.1 * error.defect.max()) | (error.between > 0.1 * error.between.max()), 2, 1)
-            nodes, parent = divided(path.nodes, parts)
-            finer = resampled(last.problem, path, nodes, parent)
-            path, parameter, tangent, last = self._correct(finer, parameter, here.tangent, (finer, parameter))
-            error = self._estimate(last, tangent)
+            finer = sampled_at(last.problem, last.path, divided(last.path.nodes, parts))
+            parameter, tangent, last, error = self._correct(finer, parameter, here.tangent, (finer, parameter))
         # Back where it came from: a corrector that turned round.
         if float(tangent @ here.tangent) < 0.5:
             raise ConvergenceError("the branch bends too much for the step")
-        fold = tangent[-1] * here.tangent[-1] < 0.0
+        path, fold = last.path, tangent[-1] * here.tangent[-1] < 0.0
         off = np.abs([path.q[0] - trial.q[0], path.v[0] - trial.v[0]]) / last.problem.weight
         deviation = float(off.max()) / max(last.size, 1e-300)
         state = (path.state(0, last.problem.free) - trial.state(0, last.problem.free)) / self.length
         strayed = float(np.hypot(np.linalg.norm(state), (parameter - at) / self.unit))
+        order = self._order(last, parameter)
+        widest = float(mesh_of(last.problem, order)[1]) if order > 0.0 else self.widest
+        nodes = fitting(path.nodes, error, self.tolerance * last.size, widest)
+        if len(nodes) < _FEWER * len(path.nodes) or np.diff(path.nodes).max() > widest / _FEWER:
+            with suppress(ConvergenceError):
+                other = sampled_at(last.problem, path, nodes)
+                again = self._correct(other, parameter, tangent, (other, parameter))
+                if again[3].error <= max(self.tolerance, error.error) and float(again[1] @ tangent) > 0.9:
+                    parameter, tangent, last, error = again
         return Point(parameter, last, error.error, tangent, fold, deviation, strayed, self._order(last, parameter))
 
     def crossing(self, point: Point) -> float:
@@ -239,8 +251,8 @@ class Branch:
 
     def _correct(
         self, path: Path, parameter: float, across: np.ndarray, prediction: tuple[Path, float] | None
-    ) -> tuple[Path, float, np.ndarray, Solved]:
-        """Newton across the predictor; without one, the parameter stays.  Path, parameter, tangent, last linearisation."""
+    ) -> tuple[float, np.ndarray, Solved, Estimate]:
+        """Newton across the predictor; without one, the parameter stays.  Parameter, tangent, motion, error."""
         worst = np.inf
         lagging = stiff(self.problem_at(parameter), path)
         for sweeps in range(1, _LIMIT + 1):
@@ -279,7 +291,8 @@ class Branch:
             displacement = float(np.abs(path.q / problem.weight).max())
             if sweeps > 1 and correction <= 1e-2 * self.tolerance * max(size, 1e-3 * self.length) + 1e-14 * displacement:
                 tangent = solution[:, 1] / np.linalg.norm(solution[:, 1])
-                return path, parameter, tangent, Solved(problem, path, linear, size, True, sweeps, correction)
+                solved = Solved(problem, path, linear, size, True, sweeps, correction)
+                return parameter, tangent, solved, self._estimate(solved, tangent)
         raise ConvergenceError("the corrector does not converge")
 
 
@@ -332,8 +345,7 @@ def doubled(branch: Branch, point: Point) -> tuple[Branch, Point]:
 def apart(point: Point) -> np.ndarray:
     """(2 n,) by which the state changes over half of two spans, turned back; 0 where the orbit repeats itself after one."""
     problem, path = point.solved.problem, point.solved.path
-    middle = int(np.argmin(np.abs(path.nodes - 0.5 * problem.symmetry.span)))
+    q, v, *_ = motion_at(problem, path, np.array([0.0, 0.5 * problem.symmetry.span]))
     back = rotations(np.array([-0.5 * problem.symmetry.angle]))[0]
-    first = np.concatenate([path.q[0], path.v[0]])
-    second = np.concatenate([back @ path.q[middle], back @ path.v[middle]])
+    first, second = np.concatenate([q[0], v[0]]), np.concatenate([back @ q[1], back @ v[1]])
     return np.asarray((second - first) / np.tile(problem.weight, 2))

@@ -66,8 +66,9 @@ def _by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolera
     return refine(solve(problem, last, 1e-2 * tolerance), tolerance)
 
 
-#: Points of a branch.
+#: Points of a branch; those of one from rest, its longest step, the error that its meshes are made for and their most intervals.
 POINTS = 120
+_FROM_REST, _LONGEST, _ERROR, _MOST = 60, 4.0, 1e-3, 96
 #: Share of the force up to which the branch from rest is followed for its folds: a Duffing oscillator whose motion differs
 #: by a tenth from its linear response (``neighbour.MOST_NONLINEAR``) folds at 1.35 times the force, the internal resonances
 #: of the article's scene with tilt free at 1.6 and 1.8 times.
@@ -76,40 +77,34 @@ _BEYOND = 2.0
 _SMALL_SHARE, _SMALL_POINTS = 0.2, 10
 
 
-@attrs.frozen(eq=False)
+@attrs.define(eq=False)
 class _ForceBranch:
-    """Points of a branch over the share of the force.
+    """What is known of a branch over the share of the force once its points are asked for.
 
-    largest : share of the force;  reaches : the whole force
-    folds : whether it turns back anywhere
-    crossings : neighbouring points on either side of the whole force or its opposite, in the order of the branch
+    largest : share of the force;  folds : whether it turns back anywhere
+    failure : why it has no first point
     """
 
+    points: Iterator[Point]
     largest: float = 0.0
     folds: bool = False
-    crossings: tuple[tuple[Point, Point], ...] = ()
+    failure: ConvergenceError | None = None
 
-    @property
-    def reaches(self) -> bool:
-        return self.largest >= 1.0
-
-    @classmethod
-    def of(cls, points: Iterable[Point]) -> _ForceBranch:
-        """Of points that come one by one."""
-        largest, folds, crossings = 0.0, False, []
-        for before, after in pairwise(points):
-            largest, folds = max(largest, before.parameter, after.parameter), folds or after.folded
-            if any((before.parameter - share) * (after.parameter - share) <= 0.0 for share in (1.0, -1.0)):
-                crossings.append((before, after))
-        return cls(largest, folds, tuple(crossings))
+    def crossings(self) -> Iterator[tuple[Point, Point]]:
+        """Neighbouring points on either side of the full force or its opposite, in the order of the branch."""
+        try:
+            for before, after in pairwise(self.points):
+                self.largest = max(self.largest, before.parameter, after.parameter)
+                self.folds = self.folds or after.folded
+                if any((before.parameter - share) * (after.parameter - share) <= 0.0 for share in (1.0, -1.0)):
+                    yield before, after
+        except ConvergenceError as why:
+            self.failure = why
 
 
 def _force_branch(problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> _ForceBranch:
-    """The branch from rest, beyond the whole force for its folds and round to the force's opposite.
-
-    ConvergenceError: it has no first point.
-    """
-    return _ForceBranch.of(force_continuation(problem, q, tangent, nodes, _BEYOND, -1.0, _SMALL_POINTS))
+    """The branch from rest, beyond the full force for its folds and round to the force's opposite."""
+    return _ForceBranch(force_continuation(problem, q, tangent, nodes, _BEYOND, -1.0, _SMALL_POINTS))
 
 
 def force_continuation(
@@ -132,16 +127,14 @@ def force_continuation(
     def slope(at: Problem, path: Path) -> np.ndarray:
         return -problem.share * at.force(at.angles(path.nodes))
 
-    branch = Branch(
-        lambda share: attrs.evolve(problem, share=share * problem.share), 1.0, length, search.ROUGH, search.MOST, slope
-    )
+    branch = Branch(lambda share: attrs.evolve(problem, share=share * problem.share), 1.0, length, _ERROR, _MOST, slope)
     still = attrs.evolve(problem, share=0.0)
     n, none = len(problem.free), np.empty((0, 0))
     linear = Eliminated(none, none, np.zeros((2 * n, 2 * n + 2)))
     equilibrium = Solved(still, search.standing(still, q, nodes), linear, 0.0, True, 0, 0.0)
     first, small = branch.start(equilibrium, 0.0), 0
     try:
-        for point in islice(branch.follow(first, 0.1, 2.0), POINTS):
+        for point in islice(branch.follow(first, 0.1, _LONGEST), _FROM_REST):
             yield point
             small = small + 1 if point.solved.size > length and abs(point.parameter) < _SMALL_SHARE else 0
             if point.parameter >= most or point.parameter < least or small >= small_points:
@@ -227,7 +220,7 @@ def _from_undamped(
     still = attrs.evolve(problem, system=attrs.evolve(system, damping=skew))
     problem.watch()
     with suppress(ConvergenceError):
-        for motion in _at_full_force(still, _force_branch(still, q, tangent, nodes).crossings, search.ROUGH):
+        for motion in _at_full_force(still, _force_branch(still, q, tangent, nodes).crossings(), search.ROUGH):
             problem.watch()
             with suppress(ConvergenceError):
                 yield refine(search.full_steps(problem, motion.solved.path, 1e-2 * tolerance), tolerance)
@@ -279,37 +272,39 @@ def grown_from_rest(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolera
 
 
 def chosen(
-    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, direct: PeriodicMotion | None
+    problem: Problem,
+    q: np.ndarray,
+    tangent: np.ndarray,
+    tolerance: float,
+    direct: PeriodicMotion | None,
+    alone: bool = False,
 ) -> PeriodicMotion:
-    """The motion that is taken, of all that the branch from rest and Newton's iteration lead to."""
+    """The motion that is taken, of all that the branch from rest and Newton's iteration lead to; ``alone``: no further ones are sought."""
     highest = search.highest_order(problem, tangent)
-    failure, branch = None, _ForceBranch()
-    try:
-        branch = _force_branch(problem, q, tangent, search.mesh_of(problem, highest))
-    except ConvergenceError as why:
-        failure = why
+    branch = _force_branch(problem, q, tangent, search.mesh_of(problem, highest))
     motions: list[PeriodicMotion] = []
-    for candidate in _at_full_force(problem, branch.crossings, tolerance):
+    for candidate in _at_full_force(problem, branch.crossings(), tolerance):
         if not any(_alike(candidate, motion.refined) for motion in motions):
-            motions.append(search.with_multipliers(candidate, highest, "from rest"))
-    fold = None if branch.reaches else branch.largest
-    if direct is not None:
-        # Where both ways lead to motion motion, the shorter motion is told.
-        same = [k for k, motion in enumerate(motions) if _alike(direct.refined, motion.refined)]
-        if same:
-            motions[same[0]] = direct
-        else:
-            motions.append(attrs.evolve(direct, fold=fold))
+            # Where both ways lead to one motion, the shorter one is told.
+            same = direct is not None and _alike(direct.refined, candidate)
+            motions.append(direct if direct and same else search.with_multipliers(candidate, highest, "from rest"))
+            if alone and motions[-1].floquet.verdict != "unstable":
+                break
+    fold = None if branch.largest >= 1.0 else branch.largest
+    if direct is not None and not any(motion is direct for motion in motions):
+        motions.append(attrs.evolve(direct, fold=fold))
     if not motions:
         try:
             motions = [search.with_multipliers(_by_force_steps(problem, q, tangent, tolerance), highest, "from rest")]
         except ConvergenceError:
-            if failure is not None:
-                raise failure from None
+            if branch.failure is not None:
+                raise branch.failure from None
     if all(motion.floquet.verdict == "unstable" for motion in motions):
         for candidate in _from_undamped(problem, q, tangent, search.mesh_of(problem, highest), tolerance):
             if not any(_alike(candidate, other_motion.refined) for other_motion in motions):
                 motions.append(search.with_multipliers(candidate, highest, "from no damping", fold))
+                if alone and motions[-1].floquet.verdict != "unstable":
+                    break
     if (
         fold is not None
         and problem.system.scalars[CAGE] == 0.0

@@ -19,7 +19,7 @@ import attrs
 import numpy as np
 
 from raceway.core.periodic.collocation import Solved, linearised
-from raceway.core.periodic.refinement import divided, resampled
+from raceway.core.periodic.refinement import divided, sampled_at
 from raceway.storage.tables import Tables
 
 #: Distance from the unit circle that counts as on it: what a mesh fit for 1e-8 of the motion leaves of error.
@@ -92,7 +92,7 @@ def transfer(solution: Solved, highest: float = 0.0) -> np.ndarray:
     problem, path, span_transfer = solution.problem, solution.path, solution.eliminated.span_transfer
     parts = np.ceil(np.diff(path.nodes) * min(highest, 2000.0) / _PHASE - 1e-9).astype(int)
     if parts.max() > 1:  # linearised anew where intervals are long for the fastest vibration
-        finer = resampled(problem, path, *divided(path.nodes, np.maximum(parts, 1)))
+        finer = sampled_at(problem, path, divided(path.nodes, np.maximum(parts, 1)))
         span_transfer = linearised(problem, finer).span_transfer
     return np.asarray(problem.closing.T @ span_transfer[:, : 2 * len(problem.free)])
 

@@ -13,6 +13,7 @@ intervals are divided again and again.
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import ceil
 
 import attrs
 import numpy as np
@@ -31,6 +32,8 @@ _ROUNDS = 16
 _PARTS = 8
 #: Largest double integral of a Legendre polynomial of degree 4 over an interval of length 1.
 _BETWEEN = 1.0 / 64.0
+#: Power of an interval's length that errors fall with at least where motions are smooth, and part of the error aimed at.
+_SMOOTH, _SAFE = 5.0, 0.1
 #: Newton's iteration ends at this part of the tolerance.
 _NEWTON = 1e-2
 
@@ -103,35 +106,32 @@ def estimate(solution: Solved, closure: Callable[[np.ndarray], np.ndarray] | Non
     return Estimate(error, defects.max(axis=1), tails, dq)
 
 
-def divided(nodes: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """New nodes with interval k in parts[k] equal parts, and for each new interval the old one that it lies in."""
+def divided(nodes: np.ndarray, parts: np.ndarray) -> np.ndarray:
+    """New nodes with interval k in parts[k] equal parts."""
     parent = np.repeat(np.arange(len(parts)), parts)
     inside = np.arange(len(parent)) - np.repeat(np.cumsum(parts) - parts, parts)
-    return np.append(nodes[parent] + np.diff(nodes)[parent] * inside / parts[parent], nodes[-1]), parent
+    return np.append(nodes[parent] + np.diff(nodes)[parent] * inside / parts[parent], nodes[-1])
 
 
-def resampled(problem: Problem, path: Path, nodes: np.ndarray, parent: np.ndarray) -> Path:
-    """The same motion on a divided mesh."""
-    s, h = len(problem.rule.points), np.diff(path.nodes)
-    a = path.a.reshape(path.intervals, s, 5)
-    where = (nodes[:-1] - path.nodes[parent]) / h[parent]
-    _, once, twice = integrals(problem.rule.points, where)
-    step, accelerations = h[parent, None], a[parent]
-    v = path.v[parent] + step * np.einsum("ms,msc->mc", once, accelerations)
-    q = path.q[parent] + (where[:, None] * step) * path.v[parent] + step**2 * np.einsum("ms,msc->mc", twice, accelerations)
-    points = (where[:, None] + (np.diff(nodes) / h[parent])[:, None] * problem.rule.points).ravel()
-    values, _, _ = integrals(problem.rule.points, points)
-    of = np.repeat(parent, s)
-    inner = np.einsum("ns,nsc->nc", values, a[of])
-    nearest = of * s + np.abs(points[:, None] - problem.rule.points).argmin(axis=1)
-    return Path(
-        nodes,
-        np.vstack([q, path.q[-1:]]),
-        np.vstack([v, path.v[-1:]]),
-        inner,
-        path.ball[nearest].copy(),
-        path.rate[nearest].copy(),
-    )
+def fitting(nodes: np.ndarray, error: Estimate, target: float, widest: float) -> np.ndarray:
+    """Nodes of a mesh with an error below ``target`` [m] that has intervals where the error is made, none above ``widest`` [rad].
+
+    Errors of smooth motions fall faster than ``_SMOOTH`` powers of an interval's length, so that it is no shorter than needed.
+    """
+    h, made = np.diff(nodes), np.maximum(error.defect * len(error.defect), error.between)
+    density = np.maximum((made / (_SAFE * target)) ** (1.0 / _SMOOTH) / h, 1.0 / widest)
+    # A contact opens elsewhere in the next motion.
+    for _ in range(2):
+        density = np.maximum(density, 0.5 * np.maximum(np.roll(density, 1), np.roll(density, -1)))
+    share = np.append(0.0, np.cumsum(density * h))
+    return np.interp(np.linspace(0.0, share[-1], ceil(share[-1] - 1e-9) + 1), share, nodes)
+
+
+def sampled_at(problem: Problem, path: Path, nodes: np.ndarray) -> Path:
+    """The same motion on another mesh."""
+    q, v, *_ = motion_at(problem, path, nodes)
+    *_, a, ball, rate = motion_at(problem, path, problem.angles(nodes))
+    return Path(nodes, *(np.ascontiguousarray(part) for part in (q, v, a, ball, rate)))
 
 
 @attrs.frozen(eq=False)
@@ -176,11 +176,11 @@ def refine(solution: Solved, tolerance: float) -> Refined:
         parts = np.minimum(2 ** np.ceil(np.log2(np.maximum(too_much, 1.0)) / 3.0).astype(int), _PARTS)
         if parts.max() == 1:
             parts[np.argmax(too_much)] = 2
-        nodes, parent = divided(solution.path.nodes, parts)
+        nodes = divided(solution.path.nodes, parts)
         if len(nodes) > MOST_INTERVALS:
             break
         problem.watch()
-        solution = solve(problem, resampled(problem, solution.path, nodes, parent), _NEWTON * tolerance)
+        solution = solve(problem, sampled_at(problem, solution.path, nodes), _NEWTON * tolerance)
         sweeps += solution.sweeps
         evaluations += solution.sweeps * solution.path.intervals * s
     return Refined(solution, error.error, rounds, sweeps, evaluations)

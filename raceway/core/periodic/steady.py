@@ -284,7 +284,7 @@ def find(
     Parameters
     ----------
     near : a motion to start from
-    stay : on that one where several may exist, instead of searching for all; and where branches are not followed and nothing
+    stay : on that one, or else on the first that is not unstable, instead of searching for all that may exist; and where branches are not followed and nothing
         is found directly, give up instead of letting the force grow on a mesh of thousands of intervals
 
     Notes
@@ -324,7 +324,7 @@ def find(
         return direct or search.with_multipliers(
             grown_from_rest(problem, q, tangent, tolerance, highest), highest, "from rest"
         )
-    return chosen(problem, q, tangent, tolerance, direct)
+    return chosen(problem, q, tangent, tolerance, direct, stay)
 
 
 def _continued(
