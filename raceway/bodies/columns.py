@@ -20,7 +20,7 @@ from raceway.core.columns import at_rows, distinct, has_columns, largest, per_ba
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.excitations import no_force
 from raceway.core.periodic.fourier import Turning
-from raceway.core.periodic.orbits import Orbits, neighbours, orbits
+from raceway.core.periodic.orbits import Orbits, orbits
 from raceway.core.periodic.turn import one_pitch
 from raceway.core.ring.equilibria import equilibria, groove_centres
 from raceway.core.ring.equilibrium import NOT_CONVERGED
@@ -125,13 +125,13 @@ class ColumnBearing:
         return states
 
     def orbits(
-        self, states: States, tolerance: float, loop: Callable[..., None] = orbits, disturbed: bool = False, times: int = 0
+        self, states: States, tolerance: float, near: bool = False, disturbed: bool = False, times: int = 0
     ) -> Orbits:
         """The steady orbit of each point about its equilibrium under a periodic force.
 
         Parameters
         ----------
-        tolerance : of the 1x component, relative;  loop : ``orbits``, or ``neighbours`` of the first point
+        tolerance : of the 1x component, relative;  near : whether all points are neighbours of the first one
         disturbed : whether ``transfer`` is computed, too;  times : of a turn at which contact forces are
         """
         z, n, inertia = self.points.table.shape[1], len(states.status), self.problem.inertia
@@ -150,7 +150,7 @@ class ColumnBearing:
         for chosen in (np.flatnonzero(across), np.flatnonzero(~across & (states.status == 0))):
             if not len(chosen):
                 continue
-            chosen = np.unique(np.append(chosen, 0)) if loop is neighbours else chosen
+            chosen = np.unique(np.append(chosen, 0)) if near else chosen
             first = chosen[-1]
             parts = {"mass": np.diag(mass[first]), "damping": moments[first], "force": force, "force_params": params[first]}
             system = attrs.evolve(self._system(first), **parts)
@@ -159,7 +159,8 @@ class ColumnBearing:
                 sense = float(np.sign(symmetry.angle))
                 turning = turning._replace(sense=sense, span=symmetry.span, order=symmetry.order.astype(np.int64), least=4)
             here = _rows(out, chosen)
-            loop(self.kernels, self.linear, _rows(self.points, chosen), _rows(states, chosen), _rows(turning, chosen), here)
+            mine = _rows(self.points, chosen), _rows(states, chosen), _rows(turning, chosen)
+            orbits(self.kernels, self.linear, *mine, near, here)
             for column, part in zip(out, here, strict=True):
                 column[chosen] = part
         return out

@@ -25,7 +25,6 @@ from raceway.bodies.builder import Builder
 from raceway.bodies.columns import impedance, solved_columns
 from raceway.bodies.model import Equilibrium, Model, model_of
 from raceway.core.periodic.collocation import Solved, solve
-from raceway.core.periodic.orbits import neighbours
 from raceway.core.periodic.search import PeriodicMotion, problem_of
 from raceway.core.periodic.steady import find, growth_of_disturbances, refuse, synchronous_response
 from raceway.core.record import Schedule
@@ -314,7 +313,7 @@ class Gradients:
         values["damping"], fine = bearing.damping(states), (states.status == 0) & ~runaway
         values["stated"] = self._stated(solved_columns(bearing, states), len(fine))
         if self.orbit is not None:
-            orbits = bearing.orbits(states, _TOLERANCE, neighbours)
+            orbits = bearing.orbits(states, _TOLERANCE, near=True)
             line, force, w = orbits.line, orbits.force, bearing.excitations[2]
             line, force = (part[:, :3] + 1j * part[:, 5:8] for part in (line, force))
             z, forward = impedance(force, line), [0.5 * np.abs(line[:, 1] + sign * line[:, 2]) for sign in (1j, -1j)]

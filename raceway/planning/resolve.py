@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from math import ceil, pi
 from typing import Any, Generic, TypeVar, overload
 
@@ -381,13 +381,12 @@ _UNSTEADY: tuple[Rule[Problem], ...] = (
 )  # fmt: skip
 
 
-def _asks_for_a_transient(key: str) -> Rule[Problem]:
-    return Rule(key, lambda p: p.says(key), f"`{key}` is set, a key of transients")
-
-
 #: Why integrator.kind = "auto" integrates over time nevertheless.
 _TRANSIENT: tuple[Rule[Problem], ...] = (
-    *map(_asks_for_a_transient, ("integrator.turns", "integrator.steps_per_turn", "integrator.start")),
+    *(
+        Rule(key, partial(Problem.says, key=key), f"`{key}` is set, a key of transients")
+        for key in ("integrator.turns", "integrator.steps_per_turn", "integrator.start")
+    ),
     Rule("excitation.ramp_turns", lambda p: p.ramped, "the force grows from zero"),
     Rule("bodies.kind", lambda p: not p.traits.compiled, "forces of these bodies and contacts are not compiled"),
 )

@@ -12,93 +12,125 @@ import numpy as np
 from numba import float64, int64, void
 
 from raceway.core.jit import jit
+from raceway.core.lanes import WIDTH, any_of, larger, live_of, put, spread, take, where
 from raceway.core.signatures import MATRIX, VECTOR
 
-_ITERATIONS = 6
+_ITERATIONS, _SETTLED, _TERMS = 6, 1e-9, 18
 
 
-@jit(float64(VECTOR, VECTOR, VECTOR, float64))
-def _extreme(curve, re, im, sign):
-    """Largest (sign 1) or least (-1) value of the polynomial near the largest or least of the samples."""
-    n, best = curve.size, 0
-    for i in range(n):
-        if sign * curve[i] > sign * curve[best]:
-            best = i
-    start = 2.0 * np.pi * best / n
-    angle, value = start, curve[best]
-    for _ in range(_ITERATIONS):
-        first, second, value = 0.0, 0.0, 0.0
-        c, s, cosine, sine = 1.0, 0.0, np.cos(angle), np.sin(angle)
-        for h in range(n // 2 + 1):
-            value += re[h] * c - im[h] * s
-            first -= h * (re[h] * s + im[h] * c)
-            second -= h * h * (re[h] * c - im[h] * s)
-            c, s = c * cosine - s * sine, s * cosine + c * sine
-        if sign * second >= 0.0:
-            break
-        angle -= first / second
-        if abs(angle - start) > 2.0 * np.pi / n:
-            break
-    return max(sign * value, sign * curve[best]) * sign
+@jit(void(MATRIX, int64, VECTOR, MATRIX, MATRIX))
+def _harmonics(curves, count, cosine, re, im):
+    """Of ``count`` curves (N, c): curve = sum re cos - im sin of N // 2 + 1 harmonics; ``cosine`` (2 N,) of the samples' angles, and sines."""
+    samples, half = curves.shape[0], curves.shape[0] // 2
+    for k in range(0, count, WIDTH):
+        live = live_of(k, count)
+        for h in range(half // 2 + 1):
+            a, b, c, d, at = spread(0.0), spread(0.0), spread(0.0), spread(0.0), 0
+            for i in range(0, samples, 2):
+                even, odd, after = take(curves, i, k, live), take(curves, i + 1, k, live), at + h
+                after -= samples if after >= samples else 0
+                a, b = a + cosine[at] * even, b - cosine[at + samples] * even
+                c, d = c + cosine[after] * odd, d - cosine[after + samples] * odd
+                at += 2 * h
+                at -= samples if at >= samples else 0
+            # Of the harmonic N / 2 - h odd samples have the other sign.
+            weight = (1.0 if h == 0 else 2.0) / samples
+            put(re, half - h, k, live, weight * (a - c))
+            put(im, half - h, k, live, weight * (d - b))
+            put(re, h, k, live, weight * (a + c))
+            put(im, h, k, live, weight * (b + d))
 
 
-@jit(void(VECTOR, VECTOR, VECTOR, VECTOR))
-def _force_values(re, im, cosine, values):
-    """Of the polynomial at m equidistant angles of a turn, whose cosines and sines (2 m,) are given; forces do not pull."""
-    m = values.size
-    for i in range(m):
-        value, at = 0.0, 0
-        for h in range(re.size):
-            value += re[h] * cosine[at] - im[h] * cosine[at + m]
-            at += i
-            if at >= m:
-                at -= m
-        values[i] = max(value, 0.0)
+@jit(void(MATRIX, int64, VECTOR, MATRIX, MATRIX, float64, MATRIX, int64))
+def _extreme(curves, count, cosines, re, im, sign, out, row):
+    """Largest (sign 1) or least (-1) value of each polynomial near the largest or least of its samples, into a row of ``out`` (2, c)."""
+    samples = curves.shape[0]
+    longest = 2.0 * np.pi / samples
+    for k in range(0, count, WIDTH):
+        live = live_of(k, count)
+        best, at_c, at_s = spread(-np.inf), spread(1.0), spread(0.0)
+        for i in range(samples):
+            value = sign * take(curves, i, k, live)
+            more = value > best
+            at_c, at_s, best = where(more, cosines[i], at_c), where(more, cosines[i + samples], at_s), larger(value, best)
+        angle, value, moves = spread(0.0), best, live
+        for _ in range(_ITERATIONS):
+            # By their series: beside a sample an angle is below one.
+            square, cosine, sine = angle * angle, spread(1.0), spread(1.0)
+            for i in range(_TERMS, 0, -2):
+                cosine, sine = 1.0 - cosine * square * (1.0 / (i * (i - 1))), 1.0 - sine * square * (1.0 / (i * (i + 1)))
+            sine = sine * angle
+            cosine, sine = at_c * cosine - at_s * sine, at_s * cosine + at_c * sine
+            here, first, second, c, s = spread(0.0), spread(0.0), spread(0.0), spread(1.0), spread(0.0)
+            for h in range(samples // 2 + 1):
+                a, b = take(re, h, k, live), take(im, h, k, live)
+                along = a * c - b * s
+                here, first, second = here + along, first - float(h) * (a * s + b * c), second - float(h * h) * along
+                c, s = c * cosine - s * sine, s * cosine + c * sine
+            value = where(moves, sign * here, value)
+            moves = moves & (sign * second < 0.0)
+            step = first / where(moves, second, 1.0)
+            angle = where(moves, angle - step, angle)
+            moves = moves & (larger(step, -step) > _SETTLED) & (larger(angle, -angle) <= longest)
+            if not any_of(moves):
+                break
+        put(out, row, k, live, sign * larger(value, best))
 
 
 @jit(void(MATRIX, int64[::1], int64, VECTOR, VECTOR, MATRIX), allocates=True)
 def force_extremes(force, order, spans, peak, least, turn):
     """``peak`` and ``least`` (2 Z,) of forces (n, 2 Z) at the samples of a span; ``order`` (Z,) the ball that stands where each one stood.
     ``turn`` (T, 2 Z): forces at T equidistant times of a turn."""
-    n, z = force.shape[0], order.size
-    curve, re, im = np.empty(n * spans), np.empty(n * spans // 2 + 1), np.empty(n * spans // 2 + 1)
-    known, times = np.zeros(z), turn.shape[0]
+    n, z, count, times = force.shape[0], order.size, 0, turn.shape[0]
+    samples, curve_of, first_of, curves = n * spans, np.full(z, -1), np.empty(z, np.int64), np.zeros((n * spans, 2 * z))
+    table = np.empty(2 * samples)
+    _circle(samples, table)
+    # Balls that come to stand where the first one stood have its curve, later.
+    for k in range(z):
+        if curve_of[k] >= 0:
+            continue
+        ball, first_of[count // 2] = k, k
+        for m in range(spans):
+            for i in range(n):
+                for race in range(2):
+                    curves[m * n + i, count + race] = force[i, race * z + ball]
+            curve_of[ball] = count
+            ball = order[ball]
+        count += 2
+    re, im, extremes = np.empty((samples // 2 + 1, 2 * z)), np.empty((samples // 2 + 1, 2 * z)), np.empty((2, 2 * z))
+    _harmonics(curves, count, table, re, im)
+    for least_of in range(2):
+        _extreme(curves, count, table, re, im, 1.0 - 2.0 * least_of, extremes, least_of)
+    for k in range(z):
+        for race in range(2):
+            peak[race * z + k] = extremes[0, curve_of[k] + race]
+            least[race * z + k] = max(extremes[1, curve_of[k] + race], 0.0)
     fine = times
     while fine % spans:
         fine += times
-    values = np.empty(fine)
-    angle = 2.0 * np.pi * np.arange(fine) / max(fine, 1)
-    cosine = np.concatenate((np.cos(angle), np.sin(angle)))
-    for k in range(z):
-        if known[k] > 0.0:
-            continue
-        for race in range(2):
-            ball = k
-            for m in range(spans):
-                for i in range(n):
-                    curve[m * n + i] = force[i, race * z + ball]
-                ball = order[ball]
-            # Harmonics: curve = sum re cos - im sin
-            samples = curve.size
+    values, table = np.empty(fine), np.empty(2 * fine)
+    _circle(fine, table)
+    for curve in range(count if times > 0 else 0):
+        for i in range(fine):
+            value, at = 0.0, 0
             for h in range(samples // 2 + 1):
-                re[h], im[h] = 0.0, 0.0
-                weight = (1.0 if h in (0, samples // 2) else 2.0) / samples
-                turn_step = 2.0 * np.pi * h / samples
-                c, s, cos_step, sin_step = 1.0, 0.0, np.cos(turn_step), np.sin(turn_step)
-                for i in range(samples):
-                    re[h] += weight * curve[i] * c
-                    im[h] -= weight * curve[i] * s
-                    c, s = c * cos_step - s * sin_step, s * cos_step + c * sin_step
-            largest, smallest = _extreme(curve, re, im, 1.0), max(_extreme(curve, re, im, -1.0), 0.0)
-            _force_values(re, im, cosine, values)
-            ball = k
-            for m in range(spans):
-                at, step = m * (fine // spans), fine // max(times, 1)
-                for i in range(times):
-                    turn[i, race * z + ball] = values[at]
-                    at += step
-                    if at >= fine:
-                        at -= fine
-                peak[race * z + ball], least[race * z + ball] = largest, smallest
-                known[ball] = 1.0
-                ball = order[ball]
+                value += re[h, curve] * table[at] - im[h, curve] * table[at + fine]
+                at += i
+                at -= fine if at >= fine else 0
+            values[i] = max(value, 0.0)
+        ball = first_of[curve // 2]
+        for m in range(spans):
+            at, step = m * (fine // spans), fine // times
+            for i in range(times):
+                turn[i, curve % 2 * z + ball] = values[at]
+                at += step
+                if at >= fine:
+                    at -= fine
+            ball = order[ball]
+
+
+@jit(void(int64, VECTOR), inline=True)
+def _circle(count, table):
+    """Cosines and sines (2 count,) of equidistant angles of a turn."""
+    for i in range(count):
+        table[i], table[count + i] = np.cos(2.0 * np.pi * i / count), np.sin(2.0 * np.pi * i / count)

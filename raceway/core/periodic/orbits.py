@@ -1,20 +1,7 @@
-"""Steady orbits of many operating points in one compiled loop: Fourier collocation and Newton's method.
+"""Steady orbits of many operating points in one compiled loop, four in lockstep.
 
-Notes
------
-The motion is sampled at N equidistant angles of its span, of the force's angle: a turn, or one ball pitch where a turning force acts
-on equal balls.  Then it is looked at from the frame that turns with the force, u = R^T q, in which it repeats itself after a pitch
-and its 1x part stands still: few samples do.  Derivatives are those of the trigonometric polynomial through the samples,
-
-    M w^2 (u'' + 2 G u' + G^2 u) + C w (u' + G u) + S u + R^T f(R u) = R^T (load + F),
-
-G the generator of R, 0 in a frame that stands.  Samples are doubled until the 1x line changes by less than
-the tolerance: that change is the error of the samples before, and an upper estimate of the error of the last ones.
-
-References
-----------
-Trefethen, Spectral Methods in MATLAB (2000), chapter 3 (differentiation matrices of periodic functions).
-Krack, Gross, Harmonic Balance for Nonlinear Vibration Problems (2019), chapters 2 and 4.
+Samples are doubled until the 1x line changes by less than the tolerance: that change is the error of the samples before, and an upper
+estimate of the error of the last ones.
 """
 
 from __future__ import annotations
@@ -22,25 +9,24 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import boolean, float64, int64, types, void
+from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.periodic import fourier
+from raceway.core.lanes import WIDTH, any_of, live_of, put, where
+from raceway.core.periodic import fourier, lockstep
 from raceway.core.periodic.extremes import force_extremes
 from raceway.core.periodic.monodromy import span_transfer
-from raceway.core.ring.elimination import copy_matrix, solve
-from raceway.core.ring.kernels.layout import DAMPING, TILT_ARM, TIME_CONSTANT, work_rows
+from raceway.core.ring.elimination import copy_matrix
+from raceway.core.ring.kernels import CONTACT_FORCE
+from raceway.core.ring.kernels.layout import TILT_ARM, work_rows
+from raceway.core.ring.lockstep import ARM, DQ, LOAD, PLACE, SHAFT, WORK_ROWS, Q, gather
 from raceway.core.ring.states import KERNELS, POINTS, STATES
-from raceway.core.signatures import CUBE, LINEAR, MATRIX, VECTOR, Constants, record
+from raceway.core.signatures import CUBE, LINEAR, MATRIX, VECTOR, record
 
-#: Newton's steps of a level, and the last one's size over the motion's.
-_STEPS, _CONVERGED, _ROUNDED = 12, 1e-11, 1e-8
-#: What a neighbour's steps may leave of its motion.
-_LEFT = 1e-13
 #: Change of the stiffness along a motion, over its mean, beyond which no more samples are tried: balls leave their races.
 _WILD = 1.0
-#: Unknowns up to which all harmonics are solved for at once.
-_DENSE = 48
+#: Last step over the motion: of points, and of neighbours whose differences are derivatives.
+_CLOSE, _CLOSER = 1e-11, 1e-13
 
 
 class Orbits(NamedTuple):
@@ -69,302 +55,195 @@ ORBITS = record(
 )
 
 
-@jit(
-    types.Tuple((int64, float64, fourier.LEVEL))(KERNELS, LINEAR, fourier.TURNING, fourier.NUMBERS, MATRIX, MATRIX, MATRIX),
-    allocates=True,
-)
-def _orbit(kernels, linear, turning, numbers, K, ball, work):
-    """Status, change of the 1x line by the last doubling, and samples of the orbit about an equilibrium with the tangent K."""
-    spans, dofs = int(np.round(2.0 * np.pi / turning.span)), np.flatnonzero(linear.free > 0.0)
-    d = dofs.size
-    push, line, before, mean, error = np.empty((2, 5)), np.empty(10), np.zeros(10), np.empty(5), np.inf
-    fourier.force_line(turning, numbers, push, mean)
-    # The 1x line of M q'' + C q' + (K + S) q = F
-    A, speed = np.zeros((10, 11)), numbers.speed
-    for i in range(5):
-        if linear.free[i] == 0.0:
-            A[i, i] = A[5 + i, 5 + i] = 1.0
-            continue
-        for j in range(5):
-            A[i, j] = A[5 + i, 5 + j] = K[i, j] * linear.free[j]
-            A[5 + i, j] = speed * numbers.damping[i, j] * linear.free[j]
-            A[i, 5 + j] = -A[5 + i, j]
-        dynamic_stiffness = (numbers.shaft if i > 2 else 0.0) - speed * speed * numbers.mass[i]
-        A[i, i] += dynamic_stiffness
-        A[5 + i, 5 + i] += dynamic_stiffness
-        A[i, 10], A[5 + i, 10] = push[0, i], push[1, i]
-    solve(A)
-    for i in range(10):
-        line[i] = A[i, 10]
-    n, u = turning.least, np.empty((turning.least, 5))
-    fourier.first_guess(numbers.centre, line, turning, u)
-    while True:
-        start, dense = u.copy(), n * d <= _DENSE
-        level = _level(u, ball, spans, turning.span, dense, d)
-        status, step, _ = _solve_orbit(kernels, turning, numbers, level, work, dofs)
-        if status != fourier.SOLVED and not dense and n * d <= 4 * _DENSE:
-            copy_matrix(start, u)
-            level = _level(u, ball, spans, turning.span, True, d)
-            status, step, _ = _solve_orbit(kernels, turning, numbers, level, work, dofs)
-        if status != fourier.SOLVED:
-            break
-        fourier.harmonic_lines(level.u, turning.sense, mean, line)
-        error = max(fourier.line_difference(line, before), step)
-        if error <= turning.tolerance:
-            break
-        before[:] = line
-        if 2 * n > turning.most or fourier.stiffness_change(level.A0) > _WILD:
-            status = fourier.UNRESOLVED
-            break
-        u = np.empty((2 * n, 5))
-        fourier.at_twice_the_angles(level.u, u)
-        n *= 2
-    return status, error, level
-
-
-@jit(void(fourier.TURNING, fourier.NUMBERS, fourier.LEVEL, int64, float64, int64, ORBITS), allocates=True)
-def _report(turning, numbers, level, status, error, p, out):
-    """One point's answer."""
-    push, force = np.empty((2, 5)), np.empty(5)
-    fourier.force_line(turning, numbers, push, force)
-    fourier.harmonic_lines(level.u, turning.sense, out.mean[p], out.line[p])
-    out.status[p], out.error[p], out.samples[p], out.change[p] = (
-        status,
-        error,
-        level.u.shape[0],
-        fourier.stiffness_change(level.A0),
-    )
-    out.span[p] = turning.span
+@jit(void(fourier.TURNING, MATRIX, MATRIX, int64, float64, int64, ORBITS), allocates=True)
+def _report(turning, u, force, status, error, p, out):
+    """One point's answer from its motion u (n, 5) and contact forces (n, 2 Z)."""
+    push = np.empty((2, 5))
+    fourier.force_line(turning, p, push)
+    fourier.harmonic_lines(u, turning.sense, out.mean[p], out.line[p])
+    out.status[p], out.error[p], out.samples[p], out.span[p] = status, error, u.shape[0], turning.span
     # Rms of what is neither mean nor 1x, over that of 1x, radially
     mean = out.mean[p]
     line = out.line[p]
-    n, square, size = level.u.shape[0], 0.0, 0.0
+    n, square, size = u.shape[0], 0.0, 0.0
     for i in range(3):
         size += 0.5 * (line[i] ** 2 + line[5 + i] ** 2)
     for j in range(n):
         angle = 2.0 * np.pi * j / n
         for i in (1, 2):
             synchronous = line[i] if turning.sense != 0.0 else line[i] * np.cos(angle) - line[5 + i] * np.sin(angle)
-            square += (level.u[j, i] - mean[i] - synchronous) ** 2 / n
+            square += (u[j, i] - mean[i] - synchronous) ** 2 / n
     out.residual[p] = np.sqrt(square / max(size, 1e-300))
-    force_extremes(
-        level.force, turning.order, int(np.round(2.0 * np.pi / turning.span)), out.peak[p], out.least[p], out.turn[p]
-    )
+    force_extremes(force, turning.order, int(np.round(2.0 * np.pi / turning.span)), out.peak[p], out.least[p], out.turn[p])
     for i in range(5):
         out.force[p, i], out.force[p, 5 + i] = push[0, i], push[1, i]
 
 
-@jit(void(KERNELS, LINEAR, POINTS, STATES, fourier.TURNING, ORBITS), allocates=True, releases=True)
-def orbits(kernels, linear, points, states, turning, out):
-    """The steady orbit of every point whose equilibrium in ``states`` has the status 0."""
-    z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
-    work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
-    for p in range(points.table.shape[0]):
-        out.status[p] = states.status[p]
-        if states.status[p] != 0:
-            continue
-        numbers = _orbit_numbers(linear, points, states, turning, p, weight)
-        status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[p], states.ball[p], work)
-        _report(turning, numbers, level, status, error, p, out)
-        if status == fourier.SOLVED and out.transfer.shape[1] > 0:
-            mass = numbers.speed**2 * numbers.mass
-            if not span_transfer(level.A0, level.A1, mass, dofs, turning.span, out.transfer[p]):
-                out.status[p] = fourier.NOT_SOLVED
-
-
-@jit(
-    types.Tuple((int64, float64))(KERNELS, fourier.TURNING, fourier.NUMBERS, fourier.LEVEL, MATRIX, MATRIX, int64[::1]),
-    allocates=True,
-)
-def _by_chords(kernels, turning, numbers, level, inverse, work, dofs):
-    """Status and last step over the motion, from a neighbour's motion in a level with the inverse of its derivatives."""
-    n, d, before = level.u.shape[0], dofs.size, 0.0
-    right = np.empty(n * d)
-    for count in range(4 * _STEPS):
-        if not fourier.orbit_imbalances(kernels, turning, numbers, level, work):
-            return fourier.NOT_SOLVED, np.inf
+@jit(void(int64, int64, POINTS, STATES, fourier.TURNING, lockstep.BLOCK), allocates=True)
+def _put_loads(n, first, points, states, turning, block):
+    """Loads and equilibria of a block's points, seen from the frame, at n samples."""
+    force, answer, stride = np.empty(5), np.empty(5), block.rows.shape[0] // n
+    for lane in range(WIDTH):
+        p = min(first + lane, states.status.size - 1)
         for j in range(n):
-            for a in range(d):
-                right[j * d + a] = -level.r[j, dofs[a]]
+            angle, row = turning.span * j / n, block.rows[j * stride]
+            turning.force(angle / turning.speed[p], turning.params[p], force)
             for i in range(5):
-                level.r[j, i] = 0.0
-        for row in range(n * d):
-            total = 0.0
-            for column in range(n * d):
-                total += inverse[row, column] * right[column]
-            level.r[row // d, dofs[row % d]] = total
-        step, size = _apply_step(level, turning, numbers)
-        if not step < 1e-2:
-            return fourier.NOT_SOLVED, np.inf
-        if numbers.damped:
-            fourier.ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
-        # What is left is the last step times the rate at which steps fall.
-        left = step if count == 0 else min(step, step * step / before)
-        converged = left <= _LEFT * size or (count > 0 and step <= _ROUNDED * size and step > 0.5 * before)
-        if converged and (count > 2 or not numbers.damped):
-            return fourier.SOLVED, step / max(size, 1e-300)
-        before = step
-    return fourier.NOT_SOLVED, np.inf
+                force[i] += points.load[p, i]
+            fourier.turn_vector(-turning.sense * angle, force, answer)
+            for i in range(5):
+                row[LOAD + i, lane] = answer[i]
+            fourier.turn_vector(-turning.sense * angle, states.q[p], answer)
+            for i in range(5):
+                row[lockstep.CENTRE + i, lane] = answer[i]
 
 
-@jit(void(KERNELS, LINEAR, POINTS, STATES, fourier.TURNING, ORBITS), allocates=True, releases=True)
-def neighbours(kernels, linear, points, states, turning, out):
-    """The same of points next to the first one: its samples, and steps by the derivatives of its imbalance."""
-    z, dofs, weight = points.table.shape[1], np.flatnonzero(linear.free > 0.0), np.empty(5)
-    work = np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z))
-    out.status[:] = fourier.NOT_SOLVED
-    numbers = _orbit_numbers(linear, points, states, turning, 0, weight)
-    status, error, level = _orbit(kernels, linear, turning, numbers, states.stiffness[0], states.ball[0], work)
-    n, d = level.u.shape[0], dofs.size
-    if status != fourier.SOLVED or n * d > 4 * _DENSE:
-        return
-    _report(turning, numbers, level, status, error, 0, out)
-    inverse, J = np.empty((n * d, n * d)), np.zeros((n * d, 2 * n * d))
-    fourier.orbit_jacobian(level, numbers.mass, numbers.speed, dofs, J)
-    for row in range(n * d):
-        J[row, n * d + row] = 1.0
-    if not solve(J):
-        return
-    inverse[:] = J[:, n * d :]
-    u, ball, rate, shift, answer = level.u.copy(), level.ball.copy(), level.ball_rate.copy(), np.empty(5), np.empty(5)
-    for p in range(1, points.table.shape[0]):
-        if states.status[p] != 0:
-            continue
-        numbers = _orbit_numbers(linear, points, states, turning, p, weight)
+@jit(boolean(KERNELS, boolean, LINEAR, int64, POINTS, STATES, fourier.TURNING, MATRIX, lockstep.BLOCK), allocates=True)
+def _begin(kernels, alone, linear, first, points, states, turning, like, block):
+    """The least samples of a block's points, to which balls follow from the equilibrium; whether the law lets them, which has no rates.
+
+    like : motion (n, 5) about the first point's equilibrium that all begin with, or (0, 5): each with its linear response
+    """
+    n, sense, work, rows, shared = turning.least, turning.sense, block.work, block.rows, block.shared
+    line, u, stride, moved = np.empty(10), np.empty((turning.least, 5)), block.rows.shape[0] // turning.least, np.empty(5)
+    if not alone:
+        gather(first, points, block.params, work[0], rows[0])
+    for lane in range(WIDTH):
+        p = min(first + lane, states.status.size - 1)
+        rows[0, SHAFT, lane], rows[0, ARM, lane] = points.shaft[p], points.scalars[p, TILT_ARM]
         for i in range(5):
-            shift[i] = states.q[p, i] - states.q[0, i]
-        for j in range(n):  # along with the equilibrium
-            fourier.turn_vector(-turning.sense * turning.span * j / n, shift, answer)
-            for i in range(5):
-                level.u[j, i] = u[j, i] + answer[i]
-        level.ball[:], level.ball_rate[:] = ball, rate
-        status, error = _by_chords(kernels, turning, numbers, level, inverse, work, dofs)
-        _report(turning, numbers, level, status, error, p, out)
-
-
-@jit(boolean(fourier.LEVEL, VECTOR, float64, int64[::1]))
-def _orbit_step(level, mass, speed, dofs):
-    """u of all samples by Newton's method; False where the matrix is singular."""
-    n, d, J = level.u.shape[0], dofs.size, level.J
-    fourier.orbit_jacobian(level, mass, speed, dofs, J)
-    for j in range(n):
-        for a in range(d):
-            J[j * d + a, n * d] = -level.r[j, dofs[a]]
-    if not solve(J):
+            rows[0, Q + i, lane], rows[0, DQ + i, lane] = states.q[p, i], 0.0
+        if not alone:
+            for k in range(points.table.shape[1]):
+                for c in range(2):
+                    work[0, PLACE, (c * points.table.shape[1] + k) * WIDTH + lane] = states.ball[p, k, c]
+        for i in range(50):
+            rows[0, lockstep.TANGENT + i, lane] = 0.0
+    if not alone and any_of(lockstep.forces(kernels.law, 1, block)[1]):
         return False
-    for j in range(n):
-        for i in range(5):
-            level.r[j, i] = 0.0
-        for a in range(d):
-            level.r[j, dofs[a]] = J[j * d + a, n * d]
-    return True
-
-
-@jit(boolean(fourier.LEVEL, VECTOR, float64, float64, int64[::1]), allocates=True)
-def _harmonic_step(level, mass, speed, wave, dofs):
-    """The same with the mean of A0 and A1 over the samples: each harmonic by itself.  ``wave`` : 2 pi over the span."""
-    n, d = level.u.shape[0], dofs.size
-    A0, A1, step = np.zeros((5, 5)), np.zeros((5, 5)), np.zeros((n, 5))
-    for j in range(n):
-        for i in range(5):
-            for k in range(5):
-                A0[i, k] += level.A0[j, i, k] / n
-                A1[i, k] += level.A1[j, i, k] / n
-    cosine, sine, M = np.empty(n), np.empty(n), np.empty((2 * d, 2 * d + 1))
-    for j in range(n):
-        cosine[j], sine[j] = np.cos(2.0 * np.pi * j / n), np.sin(2.0 * np.pi * j / n)
-    for h in range(n // 2 + 1):
-        along = 0.0 if h == n // 2 else wave * h
-        for a in range(d):
-            i = dofs[a]
-            for b in range(d):
-                k = dofs[b]
-                M[a, b] = M[d + a, d + b] = A0[i, k] - (speed * speed * mass[i] * (wave * h) ** 2 if i == k else 0.0)
-                M[a, d + b], M[d + a, b] = -along * A1[i, k], along * A1[i, k]
-            re, im = 0.0, 0.0
-            for j in range(n):
-                re -= cosine[h * j % n] * level.r[j, i]
-                im += sine[h * j % n] * level.r[j, i]
-            M[a, 2 * d], M[d + a, 2 * d] = re / n, im / n
-        if not solve(M):
-            return False
-        times = 1.0 if h in (0, n // 2) else 2.0
+    for j in range(n - 1, -1, -1):
+        if j > 0:
+            copy_matrix(rows[0], rows[j * stride])
+        if not alone:
+            copy_matrix(work[0], work[j * stride])
+            lockstep.turn_directions(sense * turning.span * j / n, work[0], work[j * stride])
+    _put_loads(n, first, points, states, turning, block)
+    for lane in range(WIDTH):
+        p = min(first + lane, states.status.size - 1)
+        w = turning.speed[p]
+        if len(like) == 0:
+            fourier.linear_response(linear, points, states, turning, p, u)
         for j in range(n):
-            for a in range(d):
-                step[j, dofs[a]] += times * (cosine[h * j % n] * M[a, 2 * d] - sine[h * j % n] * M[d + a, 2 * d])
-    copy_matrix(step, level.r)
-    return True
-
-
-@jit(fourier.LEVEL(MATRIX, MATRIX, int64, float64, boolean, int64), allocates=True)
-def _level(u, ball, spans, span, dense, d):
-    """Arrays for the samples u (n, 5), balls beginning at their places (Z, b) of the equilibrium."""
-    n, (z, columns) = u.shape[0], ball.shape
-    level = fourier.Level(
-        u, np.empty((n, 5)), np.empty((n, 5)), np.empty((n, 5)), np.empty((n, 5, 5)), np.empty((n, 5, 5)),
-        np.empty((n, z, columns)), np.zeros((n, z, columns)), np.empty((n, 2 * z)), np.empty(n), np.empty(n), np.empty(2 * n * spans),
-        np.zeros((n * d, n * d + 1) if dense else (1, 2)),
-    )  # fmt: skip
-    fourier.circulants(n, span, level.d1, level.d2)
-    fourier.circulants(n * spans, 2.0 * np.pi, level.turn[: n * spans], np.empty(n * spans))
-    level.turn[n * spans :] = level.turn[: n * spans]
-    for j in range(n):
-        copy_matrix(ball, level.ball[j])
-    return level
-
-
-@jit(types.UniTuple(float64, 2)(fourier.LEVEL, fourier.TURNING, fourier.NUMBERS))
-def _apply_step(level, turning, numbers):
-    """Add the step in r to u; size of the step, and of the motion about the equilibrium."""
-    centre, weight = numbers.centre, numbers.weight
-    n, step, size = level.u.shape[0], 0.0, 0.0
-    for j in range(n):
-        angle = -turning.sense * turning.span * j / n
-        c, s = np.cos(angle), np.sin(angle)
+            if len(like) > 0:
+                for i in range(5):
+                    line[i] = states.q[p, i] - states.q[0, i]
+                fourier.turn_vector(-sense * turning.span * j / n, line, moved)
+                for i in range(5):
+                    u[j, i] = like[j, i] + moved[i]
+            for i in range(5):
+                rows[j * stride, Q + i, lane] = u[j, i]
+                rows[j * stride, DQ + i, lane] = u[j, i] - rows[j * stride, lockstep.CENTRE + i, lane]
         for i in range(5):
-            level.u[j, i] += level.r[j, i]
-            step = max(step, abs(level.r[j, i]) * weight[i]) if np.isfinite(level.r[j, i]) else np.inf
-        for i in (1, 3):  # the equilibrium seen from the frame
-            y, z = c * centre[i] - s * centre[i + 1], s * centre[i] + c * centre[i + 1]
-            size = max(size, max(abs(level.u[j, i] - y), abs(level.u[j, i + 1] - z)) * weight[i])
-    return step, size
+            shared[lockstep.MASS + i, lane] = w * w * turning.mass[p, i]
+            for m in range(5):
+                shared[lockstep.DAMPED + 5 * i + m, lane] = w * turning.damping[p, i, m]
+    lockstep.put_fixed(sense, rows[0], shared)
+    return True
 
 
 @jit(
-    types.Tuple((int64, float64, float64))(KERNELS, fourier.TURNING, fourier.NUMBERS, fourier.LEVEL, MATRIX, int64[::1]),
+    void(KERNELS, boolean, LINEAR, int64, int64, POINTS, STATES, fourier.TURNING, MATRIX, lockstep.BLOCK, ORBITS),
     allocates=True,
 )
-def _solve_orbit(kernels, turning, numbers, level, work, dofs):
-    """Status, last step over the motion, and the motion's size [m], of the orbit with a level's samples."""
-    dense, before, size = level.J.shape[0] > 1, np.inf, 0.0
-    wave = 2.0 * np.pi / turning.span
-    for count in range(_STEPS if dense else 4 * _STEPS):
-        if not fourier.orbit_imbalances(kernels, turning, numbers, level, work):
-            return fourier.NOT_SOLVED, np.inf, size
-        if dense:
-            fine = _orbit_step(level, numbers.mass, numbers.speed, dofs)
-        else:
-            fine = _harmonic_step(level, numbers.mass, numbers.speed, wave, dofs)
-        step, size = _apply_step(level, turning, numbers)
-        if not fine or not step < 1e-2 or not size < 1e-2:
-            return fourier.NOT_SOLVED, np.inf, size
-        if numbers.damped:
-            fourier.ball_rates(level.ball, turning.order, level.turn, numbers.speed, level.ball_rate)
-        converged = step <= _CONVERGED * size or (step <= _ROUNDED * size and step > 0.5 * before)
-        if converged and (count > 2 or not numbers.damped):
-            return fourier.SOLVED, step / max(size, 1e-300), size
-        before = step
-    return fourier.NOT_SOLVED, np.inf, size
+def _solve_block(kernels, alone, linear, first, end, points, states, turning, like, block, out):
+    """The orbits of those of ``WIDTH`` points from ``first`` on, before ``end``, that are not solved; alone: see ``lockstep.forces_alone``."""
+    n, live, dofs, shared = turning.least, live_of(0, WIDTH), np.flatnonzero(linear.free > 0.0), block.shared
+    line, mean, before, pending = np.empty(10), np.empty(5), np.zeros((WIDTH, 10)), np.zeros(WIDTH)
+    for p in range(first, min(first + WIDTH, end)):
+        pending[p - first] = states.status[p] == 0 and out.status[p] != 0 and (alone or not lockstep.dampers(points, p))
+    if pending.max() == 0.0 or not _begin(kernels, alone, linear, first, points, states, turning, like, block):
+        return
+    while True:
+        for lane in range(WIDTH):
+            shared[lockstep.WANTED, lane] = pending[lane]
+        closeness = _CLOSE if len(like) == 0 else _CLOSER
+        done, steps, change = lockstep.solve_level(kernels, alone, n, first, points, states, turning, dofs, closeness, block)
+        put(shared, lockstep.ANSWER, 0, live, where(done, steps, np.inf))
+        put(shared, lockstep.ANSWER + 1, 0, live, change)
+        u, stride = np.empty((n, 5)), block.rows.shape[0] // n
+        for lane in range(WIDTH):
+            if pending[lane] == 0.0:
+                continue
+            p, error = first + lane, shared[lockstep.ANSWER, lane]
+            for j in range(n):
+                for i in range(5):
+                    u[j, i] = block.rows[j * stride, Q + i, lane]
+            solved = error < np.inf
+            if solved and len(like) == 0:
+                fourier.harmonic_lines(u, turning.sense, mean, line)
+                square, size = 0.0, 1e-300
+                for i in range(10):
+                    if i in (1, 2, 6, 7):
+                        square, size = square + (line[i] - before[lane, i]) ** 2, size + line[i] ** 2
+                    before[lane, i] = line[i]
+                error = max(np.sqrt(square / size), error)
+            out.change[p] = shared[lockstep.ANSWER + 1, lane]
+            if solved and error > turning.tolerance and 2 * n <= turning.most and out.change[p] <= _WILD:
+                continue
+            pending[lane] = 0.0
+            A0, A1, force = np.empty((n, 5, 5)), np.empty((n, 5, 5)), np.empty((n, 2 * points.table.shape[1]))
+            for j in range(n):
+                row = block.rows[j * stride]
+                for i in range(5):
+                    for m in range(5):
+                        at = 5 * i + m
+                        A0[j, i, m] = row[lockstep.TANGENT + at, lane] + shared[lockstep.FIXED + at, lane]
+                        A1[j, i, m] = row[lockstep.VISCOUS + at, lane] + shared[lockstep.BY_RATE + at, lane]
+                for k in range(force.shape[1]):
+                    force[j, k] = max(block.work[j * stride, CONTACT_FORCE, k * WIDTH + lane], 0.0)
+            status = fourier.SOLVED if error <= turning.tolerance else fourier.UNRESOLVED if solved else fourier.NOT_SOLVED
+            _report(turning, u, force, status, error, p, out)
+            if status == fourier.SOLVED and out.transfer.shape[1] > 0:
+                mass = turning.speed[p] ** 2 * turning.mass[p]
+                if not span_transfer(A0, A1, mass, dofs, turning.span, out.transfer[p]):
+                    out.status[p] = fourier.NOT_SOLVED
+        if pending.max() == 0.0:
+            break
+        lockstep.double(n, alone, turning.sense, turning.span, block)
+        n *= 2
+        _put_loads(n, first, points, states, turning, block)
 
 
-@jit(fourier.NUMBERS(LINEAR, POINTS, STATES, fourier.TURNING, int64, VECTOR), allocates=True)
-def _orbit_numbers(linear, points, states, turning, p, weight):
-    """Of one point; ``weight`` is filled in."""
-    constants = Constants(points.scalars[p], points.table[p])
-    weight[:3] = 1.0
-    weight[3] = weight[4] = constants.scalars[TILT_ARM]
-    damping = constants.scalars[DAMPING] != 0.0 or constants.scalars[TIME_CONSTANT] != 0.0
-    return fourier.Numbers(
-        constants, points.params[p], points.load[p], turning.mass[p], turning.damping[p], points.shaft[p], turning.speed[p],
-        turning.params[p], damping, states.q[p], weight,
+@jit(void(KERNELS, LINEAR, POINTS, STATES, fourier.TURNING, boolean, ORBITS), allocates=True, releases=True)
+def orbits(kernels, linear, points, states, turning, near, out):
+    """The steady orbit of every point whose equilibrium in ``states`` has the status 0; others keep theirs.
+
+    near : all points lie next to the first one, and begin from its motion with its samples: their differences are derivatives
+    """
+    count, most = states.status.size, turning.most
+    for p in range(count):
+        out.status[p] = states.status[p] if states.status[p] != 0 else fourier.NOT_SOLVED
+    z, like, own = points.table.shape[1], np.empty((0, 5)), turning
+    block = lockstep.Block(
+        np.empty((2 * z * WIDTH, points.params.shape[2])), np.zeros((2 * z * WIDTH, 0)), np.zeros((most, WORK_ROWS, 2 * z * WIDTH)),
+        np.zeros((most, lockstep.ROWS, WIDTH)), np.zeros((2 * lockstep.COLUMNS + 3, 5 * most, WIDTH)),
+        np.zeros((lockstep.SHARED_ROWS, WIDTH)), np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z)),
     )  # fmt: skip
+    first, end = 0, 1 if near else count
+    while first < count:
+        for p in range(first, end, WIDTH):
+            for mode in range(0 if kernels.lanes else 1, 2):
+                _solve_block(kernels, mode > 0, linear, p, end, points, states, own, like, block, out)
+        if near and out.status[0] != fourier.SOLVED:
+            break
+        if first < end < count:
+            n = out.samples[0]
+            like = np.empty((n, 5))
+            for j in range(n):
+                for i in range(5):
+                    like[j, i] = block.rows[j * (most // n), Q + i, 0]
+            own = fourier.Turning(
+                turning.force, turning.params, turning.speed, turning.damping, turning.mass, turning.sense, turning.span,
+                turning.order, n, most, 1e300,
+            )  # fmt: skip
+        first, end = end, count

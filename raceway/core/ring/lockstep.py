@@ -52,7 +52,7 @@ _LONGEST = 0.1
 
 
 @jit(void(int64, POINTS, MATRIX, MATRIX, MATRIX))
-def _gather(first, points, params, work, of_points):
+def gather(first, points, params, work, of_points):
     """The numbers of the block's points into lanes; behind the last point it stands again."""
     n, z = points.table.shape[:2]
     for lane in range(WIDTH):
@@ -71,11 +71,11 @@ def _gather(first, points, params, work, of_points):
             rest_a = scalars[ring.REST_AXIAL] + (table[k, ring.OWN_REST_AXIAL] + table[k, ring.SHIFT])
             rest_r = scalars[ring.REST_RADIAL] + table[k, ring.OWN_REST_RADIAL]
             turn = q[3] * sine - q[4] * cosine
-            centre = Pair(rest_a + side * (q[0] + reach * turn), rest_r + q[1] * cosine + q[2] * sine - lever * turn)
+            middle = Pair(rest_a + side * (q[0] + reach * turn), rest_r + q[1] * cosine + q[2] * sine - lever * turn)
             work[DIRECTION, c], work[DIRECTION, o], work[SEAT, c], work[SEAT, o] = cosine, sine, side, lever
             work[REACH, c], work[REACH, o], work[REST, c], work[REST, o] = reach, table[k, ring.CENTRIFUGAL], rest_a, rest_r
             work[OFFSET, c], work[OFFSET, o] = ring.offsets_of(k, scalars, table)
-            work[PLACE, c], work[PLACE, o] = ring.first_place(k, centre.axial, centre.radial, scalars, table)
+            work[PLACE, c], work[PLACE, o] = ring.first_place(k, middle.axial, middle.radial, scalars, table)
             for row in range(STEP, BY_CENTRE + 2):
                 work[row, c] = work[row, o] = 0.0
             for i in range(params.shape[1]):
@@ -83,14 +83,14 @@ def _gather(first, points, params, work, of_points):
 
 
 @jit(ring.SEATS(int64, MASK, MATRIX), inline=True)
-def _seats(k, live, work):
+def seats(k, live, work):
     """The seats of ball k / WIDTH of each point."""
     (c, s), (side, lever) = pair_of(work, DIRECTION, k, live), pair_of(work, SEAT, k, live)
     return Seat(c, s, take(work, REACH, k, live), side, lever)
 
 
 @jit(LANES_PAIR(ring.SEATS, MATRIX, int64, MASK), inline=True)
-def _centre(seat, of_points, row, live):
+def centre(seat, of_points, row, live):
     """J q, or J dq: how far the inner groove centre moves (axial, radial)."""
     c, s, reach, side, lever = seat
     turn = take(of_points, row + 3, 0, live) * s - take(of_points, row + 4, 0, live) * c
@@ -99,11 +99,11 @@ def _centre(seat, of_points, row, live):
 
 
 @jit(void(int64, MASK, MATRIX, MATRIX), inline=True)
-def _follow(k, live, of_points, work):
+def follow(k, live, of_points, work):
     """Move balls with the ring's step and by their own, and see how far their contacts approach."""
-    seat = _seats(k, live, work)
+    seat = seats(k, live, work)
     (ra, rr), (li, lo) = pair_of(work, REST, k, live), pair_of(work, OFFSET, k, live)
-    (ea, er), (da, dr) = _centre(seat, of_points, Q, live), _centre(seat, of_points, DQ, live)
+    (ea, er), (da, dr) = centre(seat, of_points, Q, live), centre(seat, of_points, DQ, live)
     (sa, sr), t, (pa, pr) = pair_of(work, STEP, k, live), tensors_of(work, BY_CENTRE, k, live), pair_of(work, PLACE, k, live)
     sa, sr = sa + t.aa * da + t.ar * dr, sr + t.ra * da + t.rr * dr
     size, most = larger(sa, -sa) + larger(sr, -sr), 0.2 * lo
@@ -152,7 +152,7 @@ def _contacts(k, live, work):
     types.Tuple((LANES_PAIR, LANES_TENSOR, LANES, LANES_PAIR, LANES, MASK))(int64, MASK, boolean, at.ROLLING, MATRIX),
     inline=True,
 )
-def _eliminated(k, live, rolls, rolling, work):
+def eliminated(k, live, rolls, rolling, work):
     """What a ball does to the ring, its own place eliminated; its next step stays in ``work``.
 
     That is its force [N] with the tangent by e, its couple [N m] with that, the size of its contacts' forces, and whether it still moves.
@@ -248,6 +248,16 @@ def _scatter(first, work, of_points, states):
             states.force[p, k], states.force[p, z + k] = work[rows.CONTACT_FORCE, c], work[rows.CONTACT_FORCE, o]
 
 
+@jit(at.ROLLING(MATRIX, MASK), inline=True)
+def rolling_of(of_points, live):
+    """What the moments of the points' balls hang on."""
+    return Rolling(
+        take(of_points, ROLLS, 0, live), take(of_points, ROLLS + 1, 0, live), take(of_points, ROLLS + 2, 0, live),
+        take(of_points, ROLLS + 3, 0, live), take(of_points, ROLLS + 4, 0, live), take(of_points, ROLLS + 5, 0, live),
+        take(of_points, ROLLS + 6, 0, live),
+    )  # fmt: skip
+
+
 @jit(boolean(LAW_POINTER, LINEAR, int64, POINTS, STATES, MATRIX, MATRIX, MATRIX, MATRIX))
 def lockstep(law, linear, first, points, states, params, memory, work, of_points):
     """The states of ``WIDTH`` points from ``first`` on, without their damping; whether the law depends on rates.
@@ -255,12 +265,8 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
     Their status is 0, or -1 where the iteration did not end.
     """
     live, end, free = live_of(0, WIDTH), WIDTH * points.table.shape[1], linear.free
-    _gather(first, points, params, work, of_points)
-    rolling = Rolling(
-        take(of_points, ROLLS, 0, live), take(of_points, ROLLS + 1, 0, live), take(of_points, ROLLS + 2, 0, live),
-        take(of_points, ROLLS + 3, 0, live), take(of_points, ROLLS + 4, 0, live), take(of_points, ROLLS + 5, 0, live),
-        take(of_points, ROLLS + 6, 0, live),
-    )  # fmt: skip
+    gather(first, points, params, work, of_points)
+    rolling = rolling_of(of_points, live)
     turn, rolls, none = any_of(~(rolling.scale == 0.0)), False, spread(0.0)
     arm, loads = take(of_points, ARM, 0, live), spread(0.0)
     for i in range(5):
@@ -270,15 +276,15 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
     most = _LONGEST * (larger(rest_a, -rest_a) + larger(rest_r, -rest_r))
     for _ in range(_ITERATIONS):
         for k in range(0, end, WIDTH):
-            _follow(k, live, of_points, work)
+            follow(k, live, of_points, work)
         law(
             work[rows.GAP], work[rows.GAP_RATE], params, memory, memory, 0.0,
             work[rows.CONTACT_FORCE], work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE],
         )  # fmt: skip
         force, tangent, size, moves = no_force(), no_tangent(), loads, ~live
         for k in range(0, end, WIDTH):
-            seat = _seats(k, live, work)
-            own, stiffness, couple, by_centre, forces, moving = _eliminated(k, live, rolls, rolling, work)
+            seat = seats(k, live, work)
+            own, stiffness, couple, by_centre, forces, moving = eliminated(k, live, rolls, rolling, work)
             force = with_force(force, seat, own.axial, own.radial, couple)
             tangent = with_tangent(tangent, seat, stiffness, Pair(none, none), by_centre, none)
             size, moves = size + forces, moves | moving
