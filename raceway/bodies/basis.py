@@ -73,18 +73,9 @@ def make_basis(problem: Problem, meshed: bool = False) -> Basis:
         pairs = [geometry.ellipses(modulus) for geometry in geometries]
         inner, outer = (every([pair[race] for pair in pairs], row) for race in (0, 1))
     axial, ball_load = problem.axial_approach
-    return Basis(
-        geometries[0],
-        geometries,
-        modulus,
-        inner,
-        outer,
-        np.concatenate(azimuth, axis=-1),
-        row,
-        axial,
-        largest(ball_load, 1.0),
-        growth_of(problem.running, row),
-    )
+    balls = np.concatenate(azimuth, axis=-1), row
+    load, growth = largest(ball_load, 1.0), growth_of(problem.running, row)
+    return Basis(geometries[0], geometries, modulus, inner, outer, *balls, axial, load, growth)
 
 
 def growth_of(running: RunningBearing, row: np.ndarray) -> Growth:

@@ -136,10 +136,8 @@ class Command(NamedTuple):
         if "plugins" in signature.parameters:
             command = plugin_files(command)
         if self.pictures is not None:
-            names, words_of_it = ("--pictures/--no-pictures", " (default)") if self.pictures else ("--pictures", "")
-            command = click.option(names, is_flag=True, default=self.pictures, help=f"Draw pictures as PNG{words_of_it}.")(
-                command
-            )
+            names, usual = ("--pictures/--no-pictures", " (default)") if self.pictures else ("--pictures", "")
+            command = click.option(names, is_flag=True, default=self.pictures, help=f"Draw pictures as PNG{usual}.")(command)
         if self.pictures is not None or self.folder is not None:
             title = self.named_by.upper() or "TITLE"
             default = f"{RESULTS}/{title}{self.folder}" if "scene" in signature.parameters else f"{RESULTS}/{self.name}"
@@ -174,37 +172,23 @@ class Command(NamedTuple):
         text = about.help or _option_help(words)
         if kind == "bool":
             name = flags[0].removeprefix("--")
-            return click.option(
-                f"--{name}/--no-{name}" if default is True else flags[0],
-                parameter.name,
-                default=default,
-                is_flag=True,
-                help=text,
-            )
+            switch = f"--{name}/--no-{name}" if default is True else flags[0]
+            return click.option(switch, parameter.name, default=default, is_flag=True, help=text)
         if "Iterable[" in kind:
-            is_required = parameter.default is inspect.Parameter.empty
+            needed = parameter.default is inspect.Parameter.empty
             several = f"{text.removesuffix('.')}; repeat for more."
             of = _TYPES.get(kind.partition("Iterable[")[2].partition("]")[0], str)
+            keys = scene_keys if parameter.name in OF_KEYS else None
             return click.option(
-                *flags,
-                type=of,
-                multiple=True,
-                required=is_required,
-                metavar=about.metavar,
-                help=several,
-                shell_complete=scene_keys if parameter.name in OF_KEYS else None,
+                *flags, type=of, multiple=True, required=needed, metavar=about.metavar, help=several, shell_complete=keys
             )
         empty = default is inspect.Parameter.empty
         # None too is a value to click, also of what is required.
         start: dict[str, Any] = {} if empty else {"default": default}
+        value = click.Choice(about.choices) if about.choices else _TYPES.get(kind, str)
+        shown = not empty and default is not None
         return click.option(
-            *flags,
-            type=click.Choice(about.choices) if about.choices else _TYPES.get(kind, str),
-            metavar=about.metavar,
-            required=empty,
-            show_default=not empty and default is not None,
-            help=text,
-            **start,
+            *flags, type=value, metavar=about.metavar, required=empty, show_default=shown, help=text, **start
         )
 
 

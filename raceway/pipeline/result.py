@@ -513,16 +513,8 @@ def _identified_facts(result: Result) -> list[Fact]:
     if band is not None:
         remark = "both ends of the band of time constants; other numbers are of the low end"
         damping = C.label, C.span(band[C.name], 3), remark
-    rows = [
-        stated(K, {"uncertainty": result.uncertainty}),
-        damping,
-        Z.fact(result, speed),
-        (
-            "orbit",
-            f"{in_micro(z.orbit_major)} x {in_micro(z.orbit_minor)} µm",
-            "semi-axes of the synchronous (1x) component",
-        ),
-    ]
+    orbit = f"{in_micro(z.orbit_major)} x {in_micro(z.orbit_minor)} µm", "semi-axes of the synchronous (1x) component"
+    rows = [stated(K, {"uncertainty": result.uncertainty}), damping, Z.fact(result, speed), ("orbit", *orbit)]
     rows = [(name, "not resolved" if result.errors.unresolved else value, remark) for name, value, remark in rows]
     error = "not estimated" if total is None else f"{total:.1e}"
     absolute = "" if total is None else f", of K {K.text(result.equivalent_stiffness_error, 2)}"

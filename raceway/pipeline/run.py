@@ -156,15 +156,9 @@ def _run(
     end, processor = working_clock(), working_process_time() - processor
     compile_s = take_compile_seconds()
     bodies = model.bearing.report(model, equilibrium) or None
-    times = {
-        "wall_s": end - start,
-        "cpu_s": processor,
-        "compile_s": compile_s,
-        "compiled_kept": clock["unkept"] == 0,
-        "build_s": max(after_model - start, 0.0),
-        "solve_s": end - after_model - answer.error_s,
-        "error_s": answer.error_s,
-    }
+    times = {"wall_s": end - start, "cpu_s": processor, "compile_s": compile_s, "compiled_kept": clock["unkept"] == 0}
+    solve_s = end - after_model - answer.error_s
+    times |= {"build_s": max(after_model - start, 0.0), "solve_s": solve_s, "error_s": answer.error_s}
     simulation = answer.motions[-1] if answer.motions else None
     quantities = _quantities_of(scene, model, equilibrium, simulation)
     # Each once: a mesh too coarse for its answer comes first, keys without effect last.
@@ -348,14 +342,9 @@ def _drift(motion: Simulation) -> float | None:
 def _environment(problem: Problem, registry: Registry) -> Tables:
     import numba
 
-    plugins = [
-        ("contact_law", problem.contact.kind),
-        ("integrator", problem.integrator.kind),
-        ("identifier", problem.identifier.kind),
-        ("bodies", problem.bodies.name),
-    ]
-    if problem.excitation is not None:
-        plugins.append(("excitation", problem.excitation.name))
+    plugins = [("contact_law", problem.contact.kind), ("integrator", problem.integrator.kind)]
+    plugins += [("identifier", problem.identifier.kind), ("bodies", problem.bodies.name)]
+    plugins += [] if problem.excitation is None else [("excitation", problem.excitation.name)]
     entries = [registry.find(kind, name) for kind, name in plugins]
     return {
         "raceway": __version__,

@@ -79,11 +79,8 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
 
 def _inertia(inertia: ReadTables) -> list[Row]:
     """The slowest motion that is taken to follow at once."""
-    names = {
-        "inner_supported": "inner ring",
-        "outer_supported": "outer ring",
-        "ball_along_grooves": "ball along its grooves",
-    }
+    names = {"inner_supported": "inner ring", "outer_supported": "outer ring"}
+    names["ball_along_grooves"] = "ball along its grooves"
     modes = {word: name for name, word in names.items() if inertia.get(f"{name}_hz") is not None}
     if not modes:
         return []

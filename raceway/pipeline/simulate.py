@@ -229,12 +229,8 @@ def _step_warnings(
 
 def _motion(model: Model, equilibrium: Equilibrium, start: Start, dt: float) -> Motion:
     """The first moment."""
-    q, ball, system, method = (
-        equilibrium.displacement,
-        equilibrium.ball,
-        model.system.at_speed(0.0),
-        model.problem.integrator.method,
-    )
+    q, ball = equilibrium.displacement, equilibrium.ball
+    system, method = model.system.at_speed(0.0), model.problem.integrator.method
     if method.steady:
         # Searched for from the equilibrium: what would happen there under the force at once is of no use.
         return Motion(q, np.zeros(5), np.zeros(5), ball, ball.copy())

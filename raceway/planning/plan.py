@@ -93,10 +93,8 @@ class ScenePlan(Shown):
     def _facts(self) -> tuple[str, list[Fact]]:
         step = "static" if self.time_step_s is None else f"{self.predicted_steps} steps of {self.time_step_s:.3g} s"
         time = "time not known before the mesh is read" if self.at_least else duration(self.predicted_wall_s)
-        head: list[Fact] = [
-            ("predicted", "", f"{time}; {step}; {self.dofs} unknowns"),
-            ("kept", "", ", ".join(part.part for part in self.kept)),
-        ]
+        kept = ", ".join(part.part for part in self.kept)
+        head: list[Fact] = [("predicted", "", f"{time}; {step}; {self.dofs} unknowns"), ("kept", "", kept)]
         return self.problem.scene.title, [*head, *(("left out", "", f"{part.part}: {part.why}") for part in self.left_out)]
 
 

@@ -140,14 +140,8 @@ class Band(Answer):
         return sentences
 
     def _facts(self) -> tuple[str, list[Fact]]:
-        rows = [
-            (
-                name,
-                number(value, quantity_of(name).unit),
-                f"95 % of samples from {self.low[name]:.5g} to {self.high[name]:.5g}",
-            )
-            for name, value in self.nominal.items()
-        ]
+        words = {name: f"95 % of samples from {low:.5g} to {self.high[name]:.5g}" for name, low in self.low.items()}
+        rows = [(name, number(value, quantity_of(name).unit), words[name]) for name, value in self.nominal.items()]
         return self.title, rows
 
     def to_dict(self) -> Tables:
@@ -164,21 +158,11 @@ class Band(Answer):
             for name, value in self.nominal.items()
         }
         varied = [
-            {
-                "key": tolerance.key.path,
-                "value": tolerance.key.value,
-                "unit": tolerance.key.unit,
-                "low": tolerance.low,
-                "high": tolerance.high,
-            }
-            for tolerance in self.tolerances
+            {"key": each.key.path, "value": each.key.value, "unit": each.key.unit, "low": each.low, "high": each.high}
+            for each in self.tolerances
         ]
-        content = {"title": self.title, "quantities": quantities, "tolerances": varied}
-        return dict(
-            without_nan(
-                content | {"samples": self.samples, "lost": self.lost, "why_lost": self.why, "remarks": self.remarks}
-            )
-        )
+        content = {"title": self.title, "quantities": quantities, "tolerances": varied, "samples": self.samples}
+        return dict(without_nan(content | {"lost": self.lost, "why_lost": self.why, "remarks": self.remarks}))
 
     def draw(self) -> Figure:
         """Histograms with their limits, and Sobol indices."""

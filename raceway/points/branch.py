@@ -237,14 +237,10 @@ class Followed(Answer):
         return figure
 
     def _facts(self) -> tuple[str, list[Fact]]:
-        ends = (
-            [
-                (word, f"{row.parameter:.6g}", f"K {1e-6 * row.stiffness:.4g} N/µm")
-                for word, row in zip(("begins", "ends"), (self.rows[0], self.rows[-1]), strict=True)
-            ]
-            if self.rows
-            else []
-        )
+        ends = [
+            (word, f"{row.parameter:.6g}", f"K {1e-6 * row.stiffness:.4g} N/µm")
+            for word, row in zip(("begins", "ends"), (*self.rows[:1], *self.rows[-1:]), strict=False)
+        ]
         special = [(label.kind, f"{label.row.parameter:.6g}", "") for label in self.labels]
         return f"{len(self.rows)} steady orbits over {self.key}\n{self.title.splitlines()[0]}", [*ends, *special]
 
@@ -252,11 +248,8 @@ class Followed(Answer):
         """What was followed, the special points and peaks, the stretches of unstable orbits, how it ends."""
         yield Words(f"{len(self.rows)} steady orbits over {self.key}, {_range(self)}", "bold")
         yield Words(self.title, "dim")
-        points = [
-            ("begins", self.rows[0]),
-            *((label.kind, label.row) for label in self.labels[:_SHOWN]),
-            ("ends", self.rows[-1]),
-        ]
+        labels = ((label.kind, label.row) for label in self.labels[:_SHOWN])
+        points = [("begins", self.rows[0]), *labels, ("ends", self.rows[-1])]
         yield [_line(what, row) for what, row in points]
         if len(self.labels) > _SHOWN:
             yield f"{len(self.labels) - _SHOWN} more special points and peaks are in the file"

@@ -101,13 +101,8 @@ class SweepStore(Store):
         counts, total, blocks = self.counts(), self.design.size, self.costs(str)
         in_loops, refusals = (sum(cost[how.name] for cost in blocks) for how in (PointStatus.COMPUTED, PointStatus.REFUSED))
         finished, failures = counts["done"] - len(blocks) + in_loops, counts["failed"] + refusals
-        return {
-            "waiting": total - finished - failures,
-            "done": finished,
-            "failed": failures,
-            "computed": in_loops,
-            "total": total,
-        }
+        left = total - finished - failures
+        return {"waiting": left, "done": finished, "failed": failures, "computed": in_loops, "total": total}
 
     def rows(self) -> Iterator[Tables]:
         """``{point, status, reason, values, warnings}`` of every point, in the order of the design."""

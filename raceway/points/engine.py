@@ -49,9 +49,7 @@ def identity(registry: Registry, used: Iterable[tuple[str, str]]) -> Tables:
     return {
         "raceway": __version__,
         "python": platform.python_version(),
-        "numpy": version("numpy"),
-        "numba": version("numba"),
-        "scipy": version("scipy"),
+        **{name: version(name) for name in ("numpy", "numba", "scipy")},
         "program": program_key(registry, present),
         "plugins": {f"{e.kind}:{e.name}": f"{e.distribution} {e.version}" for e in entries},
     }

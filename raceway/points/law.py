@@ -197,15 +197,9 @@ class LawCurves(Answer):
         damped = motion.energy != 0.0 or bool(self.damping.any())
 
         def lines(numbers: np.ndarray, rates: bool = True) -> list[Line]:
-            words = [
-                f"{word} at {1e3 * abs(self.rate[k]):.3g} mm/s"
-                for k, word in ((1, "closing"), (2, "opening"))
-                if damped and rates
-            ]
-            return [
-                Line(micro, row, word, 2 * k)
-                for k, (row, word) in enumerate(zip(numbers, ["at rest", *words], strict=False))
-            ]
+            moving = ((1, "closing"), (2, "opening")) if damped and rates else ()
+            words = ["at rest", *(f"{word} at {1e3 * abs(self.rate[k]):.3g} mm/s" for k, word in moving)]
+            return [Line(micro, row, word, 2 * k) for k, (row, word) in enumerate(zip(numbers, words, strict=False))]
 
         force = [*lines(self.force), Line(micro, self.hertz_force, "Hertz", 1)]
         force += [Line(np.array([1e6 * contact.approach]), np.array([contact.load]), "equilibrium", style={"linestyle": ""})]
@@ -218,9 +212,8 @@ class LawCurves(Answer):
             title = f"Cycle at {motion.frequency:.4g} Hz: {1e6 * motion.energy:.3g} µJ lost\nC {motion.damping:.4g} N s/m"
             cycle = Plot((Line(1e6 * motion.approach, motion.force),), x, "force [N]", title)
             rows.append([cycle, Plot(tuple(lines(self.damping)), x, "damping [N s/m]", "Damping: force over rate")])
-        return draw_panels(
-            rows, f"{self.law}, {contact.race} contact of ball {contact.ball}: {self.title.partition(chr(10))[0]}"
-        )
+        first = self.title.partition("\n")[0]
+        return draw_panels(rows, f"{self.law}, {contact.race} contact of ball {contact.ball}: {first}")
 
     def report(self) -> Iterator[Part]:
         """The contact, the law beside Hertz', the cycle."""

@@ -280,13 +280,9 @@ class Precision(Answer):
             value = "none" if row is None else _time_of(row)
             words = "" if row is None else _words_of(row["setting"])
             facts.append((f"cheapest within {100.0 * float(threshold):g} %", value, words))
-        front = set(self.front(self.base))
+        marks = dict.fromkeys(self.front(self.base), "on the front, ")
         rows = [
-            (
-                _words_of(row["setting"]),
-                _error_of(row) or "-",
-                f"{'on the front, ' if index in front else ''}{_time_of(row)}",
-            )
+            (_words_of(row["setting"]), _error_of(row) or "-", f"{marks.get(index, '')}{_time_of(row)}")
             for index, row in enumerate(self.judged)
         ]
         return f"Error against run time of {len(self.rows)} settings\n{self.title.splitlines()[0]}", [*facts, *rows]

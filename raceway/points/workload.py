@@ -81,11 +81,8 @@ class Workload(Answer):
         ]
         ways = {"compiled loop": self.looped, "runs": self.runs, "refused": self.refused, "stored": self.stored}
         reasons = {"runs": self.why_runs, "refused": "by rules of the scene", "stored": "finished before"}
-        rows += [
-            (name, f"{most if count else ''}{count}", reasons.get(name, ""))
-            for name, count in ways.items()
-            if count or name != "stored"
-        ]
+        taken = {name: count for name, count in ways.items() if count or name != "stored"}
+        rows += [(name, f"{most if count else ''}{count}", reasons.get(name, "")) for name, count in taken.items()]
         yield Words(self.title, "bold")
         yield sections(rows)
         yield from self.remarks

@@ -71,18 +71,8 @@ def _growth(b: Bearing, depth: Number) -> Number:
     if not has_columns(b):
         return RingSection.of(b, depth).growth(young, poisson)
     # Of all columns it depends on these; points often share them.
-    numbers: tuple[Number, ...] = (
-        b.bore,
-        b.width,
-        b.pitch_diameter,
-        b.ball_diameter,
-        b.conformity_inner,
-        b.contact_angle,
-        depth,
-        young,
-        poisson,
-    )
-    columns = np.stack(np.broadcast_arrays(*numbers, np.zeros(length(b))))
+    numbers: tuple[Number, ...] = (b.bore, b.width, b.pitch_diameter, b.ball_diameter, b.conformity_inner, b.contact_angle)
+    columns = np.stack(np.broadcast_arrays(*numbers, depth, young, poisson, np.zeros(length(b))))
     _, points, index = np.unique(columns, axis=1, return_index=True, return_inverse=True)
     rows = [at_row(b, point) for point in points]
     each = [RingSection.of(row, groove_depth(row)).growth(row.rings.young, row.rings.poisson) for row in rows]

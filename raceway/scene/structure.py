@@ -57,14 +57,8 @@ def _switch(value: object, _type: object = None) -> bool:
 
 
 def _kind(value: object) -> str:
-    names = {
-        bool: "true or false",
-        int: "a whole number",
-        float: "a number with a fraction",
-        str: "a string",
-        list: "a list",
-        dict: "a table",
-    }
+    names = {bool: "true or false", int: "a whole number", float: "a number with a fraction"}
+    names |= {str: "a string", list: "a list", dict: "a table"}
     return names.get(type(value), type(value).__name__)
 
 

@@ -176,12 +176,8 @@ def look_up(pattern: str = "*", picture: str | Path | None = None, materials: bo
         raise SceneError.at("picture", str(picture), f"draws one bearing, '{pattern}' finds {len(presets)}")
     keys = "bore", "outer_diameter", "width", "contact_angle_deg", "ball_count", "ball_diameter", "pitch_diameter"
     rows: list[Tables] = [
-        {
-            "name": preset.name,
-            **{key: preset.table.get(key) for key in keys},
-            "stiffness_error": preset.stiffness_error,
-            "radial_stiffness_error": preset.radial_stiffness_error,
-        }
+        {"name": preset.name, **{key: preset.table.get(key) for key in keys}}
+        | {name: getattr(preset, name) for name in ("stiffness_error", "radial_stiffness_error")}
         for preset in presets
     ]
     lines = [

@@ -153,14 +153,9 @@ def _law(system: System, depth: float) -> tuple[Numbers, float, float]:
     if not error < _COARSEST:
         raise SceneError.at("contact.kind", None, f"has a force that {_MOST_TERMS} terms give to {error:.1e} only: {_MAP}")
     terms, seats = series.terms, (values[:, -1] / depth**1.5)[kinds][outer]
-    table = {
-        "TABLE_LOW": _SHALLOWEST * depth,
-        "TABLE_HIGH": depth,
-        "TABLE_TERMS": terms.shape[1],
-        "tables": terms,
-        "kinds": kinds,
-    }
-    return {"LAW": 0, "SEAT_POWER": 2.0 / 3.0, "seats": seats, **table}, float(values[:, -1].min()), error
+    table = {"TABLE_LOW": _SHALLOWEST * depth, "TABLE_HIGH": depth, "TABLE_TERMS": terms.shape[1], "tables": terms}
+    numbers = {"LAW": 0, "SEAT_POWER": 2.0 / 3.0, "seats": seats, **table, "kinds": kinds}
+    return numbers, float(values[:, -1].min()), error
 
 
 #: What users have to know beside.
@@ -199,15 +194,9 @@ def force_unit(scene: Scene, name: str, highest_rpm: float | None = None) -> Uni
         for race in ("inner", "outer")
         for k in range(force.balls)
     ]
-    entries = [
-        Variable(
-            f"{STIFFNESS.name}.{a}.{b}",
-            entry_unit(STIFFNESS.unit, (a, b)),
-            "tangent: what the force loses by a displacement",
-        )
-        for a in DIMENSIONS["dof"]
-        for b in DIMENSIONS["dof"]
-    ]
+    dof, words = DIMENSIONS["dof"], "tangent: what the force loses by a displacement"
+    tangent = STIFFNESS.name
+    entries = [Variable(f"{tangent}.{a}.{b}", entry_unit(STIFFNESS.unit, (a, b)), words) for a in dof for b in dof]
     return Unit(
         name,
         f"force of the bearing on its shaft, rigid rings and balls; {ranges}; relative error {errors['force']:.1e}.",

@@ -184,11 +184,8 @@ def _description(unit: Unit, version: int) -> ET.Element:
     root = ET.Element("fmiModelDescription", {"fmiVersion": f"{version}.0", "modelName": unit.name, token: unit.token})
     root.attrib |= {"description": unit.words, "version": __version__, "generationTool": f"Raceway {__version__}"}
     root.set("variableNamingConvention", "structured")
-    can = (
-        ("canGetAndSetFMUstate", "providesDirectionalDerivative")
-        if second
-        else ("canGetAndSetFMUState", "providesDirectionalDerivatives")
-    )
+    derivatives = f"providesDirectionalDerivative{'' if second else 's'}"
+    can = "canGetAndSetFMUstate" if second else "canGetAndSetFMUState", derivatives
     for tag, further in {"ModelExchange": (), "CoSimulation": ("canHandleVariableCommunicationStepSize",)}.items():
         kind = _add(root, tag, modelIdentifier=unit.name, **dict.fromkeys((*can, *further), "true"))
         if second:
@@ -200,13 +197,8 @@ def _description(unit: Unit, version: int) -> ET.Element:
     variables, flag = _add(root, "ModelVariables"), len(unit.variables)
     for reference, (v, part) in enumerate(unit.variables):
         kinds = ("local", "constant") if part == "constant" else (part, "continuous")
-        about = {
-            "name": v.name,
-            "valueReference": reference,
-            "description": v.words,
-            "causality": kinds[0],
-            "variability": kinds[1],
-        }
+        about = {"name": v.name, "valueReference": reference, "description": v.words}
+        about |= {"causality": kinds[0], "variability": kinds[1]}
         numbers = {"unit": v.unit if v.unit in _UNITS else None, "min": v.low, "max": v.high, "start": v.start}
         if second:
             _add(_add(variables, "ScalarVariable", **about), "Real", **numbers)
@@ -221,10 +213,8 @@ def _description(unit: Unit, version: int) -> ET.Element:
     structure, first = _add(root, "ModelStructure"), len(unit.inputs)
     for tag in ("Output", "InitialUnknown"):
         parent = _add(structure, f"{tag}s") if second else structure
+        known = {"dependencies": " ".join(str(j + second) for j in range(first))}
         for k in (*range(first, first + len(unit.outputs)), flag):
-            place = {
-                "index" if second else "valueReference": k + second,
-                "dependencies": " ".join(str(j + second) for j in range(first)),
-            }
-            _add(parent, "Unknown" if second else tag, **place)
+            place = {"index" if second else "valueReference": k + second}
+            _add(parent, "Unknown" if second else tag, **place, **known)
     return root

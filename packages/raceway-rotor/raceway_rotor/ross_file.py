@@ -75,12 +75,8 @@ def ross_content(table: Coefficients, generation: int, tag: str, node: int) -> T
 
 def ross_notes(table: Coefficients, generation: int) -> tuple[str, ...]:
     """What the reader of the file has to know."""
-    notes = (
-        f"{table.definition}; N/m, N s/m, rad/s",
-        "axes: ROSS's X, Y, Z are y, z, x of the bearing",
-        *table.notes,
-        *_LEFT_OUT,
-    )
+    units = f"{table.definition}; N/m, N s/m, rad/s"
+    notes = units, "axes: ROSS's X, Y, Z are y, z, x of the bearing", *table.notes, *_LEFT_OUT
     if generation >= 3:
         return (*notes, "ROSS 3 passes through every point; beyond the ends it extrapolates linearly")
     # Largest change at a point by ROSS 2's own interpolation, over the largest coefficient of its kind

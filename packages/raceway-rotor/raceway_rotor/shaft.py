@@ -225,12 +225,8 @@ def rotor(rig: Rig, speed: float, model: Beam | None = None) -> Rotor:
     loads[[near, far], 1] = -1.0
     loads[near + 1, 2], loads[far + 1, 2] = -sign, sign
     answer = np.linalg.solve(model.dynamic(speed, speed), loads)
-    return Rotor(
-        speed=speed,
-        ring=np.array([answer[near], sign * answer[near + 1]]),
-        sensor=answer[sensor],
-        unbalance_force=rig.unbalance * speed**2,
-    )
+    ring = np.array([answer[near], sign * answer[near + 1]])
+    return Rotor(speed, ring, answer[sensor], unbalance_force=rig.unbalance * speed**2)
 
 
 def whirling_load(speed: float, force: complex, moment: complex) -> HarmonicLoad:

@@ -242,11 +242,8 @@ def _common(selection: Selection) -> list[str]:
     force = selection.dataset["force_amplitude"].values
     low, high = float(np.min(force)), float(np.max(force))
     size = f"{low:.4g} N" if high - low <= 1e-6 * high else f"{low:.4g} to {high:.4g} N"
-    return [
-        *_mass(selection),
-        *notes,
-        f"under forces of amplitude {size}; in a rotor model, iterate where the bearing force differs",
-    ]
+    of_force = f"under forces of amplitude {size}; in a rotor model, iterate where the bearing force differs"
+    return [*_mass(selection), *notes, of_force]
 
 
 def _mass(selection: Selection) -> list[str]:

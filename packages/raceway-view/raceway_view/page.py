@@ -96,14 +96,9 @@ def state_data(bearing: BearingSolids, state: Snapshot) -> Tables:
     top, peak = max(float(state.load[: len(state.azimuth)].max()), 1e-12), max(1e-6 * float(state.peak.max()), 1e-12)
     centres, tips = bearing.centres(state), bearing.tips(state, top)
     shapes: Tables = {}
+    tones = [_short(_tone(LOADS, state.load[k] / top)) for k in range(len(centres))]
     parts = [
-        {
-            "name": f"ball {k}",
-            "shape": "ball",
-            "at": _short(centre),
-            "colour": _short(_tone(LOADS, state.load[k] / top)),
-            "opacity": 1.0,
-        }
+        {"name": f"ball {k}", "shape": "ball", "at": _short(centre), "colour": tones[k], "opacity": 1.0}
         for k, centre in enumerate(centres)
     ]
     for k, part in enumerate(bearing.arrows(state, top)):

@@ -172,12 +172,8 @@ def overview(bearing: BearingSolids, state: Snapshot, heading: str, size: tuple[
             mesh.point_data["Normals"] = part.surface.normals
             mesh.point_data.active_normals_name = "Normals"
             # Loads are equal all over a part: as a field, so that all parts share one colour bar.
-            look: Tables = {
-                "smooth_shading": True,
-                "split_sharp_edges": False,
-                "opacity": part.opacity,
-                "show_scalar_bar": False,
-            }
+            look: Tables = {"smooth_shading": True, "split_sharp_edges": False, "show_scalar_bar": False}
+            look["opacity"] = part.opacity
             if part.colour is not None:
                 ambient = 0.65 if "cut face" in part.name else 0.25
                 plotter.add_mesh(mesh, color=part.colour, ambient=ambient, diffuse=1.0 - ambient, specular=0.1, **look)

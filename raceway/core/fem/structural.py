@@ -294,13 +294,9 @@ class ElasticBodies:
 
 def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | None = None) -> System:
     """The system of rigid rings with elastic ones in their place; ``angles`` as in ``elastic_scalars``."""
-    return attrs.evolve(
-        rigid,
-        kernel=condensed(rigid.kernel),
-        base_kernel=condensed(rigid.base_kernel),
-        scalars=elastic_scalars(rigid.scalars, bodies, angles),
-        table=rigid.table.copy(),
-    )
+    kernel, base = condensed(rigid.kernel), condensed(rigid.base_kernel)
+    scalars = elastic_scalars(rigid.scalars, bodies, angles)
+    return attrs.evolve(rigid, kernel=kernel, base_kernel=base, scalars=scalars, table=rigid.table.copy())
 
 
 def elastic_scalars(rigid: np.ndarray, bodies: ElasticBodies, angles: np.ndarray | None = None) -> np.ndarray:

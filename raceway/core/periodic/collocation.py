@@ -350,12 +350,6 @@ def newton_iteration(
             f"{report[newton.WORST_IMBALANCE]:.2g} N",
             {"q": q[0] if np.isfinite(q[0]).all() else path.q[0].copy()},
         )
-    return Solved(
-        problem,
-        solution,
-        elimination,
-        float(report[newton.SIZE]),
-        report[newton.SHORTENED] == 0.0,
-        int(report[newton.SWEEPS]),
-        float(report[newton.CORRECTION]),
-    )
+    size, correction = float(report[newton.SIZE]), float(report[newton.CORRECTION])
+    whole, sweeps = report[newton.SHORTENED] == 0.0, int(report[newton.SWEEPS])
+    return Solved(problem, solution, elimination, size, whole, sweeps, correction)

@@ -100,13 +100,8 @@ def patch_cost(problem: Problem) -> _PatchCost:
     size = 2 * balls * 1.3 * points**2 + 2 * 5.0 * rows * (2.0 * rows) ** 2
     share = balls / 12.0
     steps = _RUBBING if problem.contact.friction > 0.0 else 1.0
-    return _PatchCost(
-        points,
-        int(8.0 * size),
-        _SETUP_S[0] + _SETUP_S[1] * n * n,
-        share * (_EQUILIBRIUM_S[0] + _EQUILIBRIUM_S[1] * n * n),
-        steps * share * (_STEP_S[0] + _STEP_S[1] * n * n),
-    )
+    setup, equilibrium, step = (once + more * n * n for once, more in (_SETUP_S, _EQUILIBRIUM_S, _STEP_S))
+    return _PatchCost(points, int(8.0 * size), setup, share * equilibrium, steps * share * step)
 
 
 def nodes_of(problem: Problem) -> int:

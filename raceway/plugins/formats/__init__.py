@@ -80,17 +80,9 @@ def labelled(result: RunResult) -> Any:
         (quantities.BALL_LOAD, state.contact_force.reshape(2, z)),
         (quantities.CONTACT_ANGLE, np.degrees([state.angle_inner, state.angle_outer])),
     ]
-    coordinates: dict[str, object] = {
-        "dof": names,
-        "dof2": names,
-        "race": ["inner", "outer"],
-        "ball": np.arange(z),
-        quantities.AZIMUTH.name: (
-            quantities.AZIMUTH.dims,
-            np.degrees(result.model.azimuth) % 360.0,
-            quantities.AZIMUTH.labels,
-        ),
-    }
+    coordinates: dict[str, object] = {"dof": names, "dof2": names, "race": ["inner", "outer"], "ball": np.arange(z)}
+    azimuth = quantities.AZIMUTH
+    coordinates[azimuth.name] = (azimuth.dims, np.degrees(result.model.azimuth) % 360.0, azimuth.labels)
     if result.simulation is not None:
         record = result.simulation.record
         coordinates[quantities.TIME.name] = (quantities.TIME.dims, record.time, quantities.TIME.labels)

@@ -141,10 +141,7 @@ def _within(ends: Sequence[Any] | None, less: float, unit: str) -> str:
     if ends is None:
         return ""
     if None in ends:
-        known = [
-            f"{end - less:.4g} {unit} or {word}: "
-            for end, word in zip(ends, ("more", "less"), strict=True)
-            if end is not None
-        ]
+        pairs = zip(ends, ("more", "less"), strict=True)
+        known = [f"{end - less:.4g} {unit} or {word}: " for end, word in pairs if end is not None]
         return f"{''.join(known)}no steady temperature at one end of the bands"
     return f"{ends[0] - less:.4g} to {ends[1] - less:.4g} {unit}"

@@ -119,10 +119,8 @@ class Fitted(Answer):
             out.append(f"the data do not determine {names}{together}: {' with '.join(parts)} {moves}. {remedy}")
         if answer.freedom == 0 and not np.isfinite(answer.half).all() and not answer.undetermined:
             out.append("as many data as free numbers, and no stated errors: no uncertainty can be estimated")
-        out += [
-            f"{name} lies at the end of its range: the data require a value beyond the scene's rules"
-            for name in answer.at_limit
-        ]
+        beyond = "lies at the end of its range: the data require a value beyond the scene's rules"
+        out += [f"{name} {beyond}" for name in answer.at_limit]
         if answer.widened > 1.0:
             out.append(
                 f"the model misses the data by {answer.widened:.2g} times their stated errors: intervals are widened by it, and the "

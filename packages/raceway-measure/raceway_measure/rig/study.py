@@ -183,12 +183,8 @@ class _RigStudy(Answer):
 
     def _facts(self) -> tuple[str, list[Fact]]:
         facts: list[Fact] = [
-            (
-                point.name,
-                f"{1e-6 * point.state.stiffness:.4g} N/µm",
-                f"true K; identified {1e-6 * point.identified.state.stiffness:.4g}",
-            )
-            for point in self.points
+            (p.name, f"{1e-6 * p.state.stiffness:.4g} N/µm", f"true K; identified {1e-6 * p.identified.state.stiffness:.4g}")
+            for p in self.points
         ]
         return self.title, facts + [("failed", "", _failure_words(point)) for point in self.failed]
 
@@ -252,14 +248,8 @@ def rig(
     """
     inputs, registry = rig_of(scene), registry_with(plugins)
     grid = enumerate((axial, rpm) for axial in inputs.axial_loads for rpm in inputs.speeds_rpm)
-    items = [
-        Item(
-            row_key(scene, registry, ["rig", attrs.asdict(inputs), *point, k]),
-            f"{point[1]:.0f} r/min, {point[0]:.0f} N",
-            (k, point),
-        )
-        for k, point in grid
-    ]
+    about = ["rig", attrs.asdict(inputs)]
+    items = [Item(row_key(scene, registry, [*about, *p, k]), f"{p[1]:.0f} r/min, {p[0]:.0f} N", (k, p)) for k, p in grid]
     if plan:
         count, stored_count = len(items), stored_rows(kept, [item.key for item in items])
         seconds, _ = run_times(_RUNS * (count - stored_count), lambda _: scene.to_dict(), registry, planned=1)

@@ -178,12 +178,8 @@ class _Substructure:
         """A ring, or its sectors."""
         copies = self.copies
         kind: type[Loose] | type[Closed] = Closed if len(copies.turns) > 1 else Loose
-        inputs = {
-            "free": self.free,
-            "bed": list(self.bed or ()),
-            "turns": copies.turns,
-            "planes": [copies.before, copies.behind],
-        }
+        planes = [copies.before, copies.behind]
+        inputs = {"free": self.free, "bed": list(self.bed or ()), "turns": copies.turns, "planes": planes}
         return kind.of_arrays(copies, self.contact, self._from_store(inputs, lambda: kind.of(self._part()).arrays()))
 
     def ball(self, cage_rows: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> tuple[Loose, np.ndarray]:

@@ -116,15 +116,8 @@ class ElasticRing(SteppedRing):
         _, _, gap, force, places = self.bodies.look(y, np.zeros_like(y))
         if self._stiffness is None:
             self._stiffness = self._tangent()
-        return Evaluation(
-            force_on_frame - self.stiffness @ y[:5],
-            self._stiffness.copy(),
-            np.zeros((5, 5)),
-            gap,
-            force,
-            places,
-            self.law_state.copy(),
-        )
+        on_ring, tangent = force_on_frame - self.stiffness @ y[:5], self._stiffness.copy()
+        return Evaluation(on_ring, tangent, np.zeros((5, 5)), gap, force, places, self.law_state.copy())
 
     def without(self, *entries: int) -> ElasticRing:
         """Itself: balls of elastic bodies do not orbit, and equilibria know no friction."""

@@ -55,13 +55,8 @@ class RingSection:
         centre_x, centre_r, groove, bore, land, width, left, right = map(columns.per_ball, numbers)
         at, weight = _rule(_ALONG)
         angle = 0.5 * (low + high) + 0.5 * (high - low) * at
-        tops = [
-            (
-                centre_x + groove * np.sin(angle),
-                centre_r - groove * np.cos(angle),
-                0.5 * (high - low) * groove * np.cos(angle),
-            )
-        ]
+        slope = 0.5 * (high - low) * groove * np.cos(angle)
+        tops = [(centre_x + groove * np.sin(angle), centre_r - groove * np.cos(angle), slope)]
         for first, last in ((-0.5 * width, left), (right, 0.5 * width)):
             x = 0.5 * (first + last) + 0.5 * (last - first) * at
             tops.append((x, land, 0.5 * (last - first)))

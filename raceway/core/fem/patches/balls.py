@@ -233,20 +233,11 @@ class Balls:
             [state.stiffness for state in contact_states], excess, contact_states, cross_coupling, applied.spring
         )
         acting = self.loads + applied.push - applied.spring * position
-        return LinearisedBalls(
-            contact_states,
-            force,
-            excess.reshape(-1, 2),
-            ring_stiffness,
-            contact_stiffness,
-            ball_stiffness,
-            self._both.T @ (force.reshape(-1) + ring_stiffness) + acting.reshape(-1),
-            by_section_turn,
-            couple,
-            by_place,
-            cross_coupling,
-            relative,
-        )
+        balance = self._both.T @ (force.reshape(-1) + ring_stiffness) + acting.reshape(-1)
+        stiffnesses = ring_stiffness, contact_stiffness, ball_stiffness
+        couples = couple, by_place, cross_coupling
+        excess = excess.reshape(-1, 2)
+        return LinearisedBalls(contact_states, force, excess, *stiffnesses, balance, by_section_turn, *couples, relative)
 
     def smoothed_stiffness(self, now: LinearisedBalls, centre: np.ndarray, position: np.ndarray) -> LinearisedBalls:
         """The same state with the mean stiffness of every contact, see ``Contact.mean_stiffness``."""

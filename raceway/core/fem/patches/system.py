@@ -326,12 +326,8 @@ class PatchSystem(SteppedRing):
         answer = self._answer(row.balls, grooves, where, rate, now)
         ball_velocity = None if ball_rate is None or dt <= 0.0 else gain * where + ball_rate[:, :2]
         reference = np.zeros((self.ball_count, 2)) if ball is None or ball.shape[1] < 4 else ball[:, 2:4]
-        after = history.after(
-            ball_velocity,
-            [state.traction_state for state in now.contact_states],
-            reference.T.reshape(-1),
-            len(self.pool.generations) - 1,
-        )
+        tractions = [state.traction_state for state in now.contact_states]
+        after = history.after(ball_velocity, tractions, reference.T.reshape(-1), len(self.pool.generations) - 1)
         columns = where if self.conservative else np.concatenate([where, reference], axis=1)
         return attrs.evolve(answer, ball=columns, memory=after)
 
@@ -485,15 +481,9 @@ class PatchSystem(SteppedRing):
         inner = force[: self.ball_count]
         reach = np.concatenate([grooves.centre - where, where])
         first_touch = np.repeat([self.scalars[layout.OFFSET_INNER], self.scalars[layout.OFFSET_OUTER]], self.ball_count)
-        return Evaluation(
-            grooves.jacobian.T @ inner.reshape(-1) + grooves.turning.T @ now.couple,
-            self._stiffness(balls, now, grooves),
-            along.T @ viscous @ along,
-            first_touch - np.hypot(reach[:, 0], reach[:, 1]),
-            size,
-            where,
-            self.law_state.copy(),
-        )
+        on_ring = grooves.jacobian.T @ inner.reshape(-1) + grooves.turning.T @ now.couple
+        gap, stiffness = first_touch - np.hypot(reach[:, 0], reach[:, 1]), self._stiffness(balls, now, grooves)
+        return Evaluation(on_ring, stiffness, along.T @ viscous @ along, gap, size, where, self.law_state.copy())
 
     @staticmethod
     def _stiffness(balls: Balls, now: LinearisedBalls, grooves: _Grooves) -> np.ndarray:
