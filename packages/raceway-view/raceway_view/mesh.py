@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
     from raceway import Scene
-    from raceway.extend import Entry, Format, OnProgress, Registry
+    from raceway.extend import Entry, Format, OnProgress
 
 
 #: Inner ring, outer ring, everything else.
@@ -183,7 +183,14 @@ def mesh(
     from raceway.extend import mesh_bodies, resolve, summary
 
     registry = registry_with(plugins)
-    entry = _format(registry, form)
+    # The format of a name, or of the ending of its files.
+    formats = {entry.name: entry.plugin for entry in registry.of_kind("format")}
+    names = [name for name, plugin in formats.items() if hasattr(plugin, "write") and not of_results(plugin)]
+    of_ending = [name for name in names if f".{form}" in formats[name].suffixes]
+    entry = registry.find("format", of_ending[0] if form not in names and len(of_ending) == 1 else form)
+    if entry.name not in names:
+        fault = "writes results" if of_results(entry.plugin) else "only reads"
+        raise RacewayError(f"`--format {form}`: '{entry.name}' {fault}; files are written as {', '.join(names)}")
     if picture and find_spec("pyvista"):
         refuse_pictures(_OTHERWISE)
     progress("meshing", 0, 0)
@@ -198,18 +205,6 @@ def mesh(
     progress("judging the cells", 0, 0)
     content: Tables = {"title": scene.title, "mesher": scene.mesh.name, "seconds": seconds, **summary(meshes), "files": []}
     return _Meshes(content, meshes, entry, picture)
-
-
-def _format(registry: Registry, word: str) -> Entry:
-    """The format of a name, or of the ending of its files; refused where it needs a package that is missing."""
-    plugins = {entry.name: entry.plugin for entry in registry.of_kind("format")}
-    names = [name for name, plugin in plugins.items() if hasattr(plugin, "write") and not of_results(plugin)]
-    of_ending = [name for name in names if f".{word}" in plugins[name].suffixes]
-    form = registry.find("format", of_ending[0] if word not in names and len(of_ending) == 1 else word)
-    if form.name not in names:
-        fault = "writes results" if of_results(form.plugin) else "only reads"
-        raise RacewayError(f"`--format {word}`: '{form.name}' {fault}; files are written as {', '.join(names)}")
-    return form
 
 
 def _together(meshes: dict[str, HexMesh]) -> dict[str, HexMesh]:

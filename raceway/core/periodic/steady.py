@@ -251,20 +251,15 @@ def starting_orbit(
             f"the motion starts on a steady orbit that is unstable, {growth_of_disturbances(motion.floquet)}; no stable one was found, and a real "
             "ring does not stay on it",
         )
-    return _StartingOrbit(_sampled(motion, period), orbit_tables(motion.all), warnings)
-
-
-def _sampled(motion: PeriodicMotion, period: float) -> Orbit:
-    """A motion at equidistant times of a turn."""
-    solution = motion.refined.solved
-    problem, system = solution.problem, solution.problem.system
-    times = period / _SAMPLES * np.arange(_SAMPLES)
-    q, v, a, ball, rate = states(solution, problem.speed * times)
+    # The motion at equidistant times of a turn.
+    found, times = motion.refined, period / _SAMPLES * np.arange(_SAMPLES)
+    problem, system = found.solved.problem, found.solved.problem.system
+    q, v, a, ball, rate = states(found.solved, problem.speed * times)
     v = v * problem.speed
     now = responses(system, States(times, q, v, ball, rate), tangents=True)
     force = np.array([system.outer_force(t) for t in times])
-    iterations = motion.refined.sweeps
-    return Orbit(period, q, v, a * problem.speed**2, force, ball, now.K, now.C, motion.refined.error, iterations)
+    orbit = Orbit(period, q, v, a * problem.speed**2, force, ball, now.K, now.C, found.error, found.sweeps)
+    return _StartingOrbit(orbit, orbit_tables(motion.all), warnings)
 
 
 #: Distance of a motion from its neighbour, over its size, up to which it is that one's continuation.

@@ -358,18 +358,14 @@ class CondensedSolver:
             try:
                 return _Step(self, c_k, c_c, c_m, right).nonlinear(u, v, dt)
             except _Beyond as beyond:
-                self._widen(beyond.nodes)
-
-    def _widen(self, nodes: np.ndarray) -> None:
-        """Reduce the bodies to more nodes: a contact has come to some (k,) beyond them."""
-        if self._wanted[nodes].all():
-            first = self.assembly.bodies[int(np.searchsorted(self.assembly.starts, nodes[0], side="right")) - 1]
-            raise ConvergenceError(
-                f"{first.name}: a contact presses on nodes that are held: its seat reaches into the groove. Mesh it with free nodes there"
-            )
-        self._wanted[nodes] = True
-        self._wanted |= touchable(self.contact, self.assembly.nodes)
-        self._interface = self.last = None
+                nodes = beyond.nodes  # (k,) to which a contact has come: the bodies are reduced to these, too
+            if self._wanted[nodes].all():
+                first = self.assembly.bodies[int(np.searchsorted(self.assembly.starts, nodes[0], side="right")) - 1]
+                seat = "its seat reaches into the groove. Mesh it with free nodes there"
+                raise ConvergenceError(f"{first.name}: a contact presses on nodes that are held: {seat}")
+            self._wanted[nodes] = True
+            self._wanted |= touchable(self.contact, self.assembly.nodes)
+            self._interface = self.last = None
 
 
 def _alike(arrays: tuple[np.ndarray, ...], present: tuple[np.ndarray, ...], close: float) -> bool:
