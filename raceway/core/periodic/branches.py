@@ -66,7 +66,7 @@ def _by_force_steps(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolera
     return refine(solve(problem, last, 1e-2 * tolerance), tolerance)
 
 
-#: Points of a branch; those of one from rest, its longest step, the error that its meshes are made for and their most intervals.
+#: Points of a branch; those of one from rest, and its longest step; the error that meshes are made for, and their most intervals.
 POINTS = 120
 _FROM_REST, _LONGEST, _ERROR, _MOST = 60, 4.0, 1e-3, 96
 #: Share of the force up to which the branch from rest is followed for its folds: a Duffing oscillator whose motion differs
@@ -244,7 +244,7 @@ def _continued_to(
         begin = search.directly(far, q, tangent, search.ROUGH)
     except ConvergenceError:
         begin = _by_force_steps(far, q, tangent, search.ROUGH)
-    branch = Branch(at, abs(ratio - 1.0), begin.solved.size, search.ROUGH, search.MOST)
+    branch = Branch(at, abs(ratio - 1.0), begin.solved.size, _ERROR, _MOST)
     for before, after in pairwise(islice(branch.follow(branch.start(begin.solved, ratio, sense), 0.1, 1.0), POINTS)):
         if (after.parameter - 1.0) * sense >= 0.0:
             return refine(solve(at(1.0), _towards(before, after, 1.0), 1e-2 * tolerance), tolerance)
