@@ -107,7 +107,8 @@ def distinct(part: T) -> tuple[list[T], np.ndarray]:
 
     columns = {name: value for name, value in _column_values(part).items() if is_column(value)}
     numbers, index = np.unique(np.stack(list(columns.values()), axis=1), axis=0, return_inverse=True)
-    return [attrs.evolve(part, **dict(zip(columns, row, strict=True))) for row in numbers.tolist()], index.ravel()  # type: ignore[misc]
+    kind, fixed = type(part), {field.alias: getattr(part, field.name) for field in attrs.fields(type(part)) if field.init}
+    return [kind(**fixed | dict(zip(columns, row, strict=True))) for row in numbers.tolist()], index.ravel()
 
 
 def length(part: attrs.AttrsInstance) -> int:
