@@ -109,7 +109,7 @@ SLOW = {"study article", "fit, signals"}
 #: What a screen must name, whatever its words.
 TOLD = {
     "run": ("tangent kxx, kyy", "numerical error of K", "|Z|", "equivalent stiffness K", "equivalent damping C", "orbit"),
-    "run, static": ("static scene", "kyy tilts follow"),
+    "run, static": ("Answer at rest", "kyy tilts follow"),
     "plan": ("Included", "Left out", "degrees of freedom", "time step", "wall time"),
     "compare": ("bidirectional",),
     "verify": ("within their tolerance",),

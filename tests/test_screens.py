@@ -90,12 +90,12 @@ def test_the_answer_stands_first(tmp_path):
     found = invoke("run", MINIMAL, "--out", tmp_path)
     result = json.loads((tmp_path / "result.json").read_text())["identification"]
     text = found.stdout.splitlines()
-    heads = [line for line in text if not line.startswith((" ", "warning", "written"))]
+    heads = [line for line in text if not line.startswith((" ", "warning", "written", "B7206C: "))]
     force = f"{result['force_amplitude_n']:.4g} N bidirectional"
     assert heads[heads.index(f"Answer at 12000 r/min, {force}, tilt locked") + 1] == "Equilibrium under 1000 N axial"
-    assert len(text) <= 28
+    assert len(text) <= 24 and text[1].startswith("Answer at")
     place = next(k for k, line in enumerate(text) if line.startswith("  equivalent stiffness K"))
-    assert place <= 4 and f"{1e-6 * result['equivalent_stiffness']:.3g} N/µm" in text[place]
+    assert place == 2 and f"{1e-6 * result['equivalent_stiffness']:.3g} N/µm" in text[place]
     assert [line.split("  ")[1].strip() for line in text[place:] if line.startswith("  ")][0] == "equivalent stiffness K"
 
 
@@ -117,7 +117,7 @@ def test_notes_are_short_on_the_screen_and_sentences_in_the_result(tmp_path):
     error = json.loads((tmp_path / "result.json").read_text())["error"]
     assert "Hann" in error["how"]["transient"] and "Hann" not in screen
     assert error["short"].keys() == error["how"].keys() and all(len(words) <= 48 for words in error["short"].values())
-    assert f"of Z, relative: {error['total']:.1e}, time step" in " ".join(screen.split())
+    assert f"of Z {error['total']:.1e}, most by time step" in " ".join(screen.split())
 
 
 @pytest.mark.parametrize("estimate", Estimate, ids=lambda one: one.name)
@@ -135,9 +135,9 @@ def test_a_static_scene_has_one_line_for_what_it_cannot_tell(tmp_path):
     scene = tmp_path / "static.toml"
     scene.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n')
     text = invoke("run", scene, "--out", tmp_path / "out").stdout
-    assert "not estimated" not in text and text.count("static scene") == 1
+    assert "not estimated" not in text and text.count("without [excitation]") == 1
     answer = text[text.index("Answer") : text.index("Equilibrium")]
-    assert all(words in answer for words in ("tangent kxx", "tangent kyy", "all balls, each", "[excitation]"))
+    assert all(words in answer for words in ("tangent kxx", "tangent kyy", "all balls, each"))
     assert "loaded ball" not in text  # under an axial load alone all carry the same: told once
     text = invoke("run", scene, "--set", "load.radial=[100.0, 0.0]", "--out", tmp_path / "out").stdout
     assert (

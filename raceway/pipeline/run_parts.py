@@ -26,25 +26,25 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
     """Effect of elasticity, quality of the mesh, and error of the missing inertia; each where the result has it."""
     if not model:
         return []
-    rows = [("Elastic bodies", "", str(model.get("bodies", "")))]
+    rows = [("Elastic bodies", "", "")]
     elasticity = model.get("elasticity")
     if elasticity is not None:
         changes = ", ".join("-" if elasticity[i][i] is None else f"{100 * elasticity[i][i]:+.1f} %" for i in (0, 1))
-        rows.append(("kxx, kyy changed by", changes, "against rigid rings and balls under the same loads"))
+        rows.append(("kxx, kyy changed by", changes, "against rigid rings and balls"))
     compliance = model.get("compliance")
     if compliance is not None:
         values = ", ".join(f"{1e9 * compliance[name]:.2f}" for name in ("inner_m_per_n", "outer_m_per_n"))
-        angle = f"inner, outer contact at {compliance['contact_angle_deg']:.1f} deg, beyond Hertz"
+        angle = f"inner, outer over Hertz, {compliance['contact_angle_deg']:.1f} deg"
         rows.append(("structural compliance", f"{values} nm/N", angle))
     mesh = model.get("mesh") or {}
     along, change = mesh.get("nodes_per_semi_axis"), mesh.get("change_from_coarser")
     if along is not None:
-        how = "not estimated" if change is None else f"{mesh['how']}: {change:.1e}"
+        how = "not estimated" if change is None else f"a mesh twice as coarse: {change:.1e}"
         rows.append(("nodes per semi-axis", number(along, digits=3), how))
     sure = mesh.get("replaced_uncertainty")
     if sure is not None:
         values = ", ".join(f"{1e9 * mesh[f'replaced_{race}_m_per_n']:.2f}" for race in ("inner", "outer"))
-        how = f"inner, outer: compliance of the mesh below a contact, uncertain by {100.0 * sure:.1g} % of the contact's"
+        how = f"inner, outer mesh below contacts, +- {100.0 * sure:.1g} %"
         rows.append(("replaced by the law", f"{values} nm/N", how))
     share, imbalance, energies = (model.get(name) for name in ("penetration_share", "unbalanced_n", "energies_j"))
     if share is not None:
@@ -70,7 +70,7 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
         rows.append(("unbalanced force", number(imbalance, "N", 2), "largest, reaction against load"))
     if energies is not None:
         parts = ", ".join(f"{name} {1e3 * value:.3g}" for name, value in energies.items())
-        rows.append(("energies", "", f"{parts} mJ"))
+        rows.append(("", "", f"energies: {parts} mJ"))
     inertia = model.get("inertia")
     if inertia is not None:
         rows += _inertia(inertia)
@@ -79,22 +79,19 @@ def bodies_rows(model: ReadTables | None) -> list[Row]:
 
 def _inertia(inertia: ReadTables) -> list[Row]:
     """The slowest motion that is taken to follow at once."""
-    names = {"inner_supported": "inner ring", "outer_supported": "outer ring"}
-    names["ball_along_grooves"] = "ball along its grooves"
+    names = {"inner_supported": "inner ring", "outer_supported": "outer ring", "ball_along_grooves": "ball along grooves"}
     modes = {word: name for name, word in names.items() if inertia.get(f"{name}_hz") is not None}
     if not modes:
         return []
     slowest = min(modes, key=lambda word: inertia[f"{modes[word]}_hz"])
     error = inertia[f"{modes[slowest]}_error"]
     moves = " is part of the motion" if slowest.startswith("ball") and inertia.get("ball_along_grooves_in_motion") else ""
-    costs = moves if error is None else f", quasi-static: error (w / w1)^2 = {error:.1e}"
-    rings = min(inertia[f"{modes[word]}_hz"] for word in modes if word != "ball along its grooves")
-    remark = f"{slowest}{costs}; rings as supported from {1e-3 * rings:.3g} kHz"
+    remark = f"{slowest}{moves if error is None else f', off by {error:.1e}'}"
     return [("lowest elastic mode", number(1e-3 * inertia[f"{modes[slowest]}_hz"], "kHz", 3), remark)]
 
 
-#: Axial forces below this are rounding.
-_ROUNDING_N = 1e-6
+#: Axial forces below this are rounding; signs of a value that leaves its remark room.
+_ROUNDING_N, _WIDE = 1e-6, 16
 
 
 def equilibrium_rows(result: Content) -> list[Row]:
@@ -109,7 +106,7 @@ def equilibrium_rows(result: Content) -> list[Row]:
     across = [in_micro(displacement[name]) for name in ("y", "z")]
     if across != ["0", "0"]:
         rows.append(("displacement y, z", f"{', '.join(across)} µm", "radial"))
-    if tilt != "locked":
+    if tilt != "locked" and any(displacement[name] for name in ("tilt_y", "tilt_z")):
         tilts = ", ".join(in_micro(displacement[name]) for name in ("tilt_y", "tilt_z"))
         rows.append(("tilt_y, tilt_z", f"{tilts} µrad", tilt_words(tilt)))
     rows += mounting_rows(equilibrium)
@@ -120,7 +117,8 @@ def equilibrium_rows(result: Content) -> list[Row]:
     facts = [stated(one, result) for one in (KXX, KYY, KYY_TILTS_FOLLOW) if one.of(result) is not None]
     axial, radial, *follows = [(label, value, words.partition(":")[0]) for label, value, words in facts]
     rows.append(("tangent kxx, kyy", f"{axial[1].partition(' ')[0]}, {radial[1]}", f"{axial[2]}, {radial[2]}"))
-    return [*rows, *follows, *held_rows(result)]
+    # Without a load across, tilts follow by nothing.
+    return [*rows, *(row for row in follows if row[1] != radial[1]), *held_rows(result)]
 
 
 def mounting_rows(equilibrium: AtRest) -> list[Row]:
@@ -128,19 +126,22 @@ def mounting_rows(equilibrium: AtRest) -> list[Row]:
     rows, preload, axial = [], equilibrium["preload"], equilibrium["held_axial"]
     if preload is not None:
         forces = ", ".join(number(force) for force in preload["rows_n"])
-        what = {"rigid": "the offset of the rows", "spring": "the force of the rows on the spring"}[preload["kind"]]
-        first = dict.fromkeys(f"{preload[name]:.5g}" for name in ("before_mounting_n", "second_before_mounting_n"))
-        before = f"before mounting {' and '.join(first)} N, mounted {preload['mounted_n']:.5g} N"
-        how = f"running, without loads; {before}; {what} stays"
+        first = " and ".join(
+            dict.fromkeys(f"{preload[name]:.4g}" for name in ("before_mounting_n", "second_before_mounting_n"))
+        )
+        mounted = f"{preload['mounted_n']:.4g}"
+        how = f"running; {first} N before{' and' if mounted == first else f', {mounted}'} mounted"
         rows.append(("preload", number(preload["running_n"], "N"), how))
-        rows.append(("axial force of rows", f"{forces} N", f"rows 1 to {len(preload['rows_n'])} under the loads"))
+        if len(forces) > _WIDE:
+            rows.append(("", "", f"axial force of rows 1 to {len(preload['rows_n'])} under the loads: {forces} N"))
+        else:
+            rows.append(("axial force of rows", f"{forces} N", "under the loads"))
         lifts = [*zip(preload["lift_off_axial_n"], preload["lift_off_row"], strict=True)]
-        loads = ", ".join("never" if load is None else number(load, "N") for load, _ in lifts)
+        loads = ", ".join("never" if load is None else number(load, "N", 4) for load, _ in lifts)
         which = ", ".join(f"row {row} along {way}" for way, (_, row) in zip(("+x", "-x"), lifts, strict=True) if row)
-        rows.append(("axial load at lift-off", loads, f"without other loads: {which}"))
+        rows.append(("axial load at lift-off", loads, which))
     if axial is not None:
-        before = f"before mounting {axial['before_mounting_n']:g} N, mounted {axial['mounted_n']:.5g} N"
-        how = f"force of the held displacement; {before}"
+        how = f"held; {axial['before_mounting_n']:g} N before, {axial['mounted_n']:.4g} mounted"
         running = axial["running_n"] if abs(axial["running_n"]) > _ROUNDING_N else 0.0
         rows.append(("axial force", number(running, "N"), how))
     return rows
@@ -180,18 +181,18 @@ def error_rows(result: Content) -> list[Row]:
         return [*rows, *([("relative error", "", f"of the stiffness: {', '.join(sizes.values())}")] if sizes else [])]
     rigid = result["model"] is None  # which have no mesh
     unknown = [name for name, value in parts.items() if value is None and not (rigid and name == "mesh")]
-    # A single part is the total, whose number stands beside it.
-    words = [", ".join(sizes.values() if len(sizes) > 1 else sizes)] if sizes else []
+    largest = max(sizes, key=lambda name: parts[name] or 0.0, default="")
+    words = [f"most by {largest}" if len(sizes) > 1 else largest] if sizes else []
     words += [f"{', '.join(unknown)} not estimated"] if unknown else []
     total = "not estimated" if error["total"] is None else f"{error['total']:.1e}"
     if (absolute := K_ERROR.of(result)) is None:
         rows.append(("relative error of Z", total, "; ".join(words)))
     else:
-        rows.append(("numerical error of K", K.text(absolute, 2), f"of Z, relative: {total}, {'; '.join(words)}"))
+        rows.append(("numerical error of K", K.text(absolute, 2), f"of Z {total}, {'; '.join(words)}"))
     series = [(off, one["speed_rpm"]) for one in identification["series"] if (off := one["error"]) is not None]
     if series:
         worst, speed = max(series, key=lambda window: window[0])
-        how = f"at {speed:.6g} r/min; of {len(series)} windows, all in result.json"
+        how = f"at {speed:.6g} r/min, of {len(series)} windows"
         rows.append(("largest of the series", f"{worst:.1e}", how))
     return rows
 
@@ -265,7 +266,8 @@ def _loaded_ball(result: Content, word: str, alike: bool) -> Row:
     name = f"row {ball['row']}, ball {place}" if "row" in ball else f"ball {place}"
     load, contact = number(ball[f"load_{own}_n"], "N"), f"{own} {_contact(ball, own)}"
     if word == "most":
-        contact += f"; {other} {number(ball[f'load_{other}_n'], 'N')}, {_contact(ball, other)}"
+        far = number(ball[f"load_{other}_n"], "N")
+        contact += f"; {other} {f'{far}, ' if far != load else ''}{_contact(ball, other)}"
     if alike:
         return "all balls, each", load, contact
     return f"{word} loaded ball", load, f"{name} at {ball['azimuth_deg']:.4g} deg; {contact}"

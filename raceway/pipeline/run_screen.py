@@ -2,41 +2,18 @@
 
 from __future__ import annotations
 
+import re
+from logging import INFO, getLogger
 from typing import NamedTuple
 
+from raceway.answers import quantities as q
 from raceway.answers.answer import Part
-from raceway.answers.quantities import (
-    DRY,
-    FORCE_AMPLITUDE,
-    KXX,
-    KYY,
-    KYY_TILTS_FOLLOW,
-    MASS,
-    ORBIT_MAJOR,
-    ORBIT_MINOR,
-    PHASE_LAG,
-    SPEED,
-    C,
-    K,
-    Z,
-    dry_damping_note,
-)
 from raceway.answers.table import Row, Words, micro, sections, tilt_words
 from raceway.framework.duties import has_rollers
 from raceway.framework.registry import default_registry
+from raceway.pipeline import run_parts
 from raceway.pipeline.content import Content
-from raceway.pipeline.run_parts import (
-    bodies_rows,
-    cost_row,
-    equilibrium_rows,
-    error_rows,
-    held_rows,
-    interval_rows,
-    loaded_balls,
-    orbit_rows,
-    quantity_rows,
-    stability_rows,
-)
+from raceway.pipeline.run_parts import bodies_rows, cost_row, equilibrium_rows, error_rows, orbit_rows, stability_rows
 from raceway.scene.sets import GEOMETRY, signs_of
 from raceway.storage.tables import ReadTables
 
@@ -44,7 +21,7 @@ from raceway.storage.tables import ReadTables
 _LINE = 1e-9
 #: Rows that stand or fall with Z.
 _OF_Z = (
-    *(quantity.label for quantity in (K, C, Z, PHASE_LAG)), "loss factor", "orbit, semi-axes",
+    *(quantity.label for quantity in (q.K, q.C, q.Z, q.PHASE_LAG)), "loss factor", "orbit, semi-axes",
 )  # fmt: skip
 
 
@@ -53,26 +30,23 @@ def _answer_rows(result: Content) -> list[Row]:
     identification = result["identification"]
     if identification is None:
         return [
-            (
-                f"Answer of a static scene, {tilt_words(result['scene']['supports']['tilt'])}",
-                "",
-                "without a table [excitation] no K(w), C or orbit is identified",
-            ),
-            *interval_rows(result, KXX, KYY, KYY_TILTS_FOLLOW),
-            *held_rows(result),
-            *loaded_balls(result, ["most"]),
+            (f"Answer at rest, {tilt_words(result['scene']['supports']['tilt'])}", "", ""),
+            *run_parts.interval_rows(result, q.KXX, q.KYY, q.KYY_TILTS_FOLLOW),
+            *run_parts.held_rows(result),
+            *run_parts.loaded_balls(result, ["most"]),
         ]
-    major, minor = ORBIT_MAJOR.of(result), ORBIT_MINOR.of(result)
-    thin, dry = minor <= _LINE * major, dry_damping_note(result)
-    axes = f"{ORBIT_MAJOR.read(major):.4g} x {'0' if thin else f'{ORBIT_MINOR.read(minor):.4g}'} {ORBIT_MAJOR.read_unit}"
-    force = f"{FORCE_AMPLITUDE.text(FORCE_AMPLITUDE.of(result), 4)} {result['scene']['excitation']['kind']}"
+    major, minor = q.ORBIT_MAJOR.of(result), q.ORBIT_MINOR.of(result)
+    thin = minor <= _LINE * major
+    axes = (
+        f"{q.ORBIT_MAJOR.read(major):.4g} x {'0' if thin else f'{q.ORBIT_MINOR.read(minor):.4g}'} {q.ORBIT_MAJOR.read_unit}"
+    )
+    force = f"{q.FORCE_AMPLITUDE.text(q.FORCE_AMPLITUDE.of(result), 4)} {result['scene']['excitation']['kind']}"
     return [
-        (f"Answer at {SPEED.of(result):g} r/min, {force}, {tilt_words(identification['tilt'])}", "", ""),
-        *interval_rows(result, K),
+        (f"Answer at {q.SPEED.of(result):g} r/min, {force}, {tilt_words(identification['tilt'])}", "", ""),
+        *run_parts.interval_rows(result, q.K),
         *_damping_rows(result, identification),
-        Z.fact(result, f"{identification['definition'].partition(':')[0]}, m = {MASS.of(result):.4g} kg"),
+        q.Z.fact(result, f"{identification['definition'].partition(':')[0]}, m = {q.MASS.of(result):.4g} kg"),
         ("orbit, semi-axes", axes, f"synchronous (1x){', a line' if thin else ''}"),
-        *([("", "", dry)] if dry else []),
     ]
 
 
@@ -80,17 +54,19 @@ def _damping_rows(result: Content, identification: ReadTables) -> list[Row]:
     """C with its origin; of a band C, loss factor and phase at both ends."""
     band, origin = identification["band"], identification["damping_origin"]
     if band is None:
-        name, value, remark = C.fact(result, origin)
-        return [(name, value, origin if origin == DRY else remark)]
+        name, value, remark = q.C.fact(result, origin)
+        rule = (q.dry_damping_note(result) or "").partition(" gives ")[2].partition(":")[0]
+        return [(name, value, f"{'dry; ' if origin == q.DRY else ''}by 1.25e-5 s K: {rule}" if rule else remark)]
     low, high = band["loss_factor"]
     return [
-        (C.label, C.span(band[C.name], 3), origin),
+        (q.C.label, q.C.span(band[q.C.name], 3), origin),
         ("loss factor", f"{low:.3g} to {high:.3g}", "w C / K at both ends; other numbers are of the low end"),
-        (PHASE_LAG.label, PHASE_LAG.span(band["phase_lag_deg"], 3), PHASE_LAG.words),
+        (q.PHASE_LAG.label, q.PHASE_LAG.span(band["phase_lag_deg"], 3), q.PHASE_LAG.words),
     ]
 
 
-_LEFT_OUT_SHOWN = 2
+#: Signs of a warning in one line of 80.
+_LINE_OF_WARNING = 71
 
 
 class Screen(NamedTuple):
@@ -105,18 +81,20 @@ class Screen(NamedTuple):
 
 def screen(result: Content) -> Screen:
     """Of one run, from the content of result.json."""
-    rows = [*_answer_rows(result), *equilibrium_rows(result), *quantity_rows(result)]
+    rows = [*_answer_rows(result), *equilibrium_rows(result), *run_parts.quantity_rows(result)]
     if result["tolerances"]:
         from raceway.pipeline.first_order import tolerance_rows
 
         rows += tolerance_rows(result["tolerances"])
     # The rows without the numbers that a part of the error of Z is as large as, or larger.
     parts = result["error"]["unresolved"]
-    why = f"the error of Z ({', '.join(parts)}) is as large as Z" if parts else ""
-    rows = [(name, "not resolved", why) if parts and name in _OF_Z else (name, value, note) for name, value, note in rows]
+    lost = {name: "-" for name, _, _ in rows if name in _OF_Z and parts}
+    why = dict.fromkeys(list(lost)[:1], f"not resolved: the error of Z ({', '.join(parts or ())}) is as large as Z")
+    rows = [(name, lost.get(name, value), why.get(name, "" if name in lost else note)) for name, value, note in rows]
     rows += bodies_rows(result["model"])
     rows += orbit_rows(result["motion"]["orbits"] if result["motion"] else [])
-    rows += [("Error and cost", "", ""), *error_rows(result), *stability_rows(result["stability"]), cost_row(result["cost"])]
+    rows += [("Error and cost", "", ""), *error_rows(result), *stability_rows(result["stability"])]
+    rows.append(cost_row(result["cost"]))
     # Geometry, arrangement and model, one per line.
     scene, angle = result["scene"], f"{result['equilibrium']['free_contact_angle_deg']:.5g} deg"
     b = scene["bearing"]
@@ -126,22 +104,19 @@ def screen(result: Content) -> Screen:
         angle += ", from the clearance"
     balls = f"{b['ball_count']} {'rollers' if rollers else 'balls'} of {1e3 * b['ball_diameter']:g} mm on {1e3 * b['pitch_diameter']:g} mm"
     geometry = result["geometry"] or {}
-    maker = f"; maker {geometry['maker'] or 'not said'}" if geometry else ""
+    maker = f"; maker {geometry['maker']}" if geometry.get("maker") else ""
     words = [f"{b.get('preset') or 'own geometry'}: {balls}, contact angle {angle}{maker}"]
     if b.get("arrangement", "single") != "single" or b.get("row"):
         # Arrangement, distances and preload of a set of rows.
-        bearing = b
-        kind, own = bearing.get("arrangement", "single"), bearing.get("row") or []
-        forces = f"{bearing['preload']:g} N" if bearing.get("preload") else "the rows' own forces"
-        if bearing.get("second_preload"):
-            forces += f" and {bearing['second_preload']:g} N"
-        has_preload = bearing.get("preload") or any(row.get("preload") for row in own)
-        each = " of each row, as ground" if bearing.get("preload_of") == "row" else ""
-        mounting = (
-            f"preload {forces}{each} before mounting ({bearing['preload_kind']})" if has_preload else "without preload"
-        )
+        kind, own = b.get("arrangement", "single"), b.get("row") or []
+        forces = f"{b['preload']:g} N" if b.get("preload") else "the rows' own forces"
+        if b.get("second_preload"):
+            forces += f" and {b['second_preload']:g} N"
+        has_preload = b.get("preload") or any(row.get("preload") for row in own)
+        each = " of each row, as ground" if b.get("preload_of") == "row" else ""
+        mounting = f"preload {forces}{each} before mounting ({b['preload_kind']})" if has_preload else "without preload"
         count = len(own) if kind == "single" else len(signs_of(kind))
-        apart = bearing.get("row_distance") or bearing.get("width")
+        apart = b.get("row_distance") or b.get("width")
         places = (
             ", ".join(f"{1e3 * row['position']:g}" for row in own) + " mm"
             if own and all(row.get("position") is not None for row in own)
@@ -150,28 +125,41 @@ def screen(result: Content) -> Screen:
         what = "unequal rows, see bearing.row" if any(set(row) & set(GEOMETRY) for row in own) else "rows of these balls"
         name = f"pair {kind}, {_PAIRS[kind]}" if kind in _PAIRS else f"set {kind}" if kind != "single" else "set of rows"
         words.append(f"{name}: {'two' if count == 2 else count} {what}, {places}, {mounting}")
-    words += [geometry["designation"]] if "designation" in geometry else []
-    law = f"law {scene['contact']['kind']}, {scene['contact']['discretisation']}"
+    spread = scene["contact"]["discretisation"]
+    law = f"law {scene['contact']['kind']}{'' if spread == 'resultant' else f', {spread}'}"
     if method := result["plan"].get("integrator"):  # ``raceway plan`` has the reason
-        law += f"; integrator {method['kind']}{', by default' if method['why'] else ''}"
+        law += f"; integrator {method['kind']}"
     words.append(f"{scene['bodies']['kind']} bodies, {law}")
-    omitted = [row["part"] for row in result["plan"]["left_out"]]
-    more = f" and {len(omitted) - _LEFT_OUT_SHOWN} more" if len(omitted) > _LEFT_OUT_SHOWN else ""
-    left_out = f"left out: {', '.join(omitted[:_LEFT_OUT_SHOWN])}{more} (raceway plan)"
+    words += ["static: without [excitation]"] if result["identification"] is None else []
+    left_out = f"raceway plan: {len(result['plan']['left_out'])} parts left out"
     return Screen(result["title"], "\n".join(words), [micro(text) for text in result["warnings"]], rows, left_out)
 
 
 def report(result: Content) -> list[Part]:
-    """Of a terminal: what makes the numbers doubtful is read before them, how the bearing is arranged and modelled after them."""
+    """Of a terminal: the answer, what makes it doubtful, a line each unless progress is reported, and what was computed."""
     rows = screen(result)
     bearing, *model = rows.bearing.splitlines()
+    first = next(k for k, (name, value, _) in enumerate(rows.rows) if k and name and not value)
+    warnings = rows.warnings if getLogger("raceway").isEnabledFor(INFO) else [_in_a_line(text) for text in rows.warnings]
+    cut = "in full, with remedies: -v or result.json" if warnings != rows.warnings else ""
     return [
-        *(Words(f"warning: {text}", "yellow") for text in rows.warnings),
-        Words(rows.title, "bold"),
+        Words("; ".join(rows.title.splitlines()), "bold"),
+        sections(rows.rows[:first]),
+        *(Words(f"warning: {text}", "yellow") for text in warnings),
+        *([Words(cut, "dim")] if cut else []),
         Words(bearing, "dim"),
-        sections(rows.rows),
-        Words("\n".join([*model, rows.left_out]), "dim"),
+        sections(rows.rows[first:]),
+        Words("; ".join([*model, rows.left_out]), "dim"),
     ]
+
+
+def _in_a_line(text: str) -> str:
+    """The start of a warning that fits a line of a terminal, up to where a part of a sentence ends."""
+    if len(text) <= _LINE_OF_WARNING:
+        return text
+    ends = [mark.start() for mark in re.finditer(r"[.:;,] ", text[: _LINE_OF_WARNING - 2])]
+    end = max(ends, default=0)
+    return f"{text[:end] if end >= _LINE_OF_WARNING // 2 else text[: _LINE_OF_WARNING - 2].rpartition(' ')[0]} …"
 
 
 #: How the rows of a pair stand to each other.

@@ -32,31 +32,16 @@ def page(
     """The page of article.json's content; ``load``: the scene's axial load [N]."""
     from raceway import __version__
 
-    by_name, verdicts = {picture.name: picture for picture in pictures}, content["verdicts"]
+    by_name = {picture.name: picture for picture in pictures}
     footer = f"Made by `{command}`, Raceway {__version__}, in {content['cost']['cpu_s']:.0f} s of processor time. "
     footer += "Numbers of all runs: article.json and curves.csv beside this page."
     out = Page("The article’s claims, computed again", content["title"], footer)
-    counts = Counter(verdict["kind"] for verdict in verdicts)
-    parts = ", ".join(f"{counts[kind]} {words}" for kind, (_, words) in KINDS.items() if counts[kind])
+    first, *points = lead(content, load)
     out.text(
-        f"The claims of {ARTICLE} are put to {len(content['rows'])} motions of this "
-        f"program, each claim in every reading that its words allow. Of {len(verdicts)} readings {parts}. No claim "
-        "is fitted: each verdict follows from a rule that is printed beside it.",
+        f"{first} The claims are those of {ARTICLE}, each in every reading that its words allow; each verdict follows from a rule that is "
+        "printed beside it, and no claim is fitted.",
         kind="lead",
     )
-    first = next(iter(content["causes"][f"{load:g}"].values()))
-    changes = ", ".join(f"{percent(first[tilt])} ({words})" for tilt, words in TILT_WORDS.items())
-    points = [
-        _friction_in_short(content),
-        f"Under the rotating force m e w² at {load:g} N, without friction, K changes from the lowest to the highest speed by {changes}.",
-    ]
-    turns = [(line["turning_point"], line["axial_n"]) for line in content["tilt_stiffness"]]
-    ends = [f"{_round(stiffness)} N m/rad at {axial:g} N" for stiffness, axial in turns if stiffness is not None]
-    if ends:
-        points.append(
-            f"What turns hardening into softening is the tilt stiffness of the shaft: K stops rising with speed above "
-            f"{', '.join(ends)}. The shaft is taken with {_round(content['shaft_tilt_stiffness'])} N m/rad."
-        )
     out.listing(points)
     _swaps(out, content, load)
     _friction(out, content, by_name)
@@ -91,6 +76,27 @@ def page(
     _rig(out, content)
     _faults(out, content, [row for rows in scan.values() for row in rows])
     return out
+
+
+def lead(content: ReadTables, load: float) -> list[str]:
+    """What of the article stands, and what decides it: friction, the tilt boundary, the shaft's stiffness."""
+    verdicts, motions = content["verdicts"], len(content["rows"])
+    counts = Counter(verdict["kind"] for verdict in verdicts)
+    parts = ", ".join(f"{counts[kind]} {words}" for kind, (_, words, _) in KINDS.items() if counts[kind])
+    first = next(iter(content["causes"][f"{load:g}"].values()))
+    changes = ", ".join(f"{percent(first[tilt])} ({words})" for tilt, words in TILT_WORDS.items())
+    points = [
+        f"Of {len(verdicts)} readings of the article's claims {parts}, by {motions} motions.",
+        _friction_in_short(content),
+        f"Under the rotating force m e w² at {load:g} N, without friction, K changes from the lowest to the highest speed by {changes}.",
+    ]
+    turns = [(line["turning_point"], line["axial_n"]) for line in content["tilt_stiffness"]]
+    if ends := [f"{_round(stiffness)} N m/rad at {axial:g} N" for stiffness, axial in turns if stiffness is not None]:
+        points.append(
+            f"What turns hardening into softening is the tilt stiffness of the shaft: K stops rising with speed above "
+            f"{', '.join(ends)}. The shaft is taken with {_round(content['shaft_tilt_stiffness'])} N m/rad."
+        )
+    return points
 
 
 def _friction_in_short(content: ReadTables) -> str:
@@ -142,11 +148,11 @@ def _swaps(out: Page, content: ReadTables, load: float) -> None:
 
 def _verdicts(out: Page, content: ReadTables) -> None:
     out.section("Verdicts")
-    badges = [Cell(verdict["kind"], KINDS[verdict["kind"]][0], verdict["region"]) for verdict in content["verdicts"]]
-    with_badges = list(zip(content["verdicts"], badges, strict=True))
-    rows = [[verdict["number"], verdict["claim"], badge] for verdict, badge in with_badges]
-    out.table(["", "claim", "verdict"], rows, "The article’s claims; how each was decided stands below")
-    for verdict, badge in with_badges:
+    kinds = {kind: (word, tone) for kind, (tone, _, word) in KINDS.items()}
+    rows = [[one["number"], one["claim"], Cell(*kinds[one["kind"]]), one["where"]] for one in content["verdicts"]]
+    out.table(["", "claim", "verdict", "where"], rows, "The article’s claims; how each was decided stands below")
+    for verdict in content["verdicts"]:
+        badge = Cell(verdict["kind"], kinds[verdict["kind"]][1], verdict["region"])
         parts = [("Rule", verdict["rule"]), ("Computed", verdict["computed"])]
         if verdict["failed"]:
             parts.append(("Failed", f"runs failed or have no stable motion: {verdict['failed']}"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import attrs
 
 from raceway.extend import ReadTables, Tables
+from raceway_article.design import TILT_WORDS
 
 #: A change below this over the whole range neither rises nor falls.
 LEVEL = 0.005
@@ -28,14 +29,16 @@ class Finding:
 
 
 HOLDS, PARTLY, NOT, FAILED, UNTESTED = "holds", "holds only for", "does not hold", "failed", "cannot be tested"
-#: Kind of a verdict -> tone of its cell on a page, and words after a count.
+#: Kind of a verdict -> tone of its cell on a page, words after a count, and its one word in tables.
 KINDS = {
-    HOLDS: ("good", "hold"),
-    PARTLY: ("partly", "hold only in a region"),
-    NOT: ("bad", "do not hold"),
-    FAILED: ("failed", "failed"),
-    UNTESTED: ("partly", "cannot be tested"),
+    HOLDS: ("good", "hold", "holds"),
+    PARTLY: ("partly", "hold only in a region", "partly"),
+    NOT: ("bad", "do not hold", "no"),
+    FAILED: ("failed", "failed", "failed"),
+    UNTESTED: ("partly", "cannot be tested", "untested"),
 }
+#: Words of ``where`` at most.
+_MOST_WORDS = 15
 #: How every rule treats numbers that are missing; the rules do it, this tells the reader.
 BRIDGED = "unstable motions between the ends are left out, a failed run leaves no judgement"
 
@@ -62,10 +65,25 @@ class Verdict:
     failed: str = ""
     findings: tuple[Finding, ...] = ()
 
+    @property
+    def where(self) -> str:
+        """Where it holds in few words: the region, or of a longer one in how many runs at each tilt."""
+        if len(self.region.split()) <= _MOST_WORDS:
+            return self.region
+        parts = []
+        for tilt in dict.fromkeys(finding.at["tilt"] for finding in self.findings):
+            outcomes = [finding.holds for finding in self.findings if finding.at["tilt"] == tilt]
+            parts.append(f"{TILT_WORDS[tilt].removeprefix('tilt ')} {sum(map(bool, outcomes))} of {len(outcomes)}")
+        return f"tilt {', '.join(parts)}"
+
     def row(self) -> Tables:
         """As a row of a flat table."""
         words = f"{self.kind} {self.region}" if self.region else self.kind
-        return {**attrs.asdict(self, filter=lambda field, _: field.name != "findings"), "verdict": words}
+        return {
+            **attrs.asdict(self, filter=lambda field, _: field.name != "findings"),
+            "verdict": words,
+            "where": self.where,
+        }
 
     def to_dict(self) -> Tables:
         return {**self.row(), "findings": [attrs.asdict(finding) for finding in self.findings]}

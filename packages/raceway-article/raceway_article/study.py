@@ -30,7 +30,7 @@ from raceway_article.design import (
     AMPLITUDES, ANSWERED, DIRECTIONS, ROTATING, SOLVER_SPEEDS, STIFFNESSES, TILTS, Curve, Curves, Design, Setting,
     article_tables, hardening,
 )  # fmt: skip
-from raceway_article.rules import Verdict
+from raceway_article.rules import KINDS, Verdict
 
 #: Swaps of one choice against the article's bidirectional model with ball inertia; the first changes nothing.
 _SWAPS: dict[str, Tables] = {
@@ -425,17 +425,16 @@ class Article(Answer):
         return self.title, [(f"claim {verdict.number}", verdict.kind, verdict.region) for verdict in self.verdicts]
 
     def report(self) -> Iterator[Part]:
-        """Verdicts, the check against an independent solver, failures and cost."""
+        """What stands and what decides it, a line a verdict, the check against an independent solver, failures and cost."""
+        from raceway_article.page import lead
+
         yield Words(self.title, "bold")
+        yield from lead(self.to_dict(), self.curves.design.scene_load)
         yield [
-            {
-                "": verdict.number,
-                "claim": verdict.claim,
-                "verdict": f"{verdict.kind} {verdict.region}".strip()
-                + ("; some runs failed or are unstable" if verdict.failed else ""),
-            }
-            for verdict in self.verdicts
+            {"": one.number, "claim": one.claim, "verdict": KINDS[one.kind][2], "where": one.where} for one in self.verdicts
         ]
+        if unsure := [verdict.number for verdict in self.verdicts if verdict.failed]:
+            yield Words(f"some runs failed or are unstable: {', '.join(unsure)}; which ones: article.json", "dim")
         equal = sum(trend.holds for trend in self.trends)
         yield Words(
             f"quasi-static trends equal to an independent solver's printed digits: {equal} of {len(self.trends)}", "dim"

@@ -74,26 +74,14 @@ class BallPass:
 
     @staticmethod
     def rows(table: ReadTables) -> list[Fact]:
-        """Of each row that differs."""
-        words, facts = ("contact_angle_deg", "ftf", "bsf", "bpfo", "bpfi"), []
-        texts = [tuple(f"{row[word]:.4g}" for word in words) for row in table["rows"]]
+        """A line of each row that differs, in Hz where the shaft turns."""
+        names, turning = ("ftf", "bsf", "bpfo", "bpfi"), bool(table["speed_rpm"])
+        texts = []
+        for row in table["rows"]:
+            numbers = ", ".join(f"{name.upper()} {row[f'{name}_hz' if turning else name]:.4g}" for name in names)
+            texts.append(f"{numbers} {'Hz' if turning else 'x shaft'} at {row['contact_angle_deg']:.4g} deg")
         different = dict.fromkeys(texts)
-        for angle, cage, spin, outer, inner in different:
-            k = texts.index((angle, cage, spin, outer, inner))
-            of_row = f" of row {k + 1}" if len(different) > 1 else ""
-            hertz = {name: _hertz(table, k, name) for name in words[1:]}
-            facts.append((f"FTF, BSF x shaft{of_row}", f"{cage}, {spin}", _together(hertz["ftf"], hertz["bsf"])))
-            inner_outer = f"{_together(hertz['bpfo'], hertz['bpfi'])} at {angle} deg".strip()
-            facts.append((f"BPFO, BPFI x shaft{of_row}", f"{outer}, {inner}", inner_outer))
-        return facts
-
-
-def _hertz(table: ReadTables, row: int, name: str) -> str:
-    return f"{table['rows'][row][f'{name}_hz']:.5g}" if table["speed_rpm"] else ""
-
-
-def _together(*hertz: str) -> str:
-    return f"{', '.join(hertz)} Hz" if all(hertz) else ""
+        return [("", "", f"row {texts.index(text) + 1}: {text}" if len(different) > 1 else text) for text in different]
 
 
 def ball_pass(ball_count: int, ball_diameter: float, pitch_diameter: float, cosine: float | np.ndarray) -> Tables:

@@ -133,10 +133,9 @@ class Life:
                 at_speed = f"{hours:.4g} h; " if hours is not None else ""
                 facts.append((words, f"{turns:.4g} million", f"{at_speed}reached by {100.0 * share:g} %{by}"))
         origin = f"C = {number(table['rating_n'], 'N')}, by {table['rating_from']}"
-        facts.append(("equivalent load P", number(table["equivalent_load_n"], "N"), origin))
-        if table["static_safety"] is not None:
-            facts.append(("static safety s0", f"{table['static_safety']:.3g}", "ISO 76, most loaded contact"))
-        return facts
+        load, safety = number(table["equivalent_load_n"], "N"), table["static_safety"]
+        both = ("load P, static s0", f"{load}, {safety:.3g}") if safety is not None else ("equivalent load P", load)
+        return [*facts, (*both, origin)]
 
     def warnings(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> list[str]:
         sentences, share = [], float(values["equivalent_load_n"][0] / values["rating_n"][0])
