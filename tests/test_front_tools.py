@@ -69,9 +69,10 @@ def test_a_comparison_shows_itself_and_is_labelled(comparison):
         k = float(data.equivalent_stiffness.sel(row.point))
         assert k == row.result["identification"]["equivalent_stiffness"]
     assert data.equivalent_stiffness.attrs["units"] == "N/m"
-    assert comparison.plot().get_xlabel() == "load.axial"
+    assert comparison.plot().get_xlabel() == "axial load [N]"
     one = rw.compare(SCENE, {"supports.tilt": ["locked", "free"]})
-    assert "K  [" in one.plot().get_xlabel()  # a dot for each run, where no axis has numbers
+    axes = one.plot()  # a mark for each run, where no axis has numbers
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("tilt", "K [N/µm]")
 
 
 def test_finished_runs_are_kept_where_a_folder_is_given(tmp_path):

@@ -345,7 +345,7 @@ def program_key(registry: Registry, used: Collection[tuple[str, str]] | None = N
 
 @cache
 def _own_sources() -> str:
-    root = Path(__file__).resolve().parents[2]
+    root = Path(__file__).resolve().parents[1]
     return source_key() + _row_hash(tuple(sorted(root.rglob("*.py"))))
 
 

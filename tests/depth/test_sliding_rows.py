@@ -220,7 +220,7 @@ def test_a_held_displacement_has_the_same_three_states():
 def test_the_screen_names_the_three_states():
     found = rw.run(sprung("TBT", bearing={"second_preload": 600.0}, load={"axial": 0.0})).to_dict()
     text = " ".join(" ".join(row) for row in mounting_rows(found["equilibrium"]))
-    assert "preload 600 N running, without loads; before mounting 300 and 600 N, mounted 600 N" in text
+    assert "preload 600 N running; 300 and 600 N before, 600 mounted" in text
 
 
 def test_the_travel_of_a_spring_counts_from_where_the_preload_sets_the_rows(built):
