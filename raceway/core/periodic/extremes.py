@@ -13,6 +13,7 @@ from numba import float64, int64, void
 
 from raceway.core.jit import jit
 from raceway.core.lanes import WIDTH, any_of, larger, live_of, put, spread, take, where
+from raceway.core.periodic.fourier import circle
 from raceway.core.signatures import MATRIX, VECTOR
 
 _ITERATIONS, _SETTLED, _TERMS = 6, 1e-9, 18
@@ -84,7 +85,7 @@ def force_extremes(force, order, spans, peak, least, turn):
     n, z, count, times = force.shape[0], order.size, 0, turn.shape[0]
     samples, curve_of, first_of, curves = n * spans, np.full(z, -1), np.empty(z, np.int64), np.zeros((n * spans, 2 * z))
     table = np.empty(2 * samples)
-    _circle(samples, table)
+    circle(samples, table)
     # Balls that come to stand where the first one stood have its curve, later.
     for k in range(z):
         if curve_of[k] >= 0:
@@ -109,7 +110,7 @@ def force_extremes(force, order, spans, peak, least, turn):
     while fine % spans:
         fine += times
     values, table = np.empty(fine), np.empty(2 * fine)
-    _circle(fine, table)
+    circle(fine, table)
     for curve in range(count if times > 0 else 0):
         for i in range(fine):
             value, at = 0.0, 0
@@ -127,10 +128,3 @@ def force_extremes(force, order, spans, peak, least, turn):
                 if at >= fine:
                     at -= fine
             ball = order[ball]
-
-
-@jit(void(int64, VECTOR), inline=True)
-def _circle(count, table):
-    """Cosines and sines (2 count,) of equidistant angles of a turn."""
-    for i in range(count):
-        table[i], table[count + i] = np.cos(2.0 * np.pi * i / count), np.sin(2.0 * np.pi * i / count)

@@ -43,6 +43,13 @@ TURNING = record(
 )  # fmt: skip
 
 
+@jit(void(int64, VECTOR), inline=True)
+def circle(count, table):
+    """Cosines and sines (2 count,) of equidistant angles of a turn."""
+    for i in range(count):
+        table[i], table[count + i] = np.cos(2.0 * np.pi * i / count), np.sin(2.0 * np.pi * i / count)
+
+
 @jit(void(int64, float64, VECTOR, VECTOR))
 def circulants(n, span, first, second):
     """Columns (n,) of the circulant matrices of the first and second derivative of n samples of a span; n is even."""
@@ -96,18 +103,18 @@ def ball_rates(ball, order, first, speed, rate):
             follower = order[follower]
 
 
-@jit(void(TURNING, int64, MATRIX), allocates=True)
+@jit(void(TURNING, int64, VECTOR), allocates=True)
 def force_line(turning, p, push):
-    """Synchronous (1x) component of a point's force, real and imaginary part (2, 5)."""
+    """Synchronous (1x) component of a point's force, real and imaginary parts (10,)."""
     force = np.empty(5)
-    for i in range(5):
-        push[0, i] = push[1, i] = 0.0
+    for i in range(10):
+        push[i] = 0.0
     for k in range(16):
         angle = 2.0 * np.pi * k / 16.0
         turning.force(angle / turning.speed[p], turning.params[p], force)
         for i in range(5):
-            push[0, i] += force[i] * np.cos(angle) / 8.0
-            push[1, i] -= force[i] * np.sin(angle) / 8.0
+            push[i] += force[i] * np.cos(angle) / 8.0
+            push[5 + i] -= force[i] * np.sin(angle) / 8.0
 
 
 @jit(void(MATRIX, float64, VECTOR, VECTOR))
@@ -131,11 +138,10 @@ def harmonic_lines(u, sense, mean, line):
             line[5 + i], line[6 + i] = sense * line[i + 1], -sense * line[i]
 
 
-@jit(void(LINEAR, POINTS, STATES, TURNING, int64, MATRIX), allocates=True)
-def linear_response(linear, points, states, turning, p, u):
-    """Of a point M q'' + C q' + (K + S) q = F about its equilibrium, seen from the frame: u (n, 5)."""
-    push, A, speed, K, q = np.empty((2, 5)), np.zeros((10, 11)), turning.speed[p], states.stiffness[p], np.empty(5)
-    force_line(turning, p, push)
+@jit(void(LINEAR, POINTS, STATES, TURNING, int64, VECTOR, MATRIX), allocates=True)
+def linear_response(linear, points, states, turning, p, push, u):
+    """Of a point M q'' + C q' + (K + S) q = F about its equilibrium, seen from the frame: u (n, 5); ``push`` : F, see ``force_line``."""
+    A, speed, K, q = np.zeros((10, 11)), turning.speed[p], states.stiffness[p], np.empty(5)
     for i in range(5):
         if linear.free[i] == 0.0:
             A[i, i] = A[5 + i, 5 + i] = 1.0
@@ -147,7 +153,7 @@ def linear_response(linear, points, states, turning, p, u):
         dynamic_stiffness = (points.shaft[p] if i > 2 else 0.0) - speed * speed * turning.mass[p, i]
         A[i, i] += dynamic_stiffness
         A[5 + i, 5 + i] += dynamic_stiffness
-        A[i, 10], A[5 + i, 10] = push[0, i], push[1, i]
+        A[i, 10], A[5 + i, 10] = push[i], push[5 + i]
     solve(A)
     for j in range(u.shape[0]):
         angle = turning.span * j / u.shape[0]

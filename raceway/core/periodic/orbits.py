@@ -12,14 +12,32 @@ import numpy as np
 from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
-from raceway.core.lanes import WIDTH, any_of, live_of, put, where
+from raceway.core.lanes import WIDTH, live_of, put, where
 from raceway.core.periodic import fourier, lockstep
+from raceway.core.periodic.block import (
+    ANSWER,
+    BLOCK,
+    BY_RATE,
+    CENTRE,
+    DAMPED,
+    FIXED,
+    MASS,
+    ROWS,
+    SHARED_ROWS,
+    VISCOUS,
+    WANTED,
+    Block,
+    double,
+    put_fixed,
+    turn_directions,
+)
 from raceway.core.periodic.extremes import force_extremes
 from raceway.core.periodic.monodromy import span_transfer
+from raceway.core.periodic.steps import COLUMNS
 from raceway.core.ring.elimination import copy_matrix
 from raceway.core.ring.kernels import CONTACT_FORCE
 from raceway.core.ring.kernels.layout import TILT_ARM, work_rows
-from raceway.core.ring.lockstep import ARM, DQ, LOAD, PLACE, SHAFT, WORK_ROWS, Q, gather
+from raceway.core.ring.lockstep import ARM, DQ, LOAD, PLACE, SHAFT, TANGENT, WORK_ROWS, Q, asks_for_rates, gather
 from raceway.core.ring.states import KERNELS, POINTS, STATES
 from raceway.core.signatures import CUBE, LINEAR, MATRIX, VECTOR, record
 
@@ -58,8 +76,6 @@ ORBITS = record(
 @jit(void(fourier.TURNING, MATRIX, MATRIX, int64, float64, int64, ORBITS), allocates=True)
 def _report(turning, u, force, status, error, p, out):
     """One point's answer from its motion u (n, 5) and contact forces (n, 2 Z)."""
-    push = np.empty((2, 5))
-    fourier.force_line(turning, p, push)
     fourier.harmonic_lines(u, turning.sense, out.mean[p], out.line[p])
     out.status[p], out.error[p], out.samples[p], out.span[p] = status, error, u.shape[0], turning.span
     # Rms of what is neither mean nor 1x, over that of 1x, radially
@@ -75,11 +91,9 @@ def _report(turning, u, force, status, error, p, out):
             square += (u[j, i] - mean[i] - synchronous) ** 2 / n
     out.residual[p] = np.sqrt(square / max(size, 1e-300))
     force_extremes(force, turning.order, int(np.round(2.0 * np.pi / turning.span)), out.peak[p], out.least[p], out.turn[p])
-    for i in range(5):
-        out.force[p, i], out.force[p, 5 + i] = push[0, i], push[1, i]
 
 
-@jit(void(int64, int64, POINTS, STATES, fourier.TURNING, lockstep.BLOCK), allocates=True)
+@jit(void(int64, int64, POINTS, STATES, fourier.TURNING, BLOCK), allocates=True)
 def _put_loads(n, first, points, states, turning, block):
     """Loads and equilibria of a block's points, seen from the frame, at n samples."""
     force, answer, stride = np.empty(5), np.empty(5), block.rows.shape[0] // n
@@ -95,13 +109,14 @@ def _put_loads(n, first, points, states, turning, block):
                 row[LOAD + i, lane] = answer[i]
             fourier.turn_vector(-turning.sense * angle, states.q[p], answer)
             for i in range(5):
-                row[lockstep.CENTRE + i, lane] = answer[i]
+                row[CENTRE + i, lane] = answer[i]
 
 
-@jit(boolean(KERNELS, boolean, LINEAR, int64, POINTS, STATES, fourier.TURNING, MATRIX, lockstep.BLOCK), allocates=True)
-def _begin(kernels, alone, linear, first, points, states, turning, like, block):
+@jit(boolean(KERNELS, boolean, LINEAR, int64, POINTS, STATES, fourier.TURNING, MATRIX, MATRIX, BLOCK), allocates=True)
+def _begin(kernels, alone, linear, first, points, states, turning, push, like, block):
     """The least samples of a block's points, to which balls follow from the equilibrium; whether the law lets them, which has no rates.
 
+    push : 1x components of the forces (n, 10)
     like : motion (n, 5) about the first point's equilibrium that all begin with, or (0, 5): each with its linear response
     """
     n, sense, work, rows, shared = turning.least, turning.sense, block.work, block.rows, block.shared
@@ -118,21 +133,22 @@ def _begin(kernels, alone, linear, first, points, states, turning, like, block):
                 for c in range(2):
                     work[0, PLACE, (c * points.table.shape[1] + k) * WIDTH + lane] = states.ball[p, k, c]
         for i in range(50):
-            rows[0, lockstep.TANGENT + i, lane] = 0.0
-    if not alone and any_of(lockstep.forces(kernels.law, 1, block)[1]):
-        return False
-    for j in range(n - 1, -1, -1):
-        if j > 0:
-            copy_matrix(rows[0], rows[j * stride])
+            rows[0, TANGENT + i, lane] = 0.0
+    if not alone:
+        lockstep.forces(kernels.law, 1, block)
+        if asks_for_rates(work[0]):
+            return False
+    for j in range(1, n):
+        copy_matrix(rows[0], rows[j * stride])
         if not alone:
             copy_matrix(work[0], work[j * stride])
-            lockstep.turn_directions(sense * turning.span * j / n, work[0], work[j * stride])
+            turn_directions(sense * turning.span * j / n, work[0], work[j * stride])
     _put_loads(n, first, points, states, turning, block)
     for lane in range(WIDTH):
         p = min(first + lane, states.status.size - 1)
         w = turning.speed[p]
         if len(like) == 0:
-            fourier.linear_response(linear, points, states, turning, p, u)
+            fourier.linear_response(linear, points, states, turning, p, push[p], u)
         for j in range(n):
             if len(like) > 0:
                 for i in range(5):
@@ -142,39 +158,38 @@ def _begin(kernels, alone, linear, first, points, states, turning, like, block):
                     u[j, i] = like[j, i] + moved[i]
             for i in range(5):
                 rows[j * stride, Q + i, lane] = u[j, i]
-                rows[j * stride, DQ + i, lane] = u[j, i] - rows[j * stride, lockstep.CENTRE + i, lane]
+                rows[j * stride, DQ + i, lane] = u[j, i] - rows[j * stride, CENTRE + i, lane]
         for i in range(5):
-            shared[lockstep.MASS + i, lane] = w * w * turning.mass[p, i]
+            shared[MASS + i, lane] = w * w * turning.mass[p, i]
             for m in range(5):
-                shared[lockstep.DAMPED + 5 * i + m, lane] = w * turning.damping[p, i, m]
-    lockstep.put_fixed(sense, rows[0], shared)
+                shared[DAMPED + 5 * i + m, lane] = w * turning.damping[p, i, m]
+    put_fixed(sense, rows[0], shared)
     return True
 
 
-@jit(
-    void(KERNELS, boolean, LINEAR, int64, int64, POINTS, STATES, fourier.TURNING, MATRIX, lockstep.BLOCK, ORBITS),
-    allocates=True,
-)
+@jit(void(KERNELS, boolean, LINEAR, int64, int64, POINTS, STATES, fourier.TURNING, MATRIX, BLOCK, ORBITS), allocates=True)
 def _solve_block(kernels, alone, linear, first, end, points, states, turning, like, block, out):
     """The orbits of those of ``WIDTH`` points from ``first`` on, before ``end``, that are not solved; alone: see ``lockstep.forces_alone``."""
     n, live, dofs, shared = turning.least, live_of(0, WIDTH), np.flatnonzero(linear.free > 0.0), block.shared
     line, mean, before, pending = np.empty(10), np.empty(5), np.zeros((WIDTH, 10)), np.zeros(WIDTH)
+    closeness = _CLOSE if len(like) == 0 else _CLOSER
     for p in range(first, min(first + WIDTH, end)):
         pending[p - first] = states.status[p] == 0 and out.status[p] != 0 and (alone or not lockstep.dampers(points, p))
-    if pending.max() == 0.0 or not _begin(kernels, alone, linear, first, points, states, turning, like, block):
+        if pending[p - first] > 0.0:
+            fourier.force_line(turning, p, out.force[p])
+    if pending.max() == 0.0 or not _begin(kernels, alone, linear, first, points, states, turning, out.force, like, block):
         return
     while True:
         for lane in range(WIDTH):
-            shared[lockstep.WANTED, lane] = pending[lane]
-        closeness = _CLOSE if len(like) == 0 else _CLOSER
+            shared[WANTED, lane] = pending[lane]
         done, steps, change = lockstep.solve_level(kernels, alone, n, first, points, states, turning, dofs, closeness, block)
-        put(shared, lockstep.ANSWER, 0, live, where(done, steps, np.inf))
-        put(shared, lockstep.ANSWER + 1, 0, live, change)
+        put(shared, ANSWER, 0, live, where(done, steps, np.inf))
+        put(shared, ANSWER + 1, 0, live, change)
         u, stride = np.empty((n, 5)), block.rows.shape[0] // n
         for lane in range(WIDTH):
             if pending[lane] == 0.0:
                 continue
-            p, error = first + lane, shared[lockstep.ANSWER, lane]
+            p, error = first + lane, shared[ANSWER, lane]
             for j in range(n):
                 for i in range(5):
                     u[j, i] = block.rows[j * stride, Q + i, lane]
@@ -187,29 +202,28 @@ def _solve_block(kernels, alone, linear, first, end, points, states, turning, li
                         square, size = square + (line[i] - before[lane, i]) ** 2, size + line[i] ** 2
                     before[lane, i] = line[i]
                 error = max(np.sqrt(square / size), error)
-            out.change[p] = shared[lockstep.ANSWER + 1, lane]
+            out.change[p] = shared[ANSWER + 1, lane]
             if solved and error > turning.tolerance and 2 * n <= turning.most and out.change[p] <= _WILD:
                 continue
             pending[lane] = 0.0
-            A0, A1, force = np.empty((n, 5, 5)), np.empty((n, 5, 5)), np.empty((n, 2 * points.table.shape[1]))
+            force = np.empty((n, 2 * points.table.shape[1]))
             for j in range(n):
-                row = block.rows[j * stride]
-                for i in range(5):
-                    for m in range(5):
-                        at = 5 * i + m
-                        A0[j, i, m] = row[lockstep.TANGENT + at, lane] + shared[lockstep.FIXED + at, lane]
-                        A1[j, i, m] = row[lockstep.VISCOUS + at, lane] + shared[lockstep.BY_RATE + at, lane]
                 for k in range(force.shape[1]):
                     force[j, k] = max(block.work[j * stride, CONTACT_FORCE, k * WIDTH + lane], 0.0)
             status = fourier.SOLVED if error <= turning.tolerance else fourier.UNRESOLVED if solved else fourier.NOT_SOLVED
             _report(turning, u, force, status, error, p, out)
             if status == fourier.SOLVED and out.transfer.shape[1] > 0:
-                mass = turning.speed[p] ** 2 * turning.mass[p]
+                A0, A1, mass = np.empty((n, 5, 5)), np.empty((n, 5, 5)), turning.speed[p] ** 2 * turning.mass[p]
+                for j in range(n):
+                    row = block.rows[j * stride]
+                    for at in range(25):
+                        A0[j, at // 5, at % 5] = row[TANGENT + at, lane] + shared[FIXED + at, lane]
+                        A1[j, at // 5, at % 5] = row[VISCOUS + at, lane] + shared[BY_RATE + at, lane]
                 if not span_transfer(A0, A1, mass, dofs, turning.span, out.transfer[p]):
                     out.status[p] = fourier.NOT_SOLVED
         if pending.max() == 0.0:
             break
-        lockstep.double(n, alone, turning.sense, turning.span, block)
+        double(n, alone, turning.sense, turning.span, block)
         n *= 2
         _put_loads(n, first, points, states, turning, block)
 
@@ -224,11 +238,12 @@ def orbits(kernels, linear, points, states, turning, near, out):
     for p in range(count):
         out.status[p] = states.status[p] if states.status[p] != 0 else fourier.NOT_SOLVED
     z, like, own = points.table.shape[1], np.empty((0, 5)), turning
-    block = lockstep.Block(
+    block = Block(
         np.empty((2 * z * WIDTH, points.params.shape[2])), np.zeros((2 * z * WIDTH, 0)), np.zeros((most, WORK_ROWS, 2 * z * WIDTH)),
-        np.zeros((most, lockstep.ROWS, WIDTH)), np.zeros((2 * lockstep.COLUMNS + 3, 5 * most, WIDTH)),
-        np.zeros((lockstep.SHARED_ROWS, WIDTH)), np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z)),
+        np.zeros((most, ROWS, WIDTH)), np.zeros((2 * COLUMNS + 3, 5 * most, WIDTH)),
+        np.zeros((SHARED_ROWS, WIDTH)), np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z)),
     )  # fmt: skip
+    # One loop for the first point and its neighbours: each call of ``_solve_block`` is compiled anew, in seconds.
     first, end = 0, 1 if near else count
     while first < count:
         for p in range(first, end, WIDTH):

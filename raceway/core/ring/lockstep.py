@@ -99,7 +99,7 @@ def centre(seat, of_points, row, live):
 
 
 @jit(void(int64, MASK, MATRIX, MATRIX), inline=True)
-def follow(k, live, of_points, work):
+def _follow(k, live, of_points, work):
     """Move balls with the ring's step and by their own, and see how far their contacts approach."""
     seat = seats(k, live, work)
     (ra, rr), (li, lo) = pair_of(work, REST, k, live), pair_of(work, OFFSET, k, live)
@@ -152,7 +152,7 @@ def _contacts(k, live, work):
     types.Tuple((LANES_PAIR, LANES_TENSOR, LANES, LANES_PAIR, LANES, MASK))(int64, MASK, boolean, at.ROLLING, MATRIX),
     inline=True,
 )
-def eliminated(k, live, rolls, rolling, work):
+def _eliminated(k, live, rolls, rolling, work):
     """What a ball does to the ring, its own place eliminated; its next step stays in ``work``.
 
     That is its force [N] with the tangent by e, its couple [N m] with that, the size of its contacts' forces, and whether it still moves.
@@ -258,6 +258,41 @@ def rolling_of(of_points, live):
     )  # fmt: skip
 
 
+@jit(
+    types.Tuple((ring.FORCES, ring.TANGENTS, LANES, MASK))(
+        LAW_POINTER, boolean, at.ROLLING, LANES, MATRIX, MATRIX, MATRIX, MATRIX
+    ),
+    inline=True,
+)
+def ring_forces(law, rolls, rolling, loads, params, memory, work, of_points):
+    """Move the balls; their forces on the ring and the tangent, the size of contact forces on top of the loads', whether balls still move."""
+    live, end, none = live_of(0, WIDTH), work.shape[1] // 2, spread(0.0)
+    for k in range(0, end, WIDTH):
+        _follow(k, live, of_points, work)
+    law(
+        work[rows.GAP], work[rows.GAP_RATE], params, memory, memory, 0.0,
+        work[rows.CONTACT_FORCE], work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE],
+    )  # fmt: skip
+    force, tangent, size, moves = no_force(), no_tangent(), loads, ~live
+    for k in range(0, end, WIDTH):
+        seat = seats(k, live, work)
+        own, stiffness, couple, by_centre, forces, moving = _eliminated(k, live, rolls, rolling, work)
+        force = with_force(force, seat, own.axial, own.radial, couple)
+        tangent = with_tangent(tangent, seat, stiffness, Pair(none, none), by_centre, none)
+        size, moves = size + forces, moves | moving
+    return force, tangent, size, moves
+
+
+@jit(boolean(MATRIX), inline=True)
+def asks_for_rates(work):
+    """Whether the law depends on rates of the gaps."""
+    live, rates = live_of(0, WIDTH), ~live_of(0, WIDTH)
+    for k in range(0, work.shape[1] // 2, WIDTH):
+        inner, outer = pair_of(work, rows.FORCE_BY_RATE, k, live)
+        rates = rates | ~(inner == 0.0) | ~(outer == 0.0)
+    return any_of(rates)
+
+
 @jit(boolean(LAW_POINTER, LINEAR, int64, POINTS, STATES, MATRIX, MATRIX, MATRIX, MATRIX))
 def lockstep(law, linear, first, points, states, params, memory, work, of_points):
     """The states of ``WIDTH`` points from ``first`` on, without their damping; whether the law depends on rates.
@@ -275,19 +310,7 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
     tangent, done, (rest_a, rest_r) = no_tangent(), ~live, pair_of(work, REST, 0, live)
     most = _LONGEST * (larger(rest_a, -rest_a) + larger(rest_r, -rest_r))
     for _ in range(_ITERATIONS):
-        for k in range(0, end, WIDTH):
-            follow(k, live, of_points, work)
-        law(
-            work[rows.GAP], work[rows.GAP_RATE], params, memory, memory, 0.0,
-            work[rows.CONTACT_FORCE], work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE],
-        )  # fmt: skip
-        force, tangent, size, moves = no_force(), no_tangent(), loads, ~live
-        for k in range(0, end, WIDTH):
-            seat = seats(k, live, work)
-            own, stiffness, couple, by_centre, forces, moving = eliminated(k, live, rolls, rolling, work)
-            force = with_force(force, seat, own.axial, own.radial, couple)
-            tangent = with_tangent(tangent, seat, stiffness, Pair(none, none), by_centre, none)
-            size, moves = size + forces, moves | moving
+        force, tangent, size, moves = ring_forces(law, rolls, rolling, loads, params, memory, work, of_points)
         norm = _imbalance(force, free, of_points, live)
         done = ~moves & (norm <= TOLERANCE * size)
         if rolls == turn and not any_of(~done):
@@ -309,12 +332,9 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
         done = ~live
     largest = _put_tangent(tangent, none, True, free, of_points, live)
     done = done & (_eliminate(of_points, live) > LEAST * largest)
-    rates = ~live
     for k in range(0, end, WIDTH):
         inner, outer = _contacts(k, live, work)
         (sa, sr), (pa, pr) = pair_of(work, STEP, k, live), pair_of(work, PLACE, k, live)
-        by_rate_i, by_rate_o = pair_of(work, rows.FORCE_BY_RATE, k, live)
-        rates = rates | ~(by_rate_i == 0.0) | ~(by_rate_o == 0.0)
         # A ball without centrifugal force that nothing presses has no place.
         done = done & ~((inner.force == 0.0) & (inner.stiffness == 0.0) & (take(work, REACH, end + k, live) == 0.0))
         put_pair(work, PLACE, k, live, pa + sa, pr + sr)
@@ -326,4 +346,4 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
         for j, entry in enumerate(entries):
             put(of_points, TANGENT + 5 * i + j, 0, live, entry)
     _scatter(first, work, of_points, states)
-    return any_of(rates)
+    return asks_for_rates(work)
