@@ -298,9 +298,9 @@ def find_root(forces, linear, tolerance, t, state, response, report):
         report[ITERATIONS], report[RESIDUAL] = iteration, norm / max(scale, 1e-300)
         if norm <= tolerance * scale:
             return CONVERGED
-        if not norm <= 1.5 * before:
+        if not (np.isfinite(norm) and norm <= 1.5 * before):
             cuts += 1
-            if cuts > _HALVINGS:
+            if cuts > _HALVINGS or before == np.inf:
                 return BALLS_FAILED if status != 0 else NOT_CONVERGED
             for i in range(5):
                 step[i] *= 0.5
