@@ -5,7 +5,7 @@ The builders are those of one point (``raceway.bodies.basis``, ``raceway.bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any, TypeVar
 
@@ -30,8 +30,8 @@ from raceway.core.ring.kernels.rigid_inertial import rigid_inertial, rigid_tange
 from raceway.core.ring.states import LOOSE, Kernels, Points, States
 from raceway.core.ring.system import System
 from raceway.core.signatures import FORCE, Linear
-from raceway.framework.contracts import ContactPairs, Excitation, SolvedPoints
-from raceway.framework.duties import force_params, law_params, reach_of, renews
+from raceway.framework.contracts import ContactPairs, SolvedPoints
+from raceway.framework.duties import force_params, is_elementwise_force, law_params, reach_of, renews
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
@@ -73,11 +73,19 @@ class ColumnBearing:
     unloaded: ColumnBearing | None = None
 
     @cached_property
-    def excitations(self) -> tuple[Sequence[Excitation], np.ndarray, np.ndarray]:
-        """The excitations that differ among the points, which of them acts at each (n,), and its speed (n,) [rad/s]."""
-        excitation, all_points = self.problem.excitation, np.zeros(self.problem.points, dtype=int)
-        several, which = distinct(excitation) if has_columns(excitation) else ([excitation], all_points)
-        return several, which, np.array([2.0 * np.pi / float(each.period_s or np.nan) for each in several])[which]
+    def force(self) -> tuple[np.ndarray, np.ndarray]:
+        """Parameters (n, k) of the excitation at each point, and its speed (n,) [rad/s]."""
+        excitation, n = self.problem.excitation, self.problem.points
+        if not has_columns(excitation) or is_elementwise_force(excitation):
+            params, period = force_params(excitation), excitation.period_s
+            numbers = np.broadcast_to(params, (*n, params.shape[-1])), np.broadcast_to(np.array(period), n)
+        else:
+            several, which = distinct(excitation)
+            numbers = (
+                np.array([force_params(each) for each in several])[which],
+                np.array([each.period_s for each in several])[which],
+            )
+        return np.ascontiguousarray(numbers[0]), 2.0 * np.pi / numbers[1].astype(float)
 
     @cached_property
     def pairs(self) -> ContactPairs:
@@ -135,7 +143,7 @@ class ColumnBearing:
         disturbed : whether ``transfer`` is computed, too;  times : of a turn at which contact forces are
         """
         z, n, inertia = self.points.table.shape[1], len(states.status), self.problem.inertia
-        several, which, speed = self.excitations
+        params, speed = self.force
         disturbances = 2 * int(self.linear.free.sum()) * disturbed
         shapes = [(10,), (10,), (5,), *[()] * 3, (2 * z,), (2 * z,), (times, 2 * z), *[()] * 3, 2 * (disturbances,)]
         out = Orbits(*(np.zeros((n, *shape)) for shape in shapes))
@@ -143,8 +151,7 @@ class ColumnBearing:
         rows, moments = (inertia.mass,) * 3 + (inertia.transverse,) * 2, gyroscopic(self.problem)
         mass = np.ascontiguousarray(np.stack([np.broadcast_to(value, n) for value in rows], axis=1), dtype=float)
         moments[:, range(3), range(3)] += np.broadcast_to(self.problem.rotor.damping, n)[:, None]
-        params = np.array([force_params(excitation) for excitation in several])[which]
-        force = plugin_kernel(several[0], "excitation", FORCE, "FORCE")
+        force = plugin_kernel(self.problem.excitation, "excitation", FORCE, "FORCE")
         turning = Turning(force, params, speed, moments, mass, 0.0, 2.0 * np.pi, np.arange(z), 8, _MOST_SAMPLES, tolerance)
         across = np.any(self.points.load[:, 1:] * self.linear.free[1:] != 0.0, axis=1)
         for chosen in (np.flatnonzero(across), np.flatnonzero(~across & (states.status == 0))):

@@ -164,7 +164,8 @@ class Excitation(attrs.AttrsInstance, Protocol):
        ``phase(time)``, the angle of the 1x component (n,) [rad], which identifiers of changing speeds need, and without a period the
        angle that the spin speed follows; ``steady()``, a periodic excitation whose orbit the motion starts on;
        ``at_whirl(speed_rpm)``, the same force at another whirl speed, for identifiers of several speeds: else they change
-       ``speed_rpm``.
+       ``speed_rpm``; ``elementwise`` = True: options may be arrays (n,), of many operating points, which ``parameters()`` answers with
+       (n, k) and ``period_s`` with (n,); points with different options are else asked one by one.
     """
 
     name: ClassVar[str]

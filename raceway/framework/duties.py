@@ -163,6 +163,7 @@ renews, line_contact, is_constraint, is_foundation, _is_elementwise = map(
     _says, ("renewed", "line_contact", "constraint", "foundation", "elementwise")
 )
 is_hertzian = _says("hertzian", "build", "kernel")
+is_elementwise_force = _says("elementwise", "parameters", "period_s")
 #: Of meshers, formats, integrators, identifiers and bodies.
 is_swept, of_results, finds_orbit = _says("swept", "mesh"), _says("of_results"), _says("orbit", "scheme")
 is_synchronous, gives_columns = _says("synchronous", "identify"), _says("columns", "build")
@@ -225,10 +226,11 @@ def law_report(law: ContactLaw, pairs: ContactPairs) -> LawReport | None:
 
 
 def force_params(excitation: Excitation) -> np.ndarray:
-    """(k,) parameters of an excitation, or ``PluginError``."""
-    params = _array(f"excitation '{excitation.name}'", "parameters", excitation.parameters)
-    if params.ndim != 1:
-        raise PluginError(f"excitation '{excitation.name}': parameters() returned shape {params.shape}; it must be (k,)")
+    """(k,) parameters of an excitation, (n, k) of one whose options are columns (n,), or ``PluginError``."""
+    params, n = _array(f"excitation '{excitation.name}'", "parameters", excitation.parameters), length(excitation)
+    if params.ndim != 1 + (n > 0) or n not in (0, len(params)):
+        shape = f"({n}, k)" if n else "(k,)"
+        raise PluginError(f"excitation '{excitation.name}': parameters() returned shape {params.shape}; it must be {shape}")
     return params
 
 

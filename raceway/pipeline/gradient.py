@@ -314,7 +314,7 @@ class Gradients:
         values["stated"] = self._stated(solved_columns(bearing, states), len(fine))
         if self.orbit is not None:
             orbits = bearing.orbits(states, _TOLERANCE, near=True)
-            line, force, w = orbits.line, orbits.force, bearing.excitations[2]
+            line, force, w = orbits.line, orbits.force, bearing.force[1]
             line, force = (part[:, :3] + 1j * part[:, 5:8] for part in (line, force))
             z, forward = impedance(force, line), [0.5 * np.abs(line[:, 1] + sign * line[:, 2]) for sign in (1j, -1j)]
             mass = bearing.problem.inertia.mass if self.model.mass_used else 0.0

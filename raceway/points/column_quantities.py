@@ -62,7 +62,7 @@ class Computed:
     @property
     def speed(self) -> np.ndarray:
         """(n,) of the excitation [rad/s]."""
-        return self.bearing.excitations[2]
+        return self.bearing.force[1]
 
     @cached_property
     def fine(self) -> np.ndarray:

@@ -14,9 +14,10 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import C, K
+from raceway.core.columns import with_values
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.signals import Identification
-from raceway.framework.duties import is_synchronous
+from raceway.framework.duties import force_params, is_elementwise_force, is_synchronous
 from raceway.storage.tables import Tables
 from raceway.testing.suite import Suite, check_class, check_kernel, duty, require
 
@@ -70,11 +71,19 @@ class ExcitationSuite(Suite):
             whole_number = abs(turns - round(turns)) < 1e-9 * turns and turns > 0.5
             require(whole_number, f"`period_s` holds {turns:g} cycles of `frequency_hz`; it must be a whole number")
 
-    @duty("parameters() returns (k,) finite numbers")
+    @duty("parameters() returns (k,) finite numbers, those of each point where options are arrays and it says `elementwise`")
     def test_parameters(self, excitation: Excitation) -> None:
         params = np.asarray(excitation.parameters())
         require(params.ndim == 1 and params.dtype == np.float64, f"parameters() is {params.dtype} of shape {params.shape}")
         require(np.isfinite(params).all(), "parameters() holds values that are not finite")
+        if is_elementwise_force(excitation):
+            numbers = {name: 0.9 * value for name, value in attrs.asdict(excitation).items() if isinstance(value, float)}
+            other = with_values(excitation, **numbers)
+            both = with_values(excitation, **{name: np.array([value / 0.9, value]) for name, value in numbers.items()})
+            for name, of in (("parameters()", force_params), ("period_s", lambda force: np.array(force.period_s))):
+                wanted, rows = np.array([of(excitation), of(other)]), of(both)
+                same = rows.shape == wanted.shape and np.allclose(rows, wanted, rtol=1e-14, atol=0.0)
+                require(same, f"`elementwise`: {name} of two points is {rows}, of each alone {wanted}")
 
     @duty("kernel() is compiled with @jit(FORCE)")
     def test_signature(self, excitation: Excitation) -> None:

@@ -140,6 +140,20 @@ def test_excitations(options, check):
     assert check in failed(ExcitationSuite, plugin, check)
 
 
+class Exchanged(Bidirectional):
+    """Answers two points in the wrong order."""
+
+    elementwise = True
+
+    def parameters(self):
+        params = Bidirectional.parameters(self)
+        return params if params.ndim == 1 else params[::-1]
+
+
+def test_an_excitation_whose_points_are_exchanged():
+    assert "parameters" in failed(ExcitationSuite, Exchanged(speed_rpm=12000.0, unbalance=3e-4), "parameters")
+
+
 class Unstable(CentralDifference):
     name = "unstable"
     implicit = True

@@ -250,7 +250,7 @@ def _scatter(first, work, of_points, states):
 
 @jit(at.ROLLING(MATRIX, MASK), inline=True)
 def rolling_of(of_points, live):
-    """What the moments of the points' balls hang on."""
+    """What the moments of the points' balls depend on."""
     return Rolling(
         take(of_points, ROLLS, 0, live), take(of_points, ROLLS + 1, 0, live), take(of_points, ROLLS + 2, 0, live),
         take(of_points, ROLLS + 3, 0, live), take(of_points, ROLLS + 4, 0, live), take(of_points, ROLLS + 5, 0, live),

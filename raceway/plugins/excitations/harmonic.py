@@ -3,7 +3,7 @@ shafts, which studies make and no scene names."""
 
 from __future__ import annotations
 
-from math import pi, radians
+from math import pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import attrs
@@ -102,15 +102,17 @@ class Amplitude:
 
     def phase(self, time: np.ndarray) -> np.ndarray:
         """Angle of the force (n,) [rad] at times (n,)."""
-        return self.whirl_speed * time - radians(self.phase_lag_deg)
+        return self.whirl_speed * time - np.radians(self.phase_lag_deg)
 
     @property
     def amplitude_n(self) -> float:
         """F0 on this bearing [N]."""
         if self.amplitude == "constant" and self.force is not None:
             return self.force
-        speed = self.speed_rpm if self.amplitude == "unbalance" else (self.reference_speed_rpm or 0.0)
-        return self.load_share * (self.unbalance or 0.0) * (speed * pi / 30.0) ** 2
+        speed = self.speed_rpm if self.amplitude == "unbalance" else self.reference_speed_rpm
+        return (
+            0.0 if self.unbalance is None or speed is None else self.load_share * self.unbalance * (speed * pi / 30.0) ** 2
+        )
 
     def at_whirl(self, speed_rpm: float) -> Self:
         """The same force at another whirl speed [r/min]."""
@@ -120,12 +122,18 @@ class Amplitude:
     def kernel(self) -> Kernel:
         return harmonic()
 
+    def _parameters(self, *parts: float | np.ndarray) -> np.ndarray:
+        """Those of ``harmonic`` with its cos and sin parts; (n, 7) where options are columns (n,)."""
+        numbers = self.amplitude_n, self.whirl_speed, np.radians(self.phase_lag_deg), *parts
+        return np.stack(np.broadcast_arrays(*numbers), axis=-1)
+
 
 @attrs.frozen(kw_only=True)
 class Unidirectional(Amplitude):
     """F0 cos(W t - lag) along a direction in the radial plane."""
 
     name: ClassVar[str] = "unidirectional"
+    elementwise: ClassVar[bool] = True
 
     direction_deg: float = option(0.0, unit="deg", help="direction of the force, from +y towards +z", rule=finite())
 
@@ -138,8 +146,8 @@ class Unidirectional(Amplitude):
         return 0
 
     def parameters(self) -> np.ndarray:
-        lag, direction = radians(self.phase_lag_deg), radians(self.direction_deg)
-        return np.array([self.amplitude_n, self.whirl_speed, lag, np.cos(direction), 0.0, np.sin(direction), 0.0])
+        direction = np.radians(self.direction_deg)
+        return self._parameters(np.cos(direction), 0.0, np.sin(direction), 0.0)
 
 
 @attrs.frozen(kw_only=True)
@@ -147,6 +155,7 @@ class Bidirectional(Amplitude):
     """F_y = F0 cos(W t - lag), F_z = F0 sin(W t - lag); backward whirl changes the sign of F_z."""
 
     name: ClassVar[str] = "bidirectional"
+    elementwise: ClassVar[bool] = True
 
     whirl: str = option("forward", help="sense of rotation", rule=one_of("forward", "backward"))
 
@@ -160,8 +169,7 @@ class Bidirectional(Amplitude):
         return 1 if self.whirl == "forward" else -1
 
     def parameters(self) -> np.ndarray:
-        lag = radians(self.phase_lag_deg)
-        return np.array([self.amplitude_n, self.whirl_speed, lag, 1.0, 0.0, 0.0, float(self.sense)])
+        return self._parameters(1.0, 0.0, 0.0, float(self.sense))
 
 
 @deferred("FORCE")
@@ -238,7 +246,7 @@ class RunUp:
         first, last = self.first_speed_rpm * pi / 30.0, self.speed_rpm * pi / 30.0
         changing = np.minimum(time, self.duration_s)
         turned = first * changing + 0.5 * (last - first) / self.duration_s * changing**2
-        return turned + last * (time - changing) - radians(self.phase_lag_deg)
+        return turned + last * (time - changing) - np.radians(self.phase_lag_deg)
 
     def steady(self) -> Bidirectional:
         """The same rotor at its first speed."""
@@ -248,7 +256,7 @@ class RunUp:
     def parameters(self) -> np.ndarray:
         first, last = self.first_speed_rpm * pi / 30.0, self.speed_rpm * pi / 30.0
         share = self.load_share * self.unbalance
-        return np.array([share, first, last, self.duration_s, radians(self.phase_lag_deg), float(self.sense)])
+        return np.array([share, first, last, self.duration_s, np.radians(self.phase_lag_deg), float(self.sense)])
 
     def kernel(self) -> Kernel:
         return run_up()
