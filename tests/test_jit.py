@@ -414,3 +414,30 @@ def test_negative_indices_count_from_the_end() -> None:
     _ends(matrix, -2, out)
     np.testing.assert_array_equal(matrix, [[0.0, 1.0, 2.0], [3.0, 7.0, 5.0]])
     np.testing.assert_array_equal(out, [3.0, 0.0, 5.0])
+
+
+#: Two kernels, the second by a process that fails: how many are awaited before and after, counts, and what comes from the cache.
+BESIDE = """
+import json, sys
+from raceway.core import jit, second_process
+from raceway.core.ring.elimination import cholesky_solve, copy_matrix
+second_process.usable_cores = lambda: 2
+rows = []
+for kernel in (cholesky_solve, copy_matrix):
+    name = f"{kernel.py_func.__module__}:{kernel.py_func.__qualname__}"
+    second_process.compile_beside(name)
+    rows.append([list(jit.awaited) == [name]])
+    kernel.compile()
+    rows[-1] += len(jit.awaited), jit.clock["compiled"], jit.clock["loaded"], sum(kernel.stats.cache_hits.values())
+    second_process.compile_beside.__wrapped__(name)
+    rows[-1].append(len(jit.awaited))
+    sys.executable = "false"
+print(json.dumps(rows))
+"""
+
+
+def test_one_process_waits_for_what_another_compiles(tmp_path):
+    """Billed as compiled; what a process that ends early leaves is compiled here; what is there is not asked for."""
+    done = python("-c", BESIDE, RACEWAY_CACHE_DIR=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout) == [[True, 0, 1, 0, 1, 0], [True, 0, 2, 0, 0, 0]]

@@ -1,6 +1,6 @@
 """Numerics only: arrays in, arrays out.
 
-jit            the one decorator for compiled kernels;  compiler: what numba does otherwise for them;  wheel_kernels: those that a wheel brings;  deferred: those beside light classes
+jit            the one decorator for compiled kernels;  compiler: what numba does otherwise for them;  wheel_kernels: those that a wheel brings;  deferred: those beside light classes;  second_process: compiles some meanwhile
 columns        numbers that may be columns, one of each operating point
 lanes          one number of each of four balls at a time
 signatures     types of the kernels that are passed as function pointers

@@ -14,7 +14,7 @@ import hashlib
 import sys
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache, cached_property
 from importlib import import_module
 from pathlib import Path
@@ -42,6 +42,8 @@ if getattr(numba.config, "DISABLE_JIT", 0):
 clock: dict[str, float] = {
     "compile_s": 0.0, "load_s": 0.0, "compiled": 0, "loaded": 0, "of_wheel": 0, "unkept": 0, "compile_processor_s": 0.0
 }  # fmt: skip
+#: Kernels that another process compiles into the cache, "module:name", each with what yields their names as they are finished.
+awaited: dict[str, Iterator[str]] = {}
 
 
 def working_clock() -> float:
@@ -179,9 +181,22 @@ class Kernel(Dispatcher):
             kernel._set_uuid(uuid)
         return kernel
 
+    @property
+    def kept(self) -> bool:
+        """Whether its machine code is there, or in the cache."""
+        folder = kernel_folder()
+        if self.overloads or folder is None:
+            return bool(self.overloads)
+        with compiler.numba_cache_in(folder.path):
+            return self._open_cache().complete
+
     def _make(self) -> None:
         function, time_before = self.py_func, clock["compile_s"] + clock["load_s"]
         start, processor, processor_billed = time.perf_counter(), time.thread_time(), clock["compile_processor_s"]
+        name = f"{function.__module__}:{function.__qualname__}"
+        finished = awaited.pop(name, None)
+        if finished is not None:
+            any(other == name for other in finished)
         try:
             if not self._from_wheel():
                 self._through_cache()
@@ -192,7 +207,7 @@ class Kernel(Dispatcher):
                 f"compile for the signature {signature_words(self.signature)}: {self._reason(why)}"
             ) from why
         self.disable_compile()
-        hit = self._of_wheel or sum(self.stats.cache_hits.values()) > 0
+        hit = finished is None and (self._of_wheel or sum(self.stats.cache_hits.values()) > 0)
         # Kernels that this one calls were compiled meanwhile, and have told their own seconds.
         clock["load_s" if hit else "compile_s"] += (
             time.perf_counter() - start - (clock["compile_s"] + clock["load_s"] - time_before)

@@ -23,6 +23,7 @@ from raceway.core.jit import clock, take_compile_seconds, working_clock, working
 from raceway.core.record import drift, friction_lost, largest_share
 from raceway.core.ring.kernels.layout import GYROSCOPIC
 from raceway.core.ring.system import compiled
+from raceway.core.second_process import compile_beside
 from raceway.core.signals import Identification, Line, lines
 from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, RacewayError, SceneError
 from raceway.framework.estimate import Estimate
@@ -138,6 +139,8 @@ def _run(
     plan = steady_plan(scene)
     allowance = Allowance.of(plan, patience)
     registry.notify("raceway_plan_made", plan=plan)
+    if plan.problem.searches_orbits or (plan.problem.recorded and plan.problem.integrator.method.steady):
+        compile_beside("raceway.core.periodic.newton:newton", "raceway.core.periodic.intervals:spread")
     model = build_model(scene, plan)
     after_model = working_clock()
 

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from raceway.answers.quantities import KNOWN, Quantity, plugin_quantities
 from raceway.bodies.builder import Builder
+from raceway.core.second_process import compile_beside
 from raceway.core.threads import ThreadPool, usable_cores
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import PATHS, TEXT, TEXTS, Reader, door
@@ -43,6 +44,8 @@ if TYPE_CHECKING:
 #: Points of a block, of equilibria and of motions: a quarter of a second, so that Ctrl-C is heard, and few enough to stay in the
 #: cache of the second level.
 BLOCK = (8192, 2048)
+#: Dear kernels of the loop: of motions, and of the balls' moments.
+_KERNELS = "raceway.core.periodic.orbits:orbits", "raceway.core.ring.kernels.rigid_inertial:rigid_tangential"
 #: Time [s] that runs of points which the loop cannot do may take, unless they are forced.
 _LIMIT_S = 120.0
 _ADVICE = "give fewer points, or force = True. `raceway sweep` distributes such points among processes and resumes"
@@ -217,6 +220,7 @@ class Function:
         n, size = len(next(iter(flat.values()))), BLOCK[self.moving]
         blocks = [{key: column[k : k + size] for key, column in flat.items()} for k in range(0, n, size)]
         answers: list[Columns] = [{}] * len(blocks)
+        compile_beside(*_KERNELS[0 if self.moving else 1 :])
 
         def job(number: int) -> None:
             answers[number] = self._block(blocks[number])

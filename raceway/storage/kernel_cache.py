@@ -195,6 +195,12 @@ class FilesOfKernel:
     base: str
     folder: Path
 
+    @property
+    def complete(self) -> bool:
+        """Whether all of them are there as they were written."""
+        files = self._files()
+        return len(files) == 2 and all(map(self._sound, files))
+
     def discard_damaged(self) -> None:
         """Remove what is not what was written; ``OSError`` for what cannot be removed."""
         for path in self._files():
