@@ -8,6 +8,7 @@ words                 length of the documents, terms that the field does not kno
 unchanged             numbers of results, compared with another commit: --base COMMIT
 fmu                   map of an exported FMU against runs, time of a step
 points                time of a point of ``raceway.function``, and equality with runs
+speed                 processor time of what is done most, against the times asked for
 app                   time from a change to its picture in the application, memory, numbers beside those of runs
 uncertainty           elastic bodies without a mesh against condensed ones; default hypotheses inside the range of the others
 extremes              what runs at the edges say of errors that are not estimated, or larger than Z

@@ -17,19 +17,19 @@ COMMAND = "python -m checks points"
 _MANY, _BLOCK = 10**7, 100_000
 #: Of a worker: pages of a block's arrays stay with the process, see docs/points.md.
 _MEMORY = {"MALLOC_MMAP_THRESHOLD_": 2**25, "MALLOC_TRIM_THRESHOLD_": 2**28}
-_STATIC: dict[str, Any] = {
+STATIC: dict[str, Any] = {
     "bearing": {"preset": "B7206C"},
     "load": {"axial": 1.0, "radial": [0.0, 0.0]},
     "supports": {"tilt": "free"},
     "kinematics": {"spin_speed_rpm": 12000.0},
 }
-_PAIR = {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distance": 0.016}
-_SET = _STATIC | {"bearing": _PAIR}
+PAIR = {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distance": 0.016}
+_SET = STATIC | {"bearing": PAIR}
 
 
-def _turning(kind: str, damping: float = 0.0) -> dict[str, Any]:
+def turning(kind: str, damping: float = 0.0) -> dict[str, Any]:
     force = {"kind": kind, "speed_rpm": 9000.0, "unbalance": 1e-5}
-    return _STATIC | {
+    return STATIC | {
         "rotor": {"mass": 1.0}, "kinematics": {}, "contact": {"damping": damping}, "excitation": force,
         "integrator": {"kind": "periodic"},
     }  # fmt: skip
@@ -37,25 +37,25 @@ def _turning(kind: str, damping: float = 0.0) -> dict[str, Any]:
 
 def _on_top(output: str) -> float:
     """Processor time of a plug-in's number over that of 1e5 equilibria with an oil, per cent; least of five of each, in turns."""
-    scene = _STATIC | {"lubricant": {"oil": "VG 32", "temperature_c": 60.0}}
+    scene = STATIC | {"lubricant": {"oil": "VG 32", "temperature_c": 60.0}}
     ranges = {"load.axial": (300.0, 2000.0), "load.radial[0]": (0.0, 200.0), "kinematics.spin_speed_rpm": (1000.0, 24_000.0)}
-    pairs = [[_time(scene, ["stiffness", *more], ranges, 10**5) for more in ([], [output])] for _ in range(5)]
+    pairs = [[seconds(scene, ["stiffness", *more], ranges, 10**5) for more in ([], [output])] for _ in range(5)]
     alone, both = np.min(pairs, axis=0)
     return float(100.0 * (both / alone - 1.0))
 
 
 def _warm_over_cold() -> float:
     """Processor time of a point with [heat] over that of one at these temperatures, in a batch."""
-    pair = {**_STATIC, "bearing": {**_PAIR, "preload": 300.0}, "load": {}, "supports": {}, "lubricant": {"oil": "VG 32"}}
+    pair = {**STATIC, "bearing": {**PAIR, "preload": 300.0}, "load": {}, "supports": {}, "lubricant": {"oil": "VG 32"}}
     warm = pair | {"heat": {"oil_inlet_c": 40.0, "oil_flow": 8e-6}}
     cold = pair | {"lubricant": {"oil": "VG 32", "temperature_c": 60.0}, "mounting": {"inner_temperature": 30.0}}
     ranges = {"kinematics.spin_speed_rpm": (1000.0, 14_000.0)}
-    pairs = [[_time(scene, ["kyy"], ranges, 2 * 10**4) for scene in (warm, cold)] for _ in range(3)]
+    pairs = [[seconds(scene, ["kyy"], ranges, 2 * 10**4) for scene in (warm, cold)] for _ in range(3)]
     heated, alone = np.min(pairs, axis=0)
     return float(heated / alone)
 
 
-def _time(scene: dict[str, Any], outputs: list[str], ranges: dict[str, tuple[float, float]], n: int) -> float:
+def seconds(scene: dict[str, Any], outputs: list[str], ranges: dict[str, tuple[float, float]], n: int) -> float:
     """Processor time [s] of n random points, kernels compiled."""
     rng, f = np.random.default_rng(1), rw.function(scene, ranges, outputs, threads=1)
     columns = [rng.uniform(*ends, size=n) for ends in ranges.values()]
@@ -74,7 +74,7 @@ def _by_dask(point: float) -> list[Row]:
     from distributed import Client, LocalCluster
 
     ranges = {"load.axial": (300.0, 2000.0), "kinematics.spin_speed_rpm": (1000.0, 24_000.0)}
-    f, rng = rw.function(_STATIC, ranges, ["kyy"], threads=1), da.random.default_rng(1)
+    f, rng = rw.function(STATIC, ranges, ["kyy"], threads=1), da.random.default_rng(1)
     columns = [rng.uniform(*ends, size=_MANY, chunks=_BLOCK) for ends in ranges.values()]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     dask.config.set({f"distributed.nanny.pre-spawn-environ.{name}": size for name, size in _MEMORY.items()})
@@ -104,18 +104,18 @@ def rows() -> list[Row]:
     motion = {"load.axial": (600.0, 2000.0), "excitation.speed_rpm": (3000.0, 15_000.0)}
     out = [_equality()]
     cases: list[tuple[str, Callable[[], float], float]] = [
-        ("1e6 equilibria with 5 x 5 over load and speed [CPU-s]", lambda: _time(_STATIC, ["displacement", "stiffness"], loads, 10**6), 25.0),
-        ("1e5 equilibria of a DB pair over its geometry and preload [CPU-s]", lambda: _time(_SET, ["stiffness"], geometry, 10**5), 10.0),
-        ("1e5 steady orbits, rotating force [CPU-s]", lambda: _time(_turning("bidirectional"), ["K", "C"], motion, 10**5), 25.0),
-        ("the same with dashpots at the contacts [CPU-s]", lambda: _time(_turning("bidirectional", 1e-3), ["K", "C"], motion, 10**5), 25.0),
-        ("an orbit under a one-directional force, tilt free [CPU-ms]", lambda: _time(_turning("unidirectional"), ["K"], motion, 10**4) / 10, 1.0),
+        ("1e6 equilibria with 5 x 5 over load and speed [CPU-s]", lambda: seconds(STATIC, ["displacement", "stiffness"], loads, 10**6), 25.0),
+        ("1e5 equilibria of a DB pair over its geometry and preload [CPU-s]", lambda: seconds(_SET, ["stiffness"], geometry, 10**5), 10.0),
+        ("1e5 steady orbits, rotating force [CPU-s]", lambda: seconds(turning("bidirectional"), ["K", "C"], motion, 10**5), 25.0),
+        ("the same with dashpots at the contacts [CPU-s]", lambda: seconds(turning("bidirectional", 1e-3), ["K", "C"], motion, 10**5), 25.0),
+        ("an orbit under a one-directional force, tilt free [CPU-ms]", lambda: seconds(turning("unidirectional"), ["K"], motion, 10**4) / 10, 1.0),
         ("life of 1e5 points on top of their equilibria [%]", lambda: _on_top("l10r_hours"), 20.0),
         ("friction torque of 1e5 points on top of their equilibria [%]", lambda: _on_top("torque_nm"), 20.0),
         ("a warm point over a cold one in a batch", _warm_over_cold, 8.0),
     ]  # fmt: skip
     out += [below(quantity, round(measure(), 3), bound, COMMAND) for quantity, measure, bound in cases]
     two_columns = {key: loads[key] for key in ("load.axial", "kinematics.spin_speed_rpm")}
-    return out + _by_dask(_time(_STATIC, ["kyy"], two_columns, 10**6) / 10**6)
+    return out + _by_dask(seconds(STATIC, ["kyy"], two_columns, 10**6) / 10**6)
 
 
 def _equality() -> Row:
