@@ -10,7 +10,7 @@ from raceway.core.rolling_friction import measured_factors
 from raceway.plugins.quantities.friction import PARTS
 from raceway.testing import run
 
-Friction = built_in("quantity", "friction")
+Friction, Sliding = built_in("quantity", "friction"), built_in("quantity", "sliding")
 
 OIL = {"oil": "VG 32", "temperature_c": 60.0}
 TABLES = {
@@ -20,7 +20,7 @@ TABLES = {
 
 
 def scene(**tables):
-    return rw.Scene.from_dict({**TABLES, **tables})
+    return rw.Scene.from_dict({name: table for name, table in {**TABLES, **tables}.items() if table is not None})
 
 
 def friction(**tables):
@@ -112,11 +112,45 @@ def test_at_rest_nothing_is_lost():
     assert table["power_w"] == table["parts"]["drag"] == table["parts"]["rolling"] == 0.0
 
 
-def test_balls_that_slip_sideways_are_told():
-    fast = {"kinematics": {"spin_speed_rpm": 20000.0}}
-    assert not [warning for warning in friction(**fast)[1] if "sideways" in warning]
-    table, warnings = friction(lubricant={**OIL, "traction_limit": 0.004}, **fast)
-    assert any("slip sideways" in warning for warning in warnings) and table["gyroscopic_over_traction"] > 1.0
+FAST = {"kinematics": {"spin_speed_rpm": 13200.0, "gyroscopic": "none", "ring_growth": False}}
+
+
+def sliding(**tables):
+    """What a run states of it, and its warning."""
+    result = run(scene(**{**FAST, **tables}))
+    return result.to_dict()["sliding"], [text for text in result.warnings if "balls slide" in text]
+
+
+def test_the_traction_that_balls_need_is_that_of_moment_and_drag():
+    """M = J w_R w_c sin(beta) with Jones' axis, tan(beta) = sin(a_o) / (cos(a_o) + g); F_c = m d_m / 2 w_c^2; both rows of a set are judged."""
+    result = run(scene(load={"axial": 100.0}, lubricant=None, **FAST))
+    stated, ball = result.to_dict()["sliding"], result.to_dict()["equilibrium"]["balls"][0]
+    inner, outer = (np.radians(ball[f"contact_angle_{race}_deg"]) for race in ("inner", "outer"))
+    g, w = 9.525 / 46.0, 13200.0 * np.pi / 30.0
+    mass, cage = 7810.0 * np.pi / 6.0 * 9.525e-3**3, 0.5 * w * (1.0 - g * np.cos(0.5 * (inner + outer)))
+    axis = np.arctan2(np.sin(outer), np.cos(outer) + g)
+    over = (np.cos(outer) + np.tan(axis) * np.sin(outer)) / (1.0 + g * np.cos(outer))
+    spin = w / (g * np.cos(axis) * (over + (np.cos(inner) + np.tan(axis) * np.sin(inner)) / (1.0 - g * np.cos(inner))))
+    moment = 0.1 * mass * 9.525e-3**2 * spin * cage * np.sin(axis)
+    both = ball["load_inner_n"] + ball["load_outer_n"]
+    assert stated["traction_needed"] == pytest.approx(2.0 * moment / 9.525e-3 / both, rel=1e-9)
+    assert stated["axial_over_centrifugal"] == pytest.approx(100.0 / (12 * mass * 23e-3 * cage**2), rel=1e-9)
+    pair = {"preset": "B7206C", "arrangement": "DB", "preload_kind": "spring", "preload": 100.0}
+    of_rows, _ = sliding(bearing=pair, load={"axial": 0.0}, lubricant=None)
+    assert of_rows["axial_over_centrifugal"] == pytest.approx(stated["axial_over_centrifugal"], rel=1e-6)
+
+
+def test_balls_slide_where_contacts_offer_less_traction_than_they_need():
+    """By the oil's coefficient, by the scene's, or by the one that sufficed to Jones; drag adds to what they need, a radial load unloads."""
+    assert not sliding()[1] and sliding(lubricant={**OIL, "traction_limit": 0.004})[1]
+    dry, told = sliding(lubricant=None)
+    assert dry["traction_offered"] == 0.06 and "Jones" in dry["source"] and not told
+    rough, told = sliding(lubricant=None, contact={"friction": 0.001})
+    assert rough["source"] == "contact.friction" and told
+    light, told = sliding(load={"axial": 10.0})
+    assert told and light["traction_needed"] > 0.06 > sliding(load={"axial": 10.0}, lubricant=None)[0]["traction_needed"]
+    assert sliding(load={"axial": 100.0, "radial": [300.0, 0.0]})[0]["traction_needed"] is None
+    assert "sliding" not in run(scene(kinematics={"spin_speed_rpm": 0.0})).to_dict() and Sliding.rows(dry)
 
 
 def test_without_oil_it_is_left_out_and_asked_for_it_names_the_keys():

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 import raceway as rw
@@ -177,17 +176,3 @@ def test_ring_and_shaft_without_a_fit_grow_as_with_one_that_holds():
     assert growth(0.0, "auto") == growth(0.0, "with_shaft") == pytest.approx(growth(60e-6, "auto"), rel=1e-9)
     assert growth(60e-6, True) == growth(60e-6, "auto")
     assert 0.0 < growth(0.0, "auto") < 0.5 * growth(0.0, True)
-
-
-def test_rows_pressed_together_by_less_than_the_centrifugal_force_slide():
-    """F_c = m d_m / 2 w_c^2 with w_c = w (1 - D cos(a) / d_m) / 2; both rows of a set are judged."""
-    cage = 13200.0 * np.pi / 30.0 * 0.5 * (1.0 - 9.525 / 46.0 * np.cos(np.radians(15.0)))
-    ratio = 100.0 / (12 * 7810.0 * np.pi / 6.0 * 9.525e-3**3 * 23e-3 * cage**2)
-    kinematics = {"spin_speed_rpm": 13200.0, "gyroscopic": "none", "ring_growth": False}  # moments would carry some of it
-    fast = {"bearing": {"preset": "B7206C"}, "load": {"axial": 100.0}, "kinematics": kinematics}
-    told = [w for w in rw.run(fast).warnings if "Hirano" in w]
-    assert len(told) == 1 and told[0].startswith("row 1") and f"{ratio:.2g} times" in told[0]
-    assert not any("Hirano" in w for w in rw.run({**fast, "load": {"axial": 400.0}}).warnings)
-    pair = {**fast, "bearing": {"preset": "B7206C", **SPRUNG, "preload": 100.0}, "load": {"axial": 0.0}}
-    (both,) = (w for w in rw.run(pair).warnings if "Hirano" in w)
-    assert "row 1 carries" in both and "row 2 carries" in both

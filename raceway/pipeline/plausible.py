@@ -51,8 +51,6 @@ if TYPE_CHECKING:
 _SAMPLES = 60
 #: Part of what a body gives way, by which it lags behind, that is worth a sentence.
 _LAG = 0.01
-#: Axial force of a row over the centrifugal force of its balls below which Hirano saw gross sliding, and below which a warning says so.
-_ROLLING, _SLIDING = 10.0, 1.0
 #: Keys of ``[kinematics]`` that are hypotheses, with what stands beside "auto".
 _HYPOTHESES: dict[str, tuple[Any, ...]] = {"gyroscopic": ("none", "outer_race", "shared"), "ring_growth": (False, True)}
 _QUANTITIES = (K.name, KXX.name, KYY.name, KYY_TILTS_FOLLOW.name, PEAK_BALL_LOAD.name, P0.name)
@@ -164,35 +162,6 @@ def _angles(model: Model, record: Record, samples: np.ndarray) -> tuple[np.ndarr
         angles.append(model.bearing.contact_angles(at_time, *(column[k] for column in columns)))
     inner, outer = zip(*angles, strict=True)
     return np.array(inner), np.array(outer)
-
-
-def sliding_warnings(model: Model, equilibrium: Equilibrium) -> list[str]:
-    """A sentence on thrust-loaded rows whose balls cannot be expected to roll.
-
-    Notes
-    -----
-    Hirano saw gross sliding of angular-contact bearings under an axial load F_a below 10 Z F_c, F_c the centrifugal force of a
-    ball.  Spindles run below that limit with little slip; a tenth of it, F_a < Z F_c, is warned of.  F_a is what the balls press
-    on the inner race; rows with a ball that carries nothing there are left out: the criterion is one of thrust loads.
-
-    References
-    ----------
-    Hirano, Motion of a ball in angular-contact ball bearing, ASLE Transactions 8 (1965) 425-434.
-    """
-    z, rows = model.system.ball_count, []
-    load, angle, push = equilibrium.contact_force[:z], equilibrium.angle_inner, model.system.table[:, CENTRIFUGAL]
-    for row in range(len(model.problem.bearing.rows)):
-        balls = model.basis.row == row
-        axial = float((load[balls] * np.abs(np.sin(angle[balls]))).sum()) if (load[balls] > 0.0).all() else np.nan
-        if axial < _SLIDING * push[balls].sum():
-            ratio = f"{axial / push[balls].sum():.2g} times the centrifugal force of its balls"
-            rows.append(f"row {row + 1} carries an axial load of {axial:.4g} N, {ratio}")
-    if not rows:
-        return []
-    return [
-        f"{', '.join(rows)}: below {_ROLLING:g} times gross sliding was observed (Hirano 1965), with balls slower than computed here. Raise "
-        "the preload, or use lighter balls (balls.material)"
-    ]
 
 
 def inertia_warnings(table: ReadTables | None, total: float | None) -> list[str]:

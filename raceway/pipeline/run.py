@@ -31,13 +31,7 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline import PATIENCE
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.error import Errors, body_errors, error_warnings, errors_of, misfit_warnings
-from raceway.pipeline.plausible import (
-    inertia_warnings,
-    motion_warnings,
-    pressure_warnings,
-    refuse_impossible,
-    sliding_warnings,
-)
+from raceway.pipeline.plausible import inertia_warnings, motion_warnings, pressure_warnings, refuse_impossible
 from raceway.pipeline.quantities import StatedQuantities, stated_quantities
 from raceway.pipeline.result import Result, band_table
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
@@ -177,7 +171,6 @@ def _run(
         *pressure_warnings(model, equilibrium.contact_force),
         *equilibrium.warnings,
         *quantities.warnings,
-        *sliding_warnings(model, equilibrium),
         *(text for motion in answer.motions for text in (*motion.warnings, *motion_warnings(motion.model, motion.record))),
         *scene_warnings(model.problem),
     ]

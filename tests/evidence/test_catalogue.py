@@ -88,6 +88,32 @@ def test_stiffness_of_pairs(claim):
         claim(f"{where}: relative error, {word}", max(own, scenes), at_most=limit, basis="published", source=source)
 
 
+#: Grease limit of 7014C, 13 000 r/min as NSK prints it, over its mean diameter [mm r/min], here of all sizes and angles.
+GREASE = 1.17e6
+
+
+def test_spindle_pairs_at_light_preload_and_grease_limit_do_not_slide(claim):
+    """The preload is the printed light one, of NSK's series 72 and 79 series 70's share of the static rating (median of an angle)."""
+    shares, needed, told = defaultdict(list), [], 0
+    sizes = [(maker, one) for maker in ("nsk", "ntn") for one in printed_by(maker)]
+    light = {one.names[0]: one.pairs[min(1, len(one.pairs) - 1)] for _, one in sizes if one.pairs}
+    for maker, one in sizes:
+        if maker == "nsk" and one.pairs:
+            shares[one.pairs[0].contact_angle_deg].append(light[one.names[0]].preload / one.ratings[0].static)
+    for maker, one in sizes:
+        name, turns = one.names[0], GREASE / (500.0 * (one.bore + one.outer_diameter))
+        rating = one.ratings[0] if one.ratings else None
+        preload = light[name].preload if name in light else np.median(shares[rating.contact_angle_deg]) * rating.static
+        bearing = {"preset": name, "maker": maker.upper(), "arrangement": "DB", "preload": preload}
+        result = rw.run({"bearing": bearing, "kinematics": {"spin_speed_rpm": turns}})
+        needed.append(result.to_dict()["sliding"]["traction_needed"])
+        told += any("balls slide" in text for text in result.warnings)
+    what = f"of {len(sizes)} pairs DB of NSK and NTN, light preload, n d_m = 1.17e6 mm r/min (grease)"
+    source = f"bound: traction coefficient 0.06, Jones 1959 as cited by Harris & Kotzalas; {NSK}; NTN-SNR, ULTAGE, 2015"
+    claim(f"{what}: share with a warning of sliding", told / len(sizes), at_most=0.05, basis="published", source=source)
+    claim(f"{what}: largest traction coefficient needed", max(needed), at_most=0.06, basis="published", source=source)
+
+
 def test_inferred_of_bearings_whose_balls_are_printed(claim):
     found, _ = inferred("gmn")
     share = min(
