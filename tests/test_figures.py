@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import struct
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,6 +12,7 @@ from types import SimpleNamespace
 import attrs
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from raceway_article import figures as article
@@ -26,10 +28,12 @@ from raceway_view.view import at_rest
 
 import raceway
 from checks.validation import article_study
+from checks.validation.command_line import MINIMAL, invoke
 from checks.validation.figures import outside
 from checks.validation.records import made as a_record
 from checks.validation.stores import SPEEDS, as_list, made
 from raceway import law, scene_from_dict
+from raceway.answers import picture as writer
 from raceway.answers.picture import readable
 from raceway.extend import below_contacts, select
 from raceway.plugins.formats import pictures
@@ -78,7 +82,14 @@ def of_a_run() -> list[Figure]:
     )
     moving, still = run(scene_from_dict(tables)), run(scene_from_dict(b7206c(load={"axial": 300.0, "radial": [900.0, 0.0]})))
     names = ("orbit", "spectrum", "ball_loads")
-    return [*(pictures.picture(moving, name) for name in names), pictures.picture(still, "ball_loads")]
+    return [*(pictures.picture(moving, name) for name in names), pictures.picture(still, "ball_loads"), of_equal_rows()]
+
+
+def of_equal_rows() -> Figure:
+    """Ball loads of a pair under an axial preload alone: those of both rows are the same."""
+    turning = {"kind": "bidirectional", "speed_rpm": 9000.0, "amplitude": "constant", "force": 20.0}
+    pair = {"preset": "B7206C", "arrangement": "DB", "preload": 300.0}
+    return pictures.picture(raceway.run({"bearing": pair, "excitation": turning}), "ball_loads")
 
 
 def of_a_sweep() -> list[Figure]:
@@ -240,6 +251,56 @@ def test_every_drawn_point_lies_inside_its_axes_and_is_read_at_600_pixels(draw):
         figure.draw_without_rendering()  # when its limits are known
     assert figures and [line for figure in figures for line in outside(figure)] == []
     assert [fault for figure in figures for fault in unreadable(figure)] == []
+
+
+def test_equal_rows_are_both_seen():
+    """Each is drawn wider than the one upon it, in another grey, line and marker."""
+    (axes,) = of_equal_rows().axes
+    below, above = axes.lines
+    assert below.get_ydata() == pytest.approx(above.get_ydata(), rel=1e-9) and below.zorder <= above.zorder
+    assert below.get_markersize() > 2.0 * above.get_markersize() and below.get_linewidth() > 2.0 * above.get_linewidth()
+    assert abs(grey(below.get_color()) - grey(above.get_color())) > 0.15 and below.get_marker() != above.get_marker()
+    wide, narrow = (lines.get_linewidth()[0] for lines in axes.collections)
+    assert wide > narrow + 3.0
+
+
+def grey(colour) -> float:
+    """Luminance of a colour, 0 to 1 (ITU-R BT.709)."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
+    return float(np.dot([0.2126, 0.7152, 0.0722], linear)) ** (1.0 / 2.2)
+
+
+#: What protanopes and deuteranopes see of linear red, green and blue: Vienot, Brettel, Mollon, Color Res. Appl. 24 (1999) 243.
+BLIND = {
+    "protan": [[0.11238, 0.88762, 0.0], [0.11238, 0.88762, 0.0], [0.00401, -0.00401, 1.0]],
+    "deutan": [[0.29275, 0.70725, 0.0], [0.29275, 0.70725, 0.0], [-0.02234, 0.02234, 1.0]],
+}
+
+
+def test_neighbouring_curves_differ_in_grey_and_for_the_colour_blind():
+    """And each of the first five has a line of its own, each of the first eight a marker."""
+    colours = [np.array(to_rgb(colour)) for colour in writer.COLOURS]
+    for one, other in zip(colours, colours[1:], strict=False):
+        assert abs(grey(one) - grey(other)) > 0.1
+        for seen in BLIND.values():
+            a, b = (np.clip(np.array(seen) @ colour**2.2, 0.0, 1.0) ** (1.0 / 2.2) for colour in (one, other))
+            assert np.linalg.norm(a - b) > 0.2
+    looks = [writer.Line(np.arange(3.0), np.arange(3.0), place=k).look for k in range(8)]
+    assert len({look["marker"] for look in looks}) == 8 and len({str(look["linestyle"]) for look in looks[:5]}) == 5
+
+
+def test_pictures_are_written_for_a_page_and_for_a_paper(tmp_path):
+    """As PNG at 300 dots per inch; on request also with letters that publishers take."""
+    for form in ("pdf", "svg"):
+        found = invoke("run", MINIMAL, "--picture-format", form, "--out", tmp_path)
+        assert found.exit_code == 0, found.stderr
+    files = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    for name in ("orbit", "spectrum", "ball-loads"):
+        dots = struct.unpack(">II", files[f"{name}.png"][16:24])
+        size = pictures._DRAWINGS[name.replace("-", "_")].size
+        assert dots == tuple(round(300 * inch) for inch in size)
+        assert b"CIDFontType2" in files[f"{name}.pdf"] and b"/Type3" not in files[f"{name}.pdf"]
+        assert b"<svg" in files[f"{name}.svg"]
 
 
 def test_labels_of_precision_lie_on_no_other_and_name_the_other_models():

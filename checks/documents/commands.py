@@ -22,7 +22,8 @@ Made by `python -m checks.documents` from the commands.
 | `--set table.key=value` | change a key of the scene, with or without unit; repeat for more |
 | `--plugin FILE.py` | a one-off plug-in file; repeat for more |
 | `--out DIR` | folder of the results; default: `raceway-out/TITLE`, with the name of the command after TITLE where it is not `run` or `view` |
-| `--pictures`, `--no-pictures` | draw pictures as PNG (studies: by default) |
+| `--pictures`, `--no-pictures` | draw pictures as PNG, 300 dpi (studies: by default) |
+| `--picture-format svg`, `pdf` | draw them as this, too |
 | `--json` | print one JSON object only, errors too |
 | `-v`, `--verbose` | report on stderr what is computed |
 | `--debug` | show tracebacks |
@@ -61,7 +62,7 @@ def walk(group: click.Group, path: str) -> Iterator[tuple[str, click.Command]]:
 
 #: Options that all commands share, and the lines of a help that they take.
 _SHARED = re.compile(
-    r"^  (?:-\w, )?--(?:set A|plugin|pictures|out DIR +Folder .raceway|json|verbose|debug|help)\b.*\n(?: {5,}.*\n)*",
+    r"^  (?:-\w, )?--(?:set A|plugin|pictures|picture-format|out DIR +Folder .raceway|json|verbose|debug|help)\b.*\n(?: {5,}.*\n)*",
     re.MULTILINE,
 )
 

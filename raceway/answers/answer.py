@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar, TypeAlias
 
 from raceway.errors import RacewayError
-from raceway.framework.doors import PATH, TEXTS, door
+from raceway.framework.doors import PATH, TEXT, TEXTS, door
 from raceway.framework.shown import Fact, Shown
 from raceway.storage.files import write_json, write_whole
 from raceway.storage.tables import Tables
@@ -73,6 +73,11 @@ class Answer(Shown):
         """The picture; None: there is nothing to draw."""
         return None
 
+    def drawings(self) -> Mapping[str, Figure]:
+        """Pictures by the names of their files."""
+        figure = self.draw()
+        return {} if figure is None else {self.stem: figure}
+
     def failure(self) -> RacewayError | None:
         """What makes a finished answer worthless, raised after it has been shown and written."""
         return None
@@ -98,8 +103,10 @@ class Answer(Shown):
         return paths + (self.picture(folder) if pictures else [])
 
     @door
-    def picture(self, folder: Annotated[str | Path, PATH]) -> list[Path]:
+    def picture(self, folder: Annotated[str | Path, PATH], form: Annotated[str, TEXT] = "png") -> list[Path]:
         """Draw into a folder.
+
+        form : "png", at 300 dots per inch, "svg" or "pdf"
 
         Returns
         -------
@@ -112,8 +119,7 @@ class Answer(Shown):
         """
         from raceway.answers.picture import save_figure
 
-        figure = self.draw()
-        return [] if figure is None else [save_figure(figure, Path(folder) / f"{self.stem}.png", 100)]
+        return [save_figure(figure, Path(folder) / f"{name}.{form}") for name, figure in self.drawings().items()]
 
     @door
     def screen(self, files: Annotated[Iterable[str], TEXTS] = ()) -> RenderableType:

@@ -136,7 +136,10 @@ def save_figure(figure: Figure, path: Path, dots_per_inch: int = 300) -> Path:
         return write_whole(svg(readable(figure)), path)
     if path.suffix.lower() == ".png":
         return write_whole(figure_png(figure, dots_per_inch), path)
-    readable(figure).savefig(memory := io.BytesIO(), format="pdf", metadata={"CreationDate": None})
+    from matplotlib import rc_context
+
+    with rc_context({"pdf.fonttype": 42}):  # letters that publishers take: TrueType
+        readable(figure).savefig(memory := io.BytesIO(), format="pdf", metadata={"CreationDate": None})
     return write_whole(memory.getvalue(), path)
 
 

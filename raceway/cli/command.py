@@ -138,6 +138,8 @@ class Command(NamedTuple):
         if self.pictures is not None:
             names, usual = ("--pictures/--no-pictures", " (default)") if self.pictures else ("--pictures", "")
             command = click.option(names, is_flag=True, default=self.pictures, help=f"Draw pictures as PNG{usual}.")(command)
+            form = click.Choice(["svg", "pdf"])
+            command = click.option("--picture-format", type=form, help="Draw them in this format, too.")(command)
         if self.pictures is not None or self.folder is not None:
             title = self.named_by.upper() or "TITLE"
             default = f"{RESULTS}/{title}{self.folder}" if "scene" in signature.parameters else f"{RESULTS}/{self.name}"
@@ -200,7 +202,7 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
     from raceway.storage.files import slug, writable
 
     arguments = {name: value for name, value in values.items() if value != ()}
-    as_json, pictures = arguments.pop("as_json"), arguments.pop("pictures", False)
+    as_json, pictures, form = (arguments.pop(name, None) for name in ("as_json", "pictures", "picture_format"))
     out, plugins, changes = arguments.pop("out", None), arguments.pop("plugins", ()), arguments.pop("changes", ())
     registry, signature, title = registry_with(plugins), inspect.signature(front), ""
     parameters = signature.parameters
@@ -219,7 +221,7 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
         folder = RESULTS / (f"{slug(title)}{about.folder}" if title else about.name)
     state_folder = folder if "kept" in parameters else None
     folder = None if arguments.get("plan") else folder
-    pictures = folder is not None and pictures and has_matplotlib(by_default=bool(about.pictures))
+    pictures = folder is not None and bool(pictures or form) and has_matplotlib(by_default=bool(about.pictures))
     if folder is not None:
         writable(folder)
     tell_faults(registry)
@@ -246,7 +248,10 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
                 answer, interruption = stop.partial, stop  # what is finished is written and shown first
                 answered()
         files: list[str] = []
-        fault = None if folder is None else attempt(lambda: answer.save(folder, pictures and interruption is None), files)
+        drawn = pictures and interruption is None
+        fault = None if folder is None else attempt(lambda: answer.save(folder, drawn), files)
+        if folder is not None and drawn and form:
+            fault = fault or attempt(lambda: answer.picture(folder, form), files)
         fault = fault or _by_flags(about, answer.failure())
         show(answer.to_dict() if as_json else {}, as_json, fault, lambda: answer.screen(files))
         if interruption is not None:

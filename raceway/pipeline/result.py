@@ -41,6 +41,7 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from raceway.framework.contracts import Format
     from raceway.framework.registry import Entry, Registry
@@ -414,12 +415,11 @@ class Result(Answer):
 
         return report(self.content)
 
-    @door
-    def picture(self, folder: Annotated[str | Path, PATH]) -> list[Path]:
-        """Orbit, spectrum and ball loads, as far as there is data, a PNG each."""
-        from raceway.plugins.formats.pictures import Pictures
+    def drawings(self) -> dict[str, Figure]:
+        """Orbit, spectrum and ball loads, as far as there is data."""
+        from raceway.plugins.formats.pictures import drawings
 
-        return Pictures().write(Path(folder), self)
+        return drawings(self)
 
     @door
     def save(self, folder: Annotated[str | Path, PATH], pictures: bool = False) -> list[Path]:

@@ -163,7 +163,7 @@ class _Layout:
 
         RacewayError: matplotlib is missing, or the file cannot be written.
         """
-        return save_figure(draw(self), path, 150)
+        return save_figure(draw(self), path)
 
 
 def layout(

@@ -14,7 +14,6 @@ from raceway_article.figures import Picture, named
 from raceway_article.rules import KINDS
 
 ARTICLE = "“Dynamic Stiffness Characteristics of Bearings Under Combined Loads with Rotor Excitation” (Lubricants 2026, 14(3), 128)"
-_DOTS_PER_INCH = 110
 
 
 def write_tables(
@@ -23,7 +22,7 @@ def write_tables(
     """JSON of a study, a CSV file of each table and a PNG file of each picture."""
     files = [write_json(content, folder / f"{name}.json")]
     files += [write_whole(csv_text(rows).encode(), folder / f"{title}.csv") for title, rows in tables.items()]
-    return files + [save_figure(picture.figure(), folder / f"{picture.name}.png", _DOTS_PER_INCH) for picture in pictures]
+    return files + [save_figure(picture.figure(), folder / f"{picture.name}.png") for picture in pictures]
 
 
 def page(

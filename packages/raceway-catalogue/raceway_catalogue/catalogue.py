@@ -168,8 +168,6 @@ def look_up(pattern: str = "*", picture: str | Path | None = None, materials: bo
     if materials:
         return _materials()
     presets = catalogue(pattern)
-    if picture is not None and Path(picture).suffix.lower() != ".png":
-        raise SceneError.at("picture", str(picture), "the file must end in .png")
     if len(presets) == 1:
         return _entry(presets[0], None if picture is None else Path(picture))
     if picture is not None:
@@ -235,7 +233,7 @@ def _entry(preset: Preset, picture: Path | None) -> _Listing:
         "printed": preset.printed,
         "geometry": geometry,
         "ball_pass": {"contact_angle_deg": b.contact_angle_deg, **passes},
-        "files": [] if picture is None else [str(save_figure(section_drawing(preset.name, b), picture, 150))],
+        "files": [] if picture is None else [str(save_figure(section_drawing(preset.name, b), picture))],
     }
     parts += [Words(f"{', '.join(names)}: {source}", "dim") for source, names in sources.items()]
     return _Listing(preset.title, content, [*parts, *file_lines(content["files"])])

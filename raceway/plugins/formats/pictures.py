@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import attrs
 
-from raceway.answers.picture import given_axes, label_axes, new_figure, save_figure, wrapped
+from raceway.answers.picture import COLOURS, MARKERS, given_axes, label_axes, new_figure, save_figure, wrapped
 from raceway.errors import RacewayError, extra
 from raceway.framework.options import between, nearest, option
 
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from raceway.plugins.formats import RunResult
 
 
-_USED, _OTHER, _STATIC, _GRID = "#0b5fa5", "#b9c4cf", "#c8501e", "#d8dee4"
+_USED, _STATIC = COLOURS[:2]
+_OTHER, _GRID = "#b9c4cf", "#d8dee4"
 _MICRO = 1e6
 #: Lines of a spectrum from which on their tops are joined.
 _DENSE = 400
@@ -36,7 +37,7 @@ class Pictures:
     suffixes: ClassVar[tuple[str, ...]] = (".png",)
     of_results: ClassVar[bool] = True
 
-    dots_per_inch: int = option(150, help="resolution of the PNG files", rule=between(30, 1200))
+    dots_per_inch: int = option(300, help="resolution of the PNG files", rule=between(30, 1200))
 
     def write(self, folder: Path, result: RunResult) -> list[Path]:
         """Write the pictures that the result has data for.
@@ -55,8 +56,13 @@ class Pictures:
         RacewayError
             matplotlib is missing, or the folder cannot be written.
         """
-        figures = {name.replace("_", "-"): picture(result, name) for name in _available(result)}
-        return [save_figure(figure, Path(folder) / f"{name}.png", self.dots_per_inch) for name, figure in figures.items()]
+        figures = drawings(result).items()
+        return [save_figure(figure, Path(folder) / f"{name}.png", self.dots_per_inch) for name, figure in figures]
+
+
+def drawings(result: RunResult) -> dict[str, Figure]:
+    """Figures by the names of their files."""
+    return {name.replace("_", "-"): picture(result, name) for name in _available(result)}
 
 
 def picture(result: RunResult, name: str) -> Figure:
@@ -152,14 +158,14 @@ def _draw_spectrum(axes: Axes, result: RunResult) -> None:
     shown = (order > 0.0) & (order <= 10.05)
     peak = max(lines[shown].max(), 1e-12)
     apart, width = (0.4 * order[1], 1.0) if order[1] < 0.2 else (0.06, 2.0)
-    for lane, (name, colour) in enumerate((("y", _USED), ("z", _STATIC))):
+    for lane, (name, colour, dashes) in enumerate((("y", _USED, "-"), ("z", _STATIC, (0, (3, 1))))):
         # Beside each other, since both directions of a turning force have the same line.
         x = order[shown] + (lane - 0.5) * apart
         tops = np.maximum(lines[shown, lane], peak * 1e-9)
         if len(x) > _DENSE:
-            axes.plot(x, tops, color=colour, linewidth=width, label=f"displacement {name}")
+            axes.plot(x, tops, color=colour, linestyle=dashes, linewidth=width, label=f"displacement {name}")
         else:
-            axes.vlines(x, peak * 1e-9, tops, color=colour, linewidth=width, label=f"displacement {name}")
+            axes.vlines(x, peak * 1e-9, tops, color=colour, linestyle=dashes, linewidth=width, label=f"displacement {name}")
     first = float(lines[shown].max(axis=1)[np.argmin(np.abs(order[shown] - 1.0))])
     text = f"1x: {first:.4g} µm at {frequency:.4g} Hz"
     axes.annotate(text, (1.0, first), xytext=(12, 2), textcoords="offset points", fontsize=10)
@@ -178,17 +184,21 @@ def _draw_ball_loads(axes: Any, result: RunResult) -> None:
     azimuth, row = result.model.azimuth, result.model.basis.row
     count, z = result.model.geometry.ball_count, len(azimuth)
     static = result.equilibrium.contact_force[:z]
-    top = max(static.max(), 1e-12) * 1.2
-    if result.simulation is not None:
-        loads = result.simulation.record.contact_force[:, :z]
-        low, high = loads.min(axis=0), loads.max(axis=0)
-        axes.vlines(azimuth, low, high, color=_USED, linewidth=6.0, alpha=0.45, label="range over the orbit")
-        top = max(top, high.max() * 1.2)
-    for k in range(row[-1] + 1):
-        balls = np.flatnonzero(row == k)
-        closed, style = np.append(balls, balls[0]), ("o-", "s--", "^-.", "v:")[k % 4]
-        label = "static" if z == count else f"static, row {k + 1}"
-        axes.plot(azimuth[closed], static[closed], style, color=_STATIC, linewidth=1.6, markersize=5, label=label)
+    top, rows = max(static.max(), 1e-12) * 1.2, row[-1] + 1
+    for k in range(rows):
+        # Equal rows lie upon each other: each is narrower than the one below.
+        balls, of_row, below = np.flatnonzero(row == k), f", row {k + 1}" if rows > 1 else "", rows - 1 - k
+        colour = COLOURS[(k + 1) % len(COLOURS)]
+        if result.simulation is not None:
+            loads = result.simulation.record.contact_force[:, balls]
+            low, high, style = loads.min(axis=0), loads.max(axis=0), {"color": colour, "alpha": 0.4}
+            axes.vlines(
+                azimuth[balls], low, high, linewidth=5.0 + 4.0 * below, label=f"range over the orbit{of_row}", **style
+            )
+            top = max(top, high.max() * 1.2)
+        closed, line = np.append(balls, balls[0]), f"{MARKERS[k % len(MARKERS)]}{('-', '--', ':', '-.')[k % 4]}"
+        size = {"linewidth": 1.3 + 2.6 * below, "markersize": 4.5 + 5.5 * below}
+        axes.plot(azimuth[closed], static[closed], line, color=colour, label=f"static{of_row}", **size)
     for k in range(count):
         axes.text(azimuth[k], top * 0.94, str(k), ha="center", va="center", fontsize=9, color="#5a6570")
     axes.set_ylim(0.0, top)

@@ -16,7 +16,7 @@ from raceway_rotor.shaft import Bearing, Rotor, State, bearing, rotor
 from raceway import Answer, ConvergenceError, SceneError, door
 from raceway.extend import (
     PATH, PATHS, Fact, Part, SceneSource, ShowProgress, Tables, Words, as_scene, given_axes, labelled_dataset, number,
-    registry_with, save_figure, sections, telling, without_nan, writable,
+    registry_with, sections, telling, without_nan, writable,
 )  # fmt: skip
 from raceway_measure.fit.estimate import COVERAGE
 from raceway_measure.fit.fitted import interval
@@ -27,6 +27,7 @@ from raceway_measure.fit.synchronous import RunOut, Synchronous, response_of, st
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from xarray import Dataset
 
 #: Deflection of the bearing below this part of that at the sensor is a small difference of large numbers.
@@ -224,19 +225,11 @@ class Identified(Answer):
         }
         return labelled_dataset(variables, {"time": ("time", record.time, {"units": "s"})}, {"title": self.title})
 
-    @door
-    def picture(self, folder: Annotated[str | Path, PATH]) -> list[Path]:
-        """Draw signals.png, spectrum.png and orbits.png.
-
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or a folder that cannot be written.
-        """
+    def drawings(self) -> dict[str, Figure]:
+        """Signals, spectrum and orbits."""
         from raceway_measure.fit.picture import figures
 
-        drawings = figures(self.rotation, self.component, self.state)
-        return [save_figure(figure, Path(folder) / f"{name}.png", 110) for name, figure in drawings.items()]
+        return figures(self.rotation, self.component, self.state)
 
     @door
     def plot(self, what: str = "orbits", ax: Axes | None = None) -> Axes:

@@ -351,7 +351,7 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
     first = study.points[0].identified
     record = figures(first.rotation, first.component, first.state)
     drawings = {"procedures": _procedures(study), **record, "error-split": _causes(study)}
-    files = [save_figure(figure, folder / f"{name}.png", 110) for name, figure in drawings.items()]
+    files = [save_figure(figure, folder / f"{name}.png") for name, figure in drawings.items()]
     # Words, tables and figures.
     points, worst, rig, signals = study.points, study.worst, study.rig, study.rig.signals
     words = (
