@@ -99,6 +99,55 @@ def test_the_answer_stands_first(tmp_path):
     assert [line.split("  ")[1].strip() for line in text[place:] if line.startswith("  ")][0] == "equivalent stiffness K"
 
 
+OIL = {"oil": "VG 32", "temperature_c": 50.0}
+PAIR = {"preset": "7014C", "arrangement": "DB", "preload": 290.0}
+TURNING = {"kind": "bidirectional", "speed_rpm": 9000.0, "amplitude": "constant", "force": 100.0}
+FILM = {
+    "bearing": PAIR, "supports": {"tilt": "free"}, "load": {"radial": [100.0, 0.0]}, "excitation": TURNING, "lubricant": OIL,
+    "contact": {"kind": "film", "damping": "band"}, "quantities": {"film_parameter": {"roughness": 1e-7}},
+}  # fmt: skip
+WARM = {
+    "bearing": {**PAIR, "preload_kind": "spring"}, "kinematics": {"spin_speed_rpm": 9000.0}, "lubricant": {"oil": "VG 32"},
+    "mounting": {"shaft_interference": 5e-6}, "heat": {"oil_inlet_c": 25.0, "oil_flow": "300 cm3/min", "ambient_c": 25.0},
+}  # fmt: skip
+#: Kinds of scenes, each with all that a user of it asks for.
+KINDS = {
+    "at rest": {"bearing": {"preset": "6205"}, "load": {"axial": 300.0, "radial": [1000.0, 0.0]}, "supports": {"tilt": "free"}},
+    "along a line": {"bearing": {"preset": "B7206C"}, "load": {"axial": 400.0}, "excitation": {**TURNING, "kind": "unidirectional"}},
+    "film and friction": FILM, "warm": WARM, "sliding": {**FILM, "bearing": {**PAIR, "preload": 2.0}, "load": {}},
+    **{file: EXAMPLES / f"{file}.toml" for file in (
+        "minimal", "duplex_db", "set_tbt", "gyroscopic", "orbiting", "cylindrical_rollers", "run_up", "measured", "folds",
+        "b7206_condensed", "b7206_patches", "b7206_elastic_coarse",
+    )},
+}  # fmt: skip
+#: Their meshes take seconds.
+MESHED = {"b7206_condensed", "b7206_patches", "b7206_elastic_coarse"}
+
+
+@pytest.mark.parametrize("kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind in MESHED)) for kind in KINDS])
+def test_every_kind_of_scene_fits_one_screen(kind):
+    """The answer on the fourth line at the latest, 28 lines with the file's name, warnings a line each; numbers keep their units."""
+    scene = KINDS[kind]
+    result = rw.run(scene if isinstance(scene, dict) else rw.load_scene(scene))
+    told = lines(result.screen(["raceway-out/title/result.json"]))
+    answer = next(k for k, line in enumerate(told, 1) if re.match("  (equivalent stiffness K|tangent kxx) ", line))
+    assert answer <= 4 and len(told) <= 28 and max(map(len, told)) <= 80
+    assert sum(line.startswith("warning: ") for line in told) == len(result.warnings)
+    assert not any(re.search(r"[+-] …$", line) for line in told) and told[-1].startswith("written: ")
+
+
+def test_what_a_screen_has_no_room_for_is_told_when_it_is_asked_for(caplog):
+    result = rw.run(FILM)
+    short = lines(result.screen())
+    with caplog.at_level("INFO", "raceway"):
+        whole = " ".join(lines(result.screen()))
+    assert "-v or result.json" in " ".join(short) and "…" not in whole and "-v or" not in whole
+    assert all(
+        words in whole for words in ("Palmgren's rule", "torque by source", "reference life L10r", "stability", "BPFO")
+    )
+    assert not any("Palmgren" in line for line in short)
+
+
 def test_what_is_nothing_has_no_sign_and_a_direction_is_no_state():
     """A loose row carries 0 N; a ring that the balls push off its seat is not said to be seated."""
     pair = {"preset": "B7206C", "arrangement": "DB", "preload": 100.0}
@@ -154,7 +203,9 @@ def test_an_orbit_along_a_line_has_no_second_axis(tmp_path):
 
 def test_a_pair_is_called_one_and_its_balls_have_rows(tmp_path):
     text = " ".join(
-        invoke("run", EXAMPLES / "duplex_db.toml", "--set", "load.radial=[50.0, 0.0]", "--out", tmp_path).stdout.split()
+        invoke(
+            "run", EXAMPLES / "duplex_db.toml", "-v", "--set", "load.radial=[50.0, 0.0]", "--out", tmp_path
+        ).stdout.split()
     )
     result = json.loads((tmp_path / "result.json").read_text())
     loads = [ball["load_outer_n"] for ball in result["equilibrium"]["balls"]]

@@ -7,6 +7,7 @@ import io
 import re
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import takewhile
 from typing import TypeVar
 
 import attrs
@@ -75,6 +76,8 @@ T = TypeVar("T")
 
 #: Widths of the first two columns of a section: the rest of 80 is left to the remark.
 _QUANTITY, _VALUE = 22, 16
+#: Signs of a line.
+WIDTH = 80
 
 
 def sections(rows: Iterable[Row]) -> RenderableType:
@@ -100,6 +103,31 @@ def _section_grid() -> Table:
     table.add_column(justify="right", min_width=_VALUE, no_wrap=True)
     table.add_column()
     return table
+
+
+def height(rows: list[Row]) -> int:
+    """Lines of the rows on a terminal."""
+    lines = [len(lines_of(remark, room)) for (_, _, remark), room in zip(rows, rooms(rows), strict=True)]
+    return sum(max(count, 1) if value else count + bool(name) for count, (name, value, _) in zip(lines, rows, strict=True))
+
+
+def rooms(rows: list[Row]) -> list[int]:
+    """Signs that the values of each row's section leave to its remark."""
+    wide, left = 0, list[int]()
+    for k, (_, value, _) in enumerate(rows):
+        if not value:
+            wide = max([_VALUE, *(len(row[1]) for row in takewhile(lambda row: row[1], rows[k + 1 :]))])
+        left.append(WIDTH - 2 - (_QUANTITY + 4 + wide if value else 0))
+    return left
+
+
+def in_a_line(text: str, width: int) -> str:
+    """The start of a text that fits so many signs, up to where a part of a sentence or a word ends, of a number with its unit."""
+    if len(text) <= width:
+        return text
+    start = lines_of(text, width - 2)[0]
+    end = max((mark.start() for mark in re.finditer(r"[.:;,] ", f"{start} ")), default=0)
+    return f"{start[:end] if end >= width // 2 else start} …"
 
 
 def micro(text: str) -> str:

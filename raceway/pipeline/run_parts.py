@@ -147,13 +147,14 @@ def mounting_rows(equilibrium: AtRest) -> list[Row]:
     return rows
 
 
-def quantity_rows(result: ReadTables) -> list[Row]:
-    """A section for each plug-in of quantities whose table the result has, of those that are installed."""
+def quantity_rows(result: ReadTables, first: bool = False) -> list[Row]:
+    """A section for each plug-in of quantities whose table the result has, of those that are installed; ``first``: of each its first row."""
     rows: list[Row] = []
     for entry in default_registry().of_kind("quantity"):
         if result.get(entry.name):
             try:
-                rows += quantity_screen(entry.plugin, result)
+                section = quantity_screen(entry.plugin, result)
+                rows += [row for row in section if row[1] or not row[0]][:1] if first else section
             except PluginError as why:  # its numbers are in the result
                 rows.append((entry.name, "not shown", str(why)))
     return rows

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from logging import INFO, getLogger
 from typing import NamedTuple
 
 from raceway.answers import quantities as q
 from raceway.answers.answer import Part
-from raceway.answers.table import Row, Words, micro, sections, tilt_words
+from raceway.answers.table import WIDTH, Row, Words, height, in_a_line, lines_of, micro, rooms, sections, tilt_words
 from raceway.framework.duties import has_rollers
 from raceway.framework.registry import default_registry
 from raceway.pipeline import run_parts
@@ -65,8 +64,14 @@ def _damping_rows(result: Content, identification: ReadTables) -> list[Row]:
     ]
 
 
-#: Signs of a warning in one line of 80.
-_LINE_OF_WARNING = 71
+#: Lines of a screen, of which one names the file.
+_LINES = 28
+#: Rows that a full screen has no room for, the first first, by their names, or by what remarks without a name begin with.
+_DETAILS = (
+    "energies", "unbalanced force", "penetration share", "phase lag", "stability", "axial force of rows", "FTF", "row 1: FTF", "row 2: FTF",
+    "row 3: FTF", "tilt_y, tilt_z", "replaced by the law", "structural compliance", "load P, static s0", "equivalent load P",
+    "nodes per semi-axis", "lowest elastic mode", "displacement y, z", "loss factor", "kxx, rows held", "least loaded ball",
+)  # fmt: skip
 
 
 class Screen(NamedTuple):
@@ -136,30 +141,36 @@ def screen(result: Content) -> Screen:
 
 
 def report(result: Content) -> list[Part]:
-    """Of a terminal: the answer, what makes it doubtful, a line each unless progress is reported, and what was computed."""
-    rows = screen(result)
-    bearing, *model = rows.bearing.splitlines()
-    first = next(k for k, (name, value, _) in enumerate(rows.rows) if k and name and not value)
-    warnings = rows.warnings if getLogger("raceway").isEnabledFor(INFO) else [_in_a_line(text) for text in rows.warnings]
-    cut = "in full, with remedies: -v or result.json" if warnings != rows.warnings else ""
+    """Of a terminal: the answer, what makes it doubtful, and what was computed; as much as fits, unless progress is reported."""
+    shown = screen(result)
+    bearing, *model = shown.bearing.splitlines()
+    rows, warnings, last = shown.rows, shown.warnings, "; ".join([*model, shown.left_out])
+    if not getLogger("raceway").isEnabledFor(INFO):
+        cut = f"{last}; all rows and remedies: -v or result.json"
+        warnings, room = [in_a_line(text, WIDTH - len("warning: ")) for text in warnings], _LINES - 2 - len(warnings)
+        if height(rows) + len(lines_of(f"{bearing}\n{last}", WIDTH)) > room:
+            rows = _rows_that_fit(result, rows, room - len(lines_of(f"{bearing}\n{cut}", WIDTH)))
+        last = last if (rows, warnings) == (shown.rows, shown.warnings) else cut
+    first = next(k for k, (name, value, _) in enumerate(rows) if k and name and not value)
     return [
-        Words("; ".join(rows.title.splitlines()), "bold"),
-        sections(rows.rows[:first]),
+        Words("; ".join(shown.title.splitlines()), "bold"),
+        sections(rows[:first]),
         *(Words(f"warning: {text}", "yellow") for text in warnings),
-        *([Words(cut, "dim")] if cut else []),
         Words(bearing, "dim"),
-        sections(rows.rows[first:]),
-        Words("; ".join([*model, rows.left_out]), "dim"),
+        sections(rows[first:]),
+        Words(last, "dim"),
     ]
 
 
-def _in_a_line(text: str) -> str:
-    """The start of a warning that fits a line of a terminal, up to where a part of a sentence ends."""
-    if len(text) <= _LINE_OF_WARNING:
-        return text
-    ends = [mark.start() for mark in re.finditer(r"[.:;,] ", text[: _LINE_OF_WARNING - 2])]
-    end = max(ends, default=0)
-    return f"{text[:end] if end >= _LINE_OF_WARNING // 2 else text[: _LINE_OF_WARNING - 2].rpartition(' ')[0]} …"
+def _rows_that_fit(result: Content, rows: list[Row], count: int) -> list[Row]:
+    """At most so many, a line each: first go the rows of plug-ins of quantities but their first, then ``_DETAILS`` in their order."""
+    if len(rows) > count:
+        further, first = run_parts.quantity_rows(result), run_parts.quantity_rows(result, first=True)
+        rows = [row for row in rows if row in first or row not in further]
+    for label in _DETAILS:
+        if len(rows) > count:
+            rows = [row for row in rows if label not in (row[0], "" if row[1] else row[2][: len(label)])]
+    return [(name, value, in_a_line(remark, room)) for (name, value, remark), room in zip(rows, rooms(rows), strict=True)]
 
 
 #: How the rows of a pair stand to each other.

@@ -86,14 +86,14 @@ class FilmThickness:
                 "Oil film",
                 "",
                 "Hamrock and Dowson, smooth surfaces; without contact.kind = 'film' it does not separate the surfaces",
-            ),
-            ("viscosity, alpha", oil, "at the running temperature; pressure-viscosity coefficient"),
+            )
         ]
-        for race in ("inner", "outer"):
+        for race in sorted(("inner", "outer"), key=lambda race: float(table[race]["minimum_m"])):
             film = table[race]
             thickness = ", ".join(f"{1e6 * film[name]:.4g}" for name in ("central_m", "minimum_m"))
             speed = f"{film['entraining_speed_m_per_s']:.5g} m/s, heat and supply leave {film['share_of_isothermal']:.2g}"
-            facts.append((f"{race} h_c, h_min", f"{thickness} µm", f"ball {film['ball']}, {speed}, {film['regime']}"))
+            facts.append((f"film h_c, h_min, {race}", f"{thickness} µm", f"ball {film['ball']}, {film['regime']}, {speed}"))
+        facts.append(("viscosity, alpha", oil, "at the running temperature; pressure-viscosity coefficient"))
         return facts
 
 

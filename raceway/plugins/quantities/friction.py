@@ -164,7 +164,7 @@ class Friction:
         lost = [power * end / torque if power and torque and end is not None else None for end in ends]
         return [
             ("Friction", "", ""),
-            ("torque", number(torque, "N m", 4), " to ".join(number(end, "", 3) for end in ends)),
+            ("friction torque", number(torque, "N m", 4), f"{' to '.join(number(end, '', 3) for end in ends)}; {number(power, 'W', 4)}"),
             (
                 "power loss", number(power, "W", 4),
                 f"{number(lost[0], '', 3)} to {number(lost[1], '', 3)}, inner {number(heat['inner'], '', 3)}, outer {number(heat['outer'], '', 3)}",

@@ -100,9 +100,14 @@ class Temperatures:
         """Temperatures, heat and running preload, with their bands."""
         band = table.get("band", {})
         rows: list[Fact] = [("Temperatures", "", "steady; within the bands of friction and conductances")]
-        for node, kelvin in table["temperatures_k"].items():
+        levels = {node: kelvin and kelvin - ZERO_C for node, kelvin in table["temperatures_k"].items()}
+        rings, others = (
+            ", ".join(number(levels.get(name), "", 3) for name in names) for names in (("inner", "outer"), ("balls", "oil"))
+        )
+        rows.append(("inner, outer ring", f"{rings} °C", f"balls, oil {others} °C"))
+        for node, celsius in levels.items():
             ends = band.get("temperatures_k", {}).get(node)
-            rows.append((node, number(kelvin and kelvin - ZERO_C, "°C", 4), _within(ends, ZERO_C, "°C")))
+            rows.append((node, number(celsius, "°C", 4), _within(ends, ZERO_C, "°C")))
         ways = ", ".join(f"{number(value, 'W', 3)} by the {way}" for way, value in table["flows_w"].items())
         within = "; ".join(filter(None, (_within(band.get("heat_w"), 0.0, "W"), ways)))
         rows.append(("heat", number(table["heat_w"], "W", 4), within))
