@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import attrs
 import numpy as np
 
-from raceway.core.columns import Number, acos, at_row, cos, has_columns, largest, least, length, sin, some, where
+from raceway.core.columns import Number, acos, at_row, at_rows, cos, has_columns, largest, least, length, sin, some, where
 from raceway.framework.rules import Rule, speaking
 from raceway.scene.tables import Kinematics, Mounting
 
@@ -59,6 +59,10 @@ def _moments(b: Bearing, depth: Number) -> tuple[Number, Number, Number] | None:
     return volume, transverse, polar
 
 
+#: Sections that are solved at once, of 2 MB each.
+_TOGETHER = 32
+
+
 @cache
 def _growth(b: Bearing, depth: Number) -> Number:
     """Centrifugal growth [m] for 1 kg/m3 and 1 rad/s; ``b`` is a scene's [bearing], ``depth`` that of its grooves."""
@@ -74,9 +78,11 @@ def _growth(b: Bearing, depth: Number) -> Number:
     numbers: tuple[Number, ...] = (b.bore, b.width, b.pitch_diameter, b.ball_diameter, b.conformity_inner, b.contact_angle)
     columns = np.stack(np.broadcast_arrays(*numbers, depth, young, poisson, np.zeros(length(b))))
     _, points, index = np.unique(columns, axis=1, return_index=True, return_inverse=True)
-    rows = [at_row(b, point) for point in points]
-    each = [RingSection.of(row, groove_depth(row)).growth(row.rings.young, row.rings.poisson) for row in rows]
-    return np.array(each)[index.ravel()]
+    growth = np.empty(len(points))
+    for k in range(0, len(points), _TOGETHER):
+        some = at_rows(b, points[k : k + _TOGETHER])
+        growth[k : k + _TOGETHER] = RingSection.of(some, groove_depth(some)).growth(some.rings.young, some.rings.poisson)
+    return growth[index.ravel()]
 
 
 def groove_depth(bearing: Bearing) -> float:

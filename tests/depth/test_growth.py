@@ -5,10 +5,13 @@ from __future__ import annotations
 import attrs
 import numpy as np
 import pytest
+from numpy.polynomial import Legendre
 from scipy.integrate import solve_bvp
 
 from checks.validation.reference.rotating_ring import growth_by_elements
 from raceway import SceneError, make_plan, scene_from_dict
+from raceway.core.columns import with_values
+from raceway.core.fem.mesh.ring_section import RingSection
 from raceway.core.ring.kernels.layout import REST_RADIAL
 from raceway.extend import resolve
 from raceway.scene.growth import groove_depth
@@ -23,6 +26,39 @@ def test_growth_of_a_turning_ring_is_that_of_finite_elements(tables, change):
     """Axisymmetric elements of 0.5 mm on the exact section, 0.1 % themselves; a plane-stress annulus is 4.5 to 6 % above."""
     scene = scene_from_dict(tables(bearing=change, kinematics={"ring_growth": True, "spin_speed_rpm": 30000.0}))
     assert radial_growth(scene) == pytest.approx(growth_by_elements(scene), rel=0.01)
+
+
+def growth_by_strains(section, young, poisson):
+    """Ritz' method with the strains of each polynomial at each place: the readable reference."""
+    x, r, weight = section.x, section.r, section.r * section.area
+    middle, high, wide = 0.5 * (r.max() + r.min()), 0.5 * np.ptp(r), 0.5 * np.ptp(x)
+    lame, shear = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))
+    strains, work, there, none = [], [], [], np.zeros_like(r)  # radial, hoop, axial, shear
+    for axial in (False, True):
+        for i, j in [(n, m) for n in range(9) for m in range(9 - n)][axial:]:
+            p, q = Legendre.basis(i, (middle - high, middle + high)), Legendre.basis(j, (-wide, wide))
+            by_r, by_x = p.deriv()(r) * q(x) if i else none, p(r) * q.deriv()(x) if j else none
+            strains.append((none, none, by_x, by_r) if axial else (by_r, p(r) * q(x) / r, none, by_x))
+            work.append(0.0 if axial else (p(r) * q(x) * r) @ weight)
+            there.append(0.0 if axial else p(section.contact[1]) * q(section.contact[0]))
+    strains = np.array(strains)
+    stress = 2.0 * shear * strains * [[1.0], [1.0], [1.0], [0.5]]
+    stress[:, :3] += lame * strains[:, :3].sum(axis=1, keepdims=True)
+    stiffness = np.einsum("ikn,jkn,n->ij", strains, stress, weight, optimize=True)
+    return np.linalg.solve(stiffness, work) @ there
+
+
+def test_growth_of_sections_that_are_integrated_at_once(tables):
+    """Rounding of 89 unknowns."""
+    angle, bore, poisson = np.array([8.0, 25.0, 40.0]), np.array([28e-3, 30e-3, 33e-3]), np.array([0.2, 0.3, 0.35])
+    bearing = scene_from_dict(tables()).bearing
+    several = RingSection.of(with_values(bearing, contact_angle_deg=angle, bore=bore), 2e-3).growth(206e9, poisson)
+    alone = [
+        RingSection.of(with_values(bearing, contact_angle_deg=a, bore=b), 2e-3) for a, b in zip(angle, bore, strict=True)
+    ]
+    reference = [growth_by_strains(one, 206e9, nu) for one, nu in zip(alone, poisson, strict=True)]
+    assert several == pytest.approx(reference, rel=1e-12)
+    assert alone[0].growth(206e9, 0.2) == pytest.approx(reference[0], rel=1e-12)
 
 
 def test_growth_of_a_turning_disc(tables):

@@ -79,45 +79,65 @@ class RingSection:
         by = 0.5 * self.r**2 + self.x**2, self.r**2
         return volume.sum(axis=-1), *(np.squeeze(volume[..., None, :] @ square[..., None], (-2, -1)) for square in by)
 
-    def growth(self, young: float, poisson: float) -> float:
+    def growth(self, young: columns.Number, poisson: columns.Number) -> columns.Number:
         """Radial growth of the raceway at the contact when a free ring turns [m], for 1 kg/m3 and 1 rad/s.
 
         Notes
         -----
         Ritz' method on the section: u_r and u_x are polynomials in x and r up to degree 8 that minimise the elastic energy less
         the work of the centrifugal force.  The groove's shoulders bend with it: an annulus from bore to land grows by 5 % more.
+        Energies are integrated over the radius at each x first, then along the axis.
         """
-        middle, high, wide = 0.5 * (self.r.max() + self.r.min()), 0.5 * np.ptp(self.r), 0.5 * np.ptp(self.x)
-        x, r = _legendre(self.x / wide), _legendre((self.r - middle) / high)
-        at_x, at_r = _legendre(np.array([self.contact[0] / wide])), _legendre(np.array([(self.contact[1] - middle) / high]))
-        powers = [(i, j) for i in range(_DEGREE + 1) for j in range(_DEGREE + 1 - i)]
-        radial, axial = [], []  # strains (4, n): radial, hoop, axial, shear
-        none = np.zeros_like(self.r)
-        for i, j in powers:
-            value, by_r, by_x = r[0][i] * x[0][j], r[1][i] * x[0][j] / high, r[0][i] * x[1][j] / wide
-            radial.append((by_r, value / self.r, none, by_x))
-            if i or j:  # a shift along the axis strains nothing
-                axial.append((none, none, by_x, by_r))
-        strain = np.array(radial + axial)
-        lame, shear = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))
-        elastic = np.diag([2.0 * shear] * 3 + [shear])
-        elastic[:3, :3] += lame
-        weight = self.r * self.area
-        stress = np.matmul(elastic, strain)
-        # In parts of a size that libraries of linear algebra give one thread: two wait for each other longer than they compute.
-        left, right = (part.reshape(len(strain), -1, 3 * _ACROSS) for part in (strain * weight, stress))
-        stiffness = (left.transpose(1, 0, 2) @ right.transpose(1, 2, 0)).sum(axis=0)
-        work = np.zeros(len(strain))
-        work[: len(powers)] = [(r[0][i] * x[0][j] * self.r) @ weight for i, j in powers]
-        amount = np.linalg.solve(stiffness, work)[: len(powers)]
-        return float(amount @ [at_r[0][i, 0] * at_x[0][j, 0] for i, j in powers])
+        x, n = self.x[..., ::_ACROSS], _DEGREE + 1
+        r, area = (part.reshape(*part.shape[:-1], -1, _ACROSS) for part in (self.r, self.area))
+        middle, high = 0.5 * (self.r.max(-1) + self.r.min(-1)), 0.5 * np.ptp(self.r, -1)
+        wide = 0.5 * np.ptp(self.x, -1)
+        places = self.contact[0] / wide, (self.contact[1] - middle) / high
+        at_x, at_r = (_legendre(np.expand_dims(place, -1))[0] for place in places)
+        high, wide = (np.expand_dims(size, (-1, -2)) for size in (high, wide))
+        (q, q_x), (p, p_r) = _legendre(x / wide[..., 0]), _legendre((r - middle[..., None, None]) / high)
+        q_x, p_r = q_x / wide, p_r / high[..., None]
+
+        def across(left: np.ndarray, right: np.ndarray, weight: np.ndarray) -> np.ndarray:
+            """Integrals of products over the radius, (..., m, n, n) of m places along the axis."""
+            return np.swapaxes(left * weight[..., None], -1, -2) @ right
+
+        def along(radial: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+            """Of such integrals times polynomials of x the integrals along the axis, (..., n^2, n^2)."""
+            pairs = (left[..., :, None] * right[..., None, :]).reshape(*left.shape[:-1], -1)
+            total = np.swapaxes(radial.reshape(*radial.shape[:-2], -1), -1, -2) @ pairs
+            total = np.swapaxes(total.reshape(*total.shape[:-2], n, n, n, n), -3, -2)
+            return total.reshape(*total.shape[:-4], n * n, n * n)
+
+        lame = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
+        lame, shear = (np.expand_dims(m, (-1, -2, -3)) for m in (lame, young / (2.0 * (1.0 + poisson))))
+        weight, both = r * area, across(p, p_r, area)
+        plain, mixed, steep = across(p, p, weight), across(p, p_r, weight), across(p_r, p_r, weight)
+        # Strains: radial and hoop of u_r, axial of u_x, shear of both.
+        hoop = (lame + 2.0 * shear) * (steep + across(p, p, area / r)) + lame * (both + np.swapaxes(both, -1, -2))
+        radial = along(hoop, q, q) + along(shear * plain, q_x, q_x)
+        axial = along((lame + 2.0 * shear) * plain, q_x, q_x) + along(shear * steep, q, q)
+        coupled = lame * (np.swapaxes(mixed, -1, -2) + across(p, p, area))
+        coupled = along(coupled, q, q_x) + along(shear * mixed, q_x, q)
+        powers = np.array([n * i + j for i in range(n) for j in range(n - i)])
+        shifted = powers[1:]  # a shift along the axis strains nothing
+        rows = (radial[..., powers[:, None], powers], coupled[..., powers[:, None], shifted])
+        sides = (np.swapaxes(rows[1], -1, -2), axial[..., shifted[:, None], shifted])
+        stiffness = np.concatenate([np.concatenate(parts, axis=-1) for parts in (rows, sides)], axis=-2)
+        pushed = np.swapaxes((np.swapaxes(p, -1, -2) @ (r * weight)[..., None])[..., 0], -1, -2) @ q
+        force = np.zeros((*stiffness.shape[:-1], 1))
+        force[..., : len(powers), 0] = pushed.reshape(*pushed.shape[:-2], -1)[..., powers]
+        amount = np.linalg.solve(stiffness, force)[..., : len(powers), 0]
+        there = np.swapaxes(at_r, -1, -2) * at_x
+        growth = (amount * there.reshape(*there.shape[:-2], -1)[..., powers]).sum(-1)
+        return growth if growth.ndim else float(growth)
 
 
 def _legendre(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Legendre's polynomials to ``_DEGREE`` at z (n,), (degree + 1, n), and their derivatives."""
+    """Legendre's polynomials to ``_DEGREE`` at z, on a last axis, and their derivatives."""
     slopes = np.polynomial.legendre.legder(np.eye(_DEGREE + 1), axis=1)
-    value = np.polynomial.legendre.legvander(z, _DEGREE).T
-    return value, slopes @ value[:-1]
+    value = np.polynomial.legendre.legvander(z, _DEGREE)
+    return value, value[..., :-1] @ slopes.T
 
 
 @cache
