@@ -262,7 +262,7 @@ class ColumnBearing:
     def contact_ellipse(self, load: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Peak pressure [Pa] and semi-axes [m] of contacts under loads (n, 2, Z) [N]."""
         halves = [(e.peak_pressure(load[:, k]), *e.semi_axes(load[:, k])) for k, e in enumerate(self.ellipses)]
-        pressure, major, minor = (np.stack(pair, axis=1) for pair in zip(*halves, strict=True))
+        pressure, major, minor = (np.stack(np.broadcast_arrays(*pair), axis=1) for pair in zip(*halves, strict=True))
         return pressure, major, minor
 
     @property

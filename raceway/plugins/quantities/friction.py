@@ -333,7 +333,7 @@ def ball_contacts(points: SolvedPoints) -> BallContacts:
     load = np.where(points.load > 0.0, points.load, 1.0) if own else np.ones((1, *points.load.shape[1:]))
     _, major, minor = points.ellipse(load)
     semi_axes = major / np.cbrt(load), minor / np.cbrt(load)
-    sizes = diameter, of_balls([b.pitch_diameter for b in rows]), np.concatenate(races, axis=1)
+    sizes = diameter, of_balls([b.pitch_diameter for b in rows]), np.concatenate(np.broadcast_arrays(*races), axis=1)
     inertia = of_balls([b.balls.density for b in rows]) * pi * diameter**5 / 60.0
     return BallContacts(points.load, points.contact_angle, points.row, *semi_axes, *sizes, of_balls(stiff), inertia)
 
