@@ -2,6 +2,7 @@
 
 jit            the one decorator for compiled kernels;  compiler: what numba does otherwise for them;  wheel_kernels: those that a wheel brings;  deferred: those beside light classes;  second_process: compiles some meanwhile
 columns        numbers that may be columns, one of each operating point
+chebyshev      interpolation of smooth functions between few points
 lanes          one number of each of four balls at a time
 signatures     types of the kernels that are passed as function pointers
 thermal        steady temperatures of a network of six nodes, and its conductances

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from functools import cache, cached_property
 from math import degrees, inf, pi
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
-from raceway.core.columns import Number, acos, at_row, at_rows, cos, has_columns, largest, least, length, sin, some, where
+from raceway.core.columns import Number, acos, at_row, cos, has_columns, largest, least, length, sin, some, where
 from raceway.framework.rules import Rule, speaking
 from raceway.scene.tables import Kinematics, Mounting
 
@@ -59,8 +60,9 @@ def _moments(b: Bearing, depth: Number) -> tuple[Number, Number, Number] | None:
     return volume, transverse, polar
 
 
-#: Sections that are solved at once, of 2 MB each.
-_TOGETHER = 32
+#: Sections that are solved at once, of 2 MB each; numbers of a section; error of their growth by interpolation.
+_TOGETHER, _SECTION = 32, ("bore", "width", "pitch_diameter", "ball_diameter", "conformity_inner", "contact_angle")
+_GROWTH_ERROR = 1e-10
 
 
 @cache
@@ -74,15 +76,23 @@ def _growth(b: Bearing, depth: Number) -> Number:
 
     if not has_columns(b):
         return RingSection.of(b, depth).growth(young, poisson)
-    # Of all columns it depends on these; points often share them.
+    from raceway.core.chebyshev import interpolated
+
     numbers: tuple[Number, ...] = (b.bore, b.width, b.pitch_diameter, b.ball_diameter, b.conformity_inner, b.contact_angle)
-    columns = np.stack(np.broadcast_arrays(*numbers, depth, young, poisson, np.zeros(length(b))))
-    _, points, index = np.unique(columns, axis=1, return_index=True, return_inverse=True)
-    growth = np.empty(len(points))
-    for k in range(0, len(points), _TOGETHER):
-        some = at_rows(b, points[k : k + _TOGETHER])
-        growth[k : k + _TOGETHER] = RingSection.of(some, groove_depth(some)).growth(some.rings.young, some.rings.poisson)
-    return growth[index.ravel()]
+    points = np.stack(np.broadcast_arrays(*numbers, depth, poisson, np.zeros(length(b))))
+    return interpolated(_growth_of_sections, points, _GROWTH_ERROR) / young
+
+
+def _growth_of_sections(points: np.ndarray) -> np.ndarray:
+    """Growth (m,) for 1 Pa, too, of rings with the numbers (9, m) of their section and Poisson's."""
+    from raceway.core.fem.mesh.ring_section import RingSection
+
+    growth = np.empty(points.shape[1])
+    for k in range(0, len(growth), _TOGETHER):
+        *numbers, depth, poisson, _ = points[:, k : k + _TOGETHER]
+        section = RingSection.of(SimpleNamespace(**dict(zip(_SECTION, numbers, strict=True))), depth)
+        growth[k : k + _TOGETHER] = section.growth(np.float64(1.0), poisson)
+    return growth
 
 
 def groove_depth(bearing: Bearing) -> float:
