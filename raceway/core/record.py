@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import attrs
 import numpy as np
@@ -11,9 +11,11 @@ from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
 from raceway.core.signatures import VECTOR
-from raceway.core.threads import ThreadPool
 from raceway.errors import PluginError
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.core.threads import ThreadPool
 
 #: Called between chunks with the steps done and the steps in all.
 OnChunk = Callable[[int, int], None]

@@ -37,7 +37,7 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.quantities import solved_point, stated_numbers
 from raceway.planning.columns import why_no_column, why_not
 from raceway.planning.resolve import Problem, resolve
-from raceway.scene.changes import Key, key_of, with_number, with_numbers
+from raceway.scene.keys import Key, key_of, with_number, with_numbers
 
 #: Weights of values at shifts by so many steps: their sum over the step is the derivative, of second and of fourth order.
 SECOND_ORDER = {1: 1.0 / 2.0}

@@ -32,7 +32,6 @@ from raceway.pipeline.quantities import StatedQuantities
 from raceway.pipeline.simulate import Simulation
 from raceway.pipeline.uncertainty import stated, uncertainty_table
 from raceway.planning.resolve import Problem
-from raceway.plugins.formats import labelled
 from raceway.scene.catalogue import geometry_of
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.files import without_nan
@@ -312,6 +311,8 @@ class Result(Answer):
         RacewayError
             xarray is missing.
         """
+        from raceway.plugins.formats import labelled
+
         return labelled(self)
 
     @overload

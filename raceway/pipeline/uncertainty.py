@@ -33,7 +33,6 @@ from raceway.framework.shown import Fact, number_within, percents
 from raceway.pipeline.equilibrium import pressures, solve_equilibrium
 from raceway.pipeline.quantities import plugins_stating, solved_point, stated_numbers
 from raceway.planning.resolve import Problem
-from raceway.plugins.formats import RunResult
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
@@ -41,6 +40,27 @@ if TYPE_CHECKING:
     from raceway.pipeline.error import Errors
     from raceway.pipeline.plausible import Spread
     from raceway.pipeline.quantities import StatedQuantities
+    from raceway.plugins.formats import RunResult
+
+    class Computed(RunResult, Protocol):
+        """What the intervals of a ``Result`` rest on."""
+
+        @property
+        def errors(self) -> Errors: ...
+        @property
+        def stated(self) -> StatedQuantities: ...
+        @property
+        def bodies(self) -> Tables | None: ...
+        @property
+        def spread(self) -> tuple[Spread | None, Note]: ...
+        @property
+        def tolerances(self) -> Tables | None: ...
+        @property
+        def geometry(self) -> Tables | None: ...
+        @property
+        def kyy_tilts_follow(self) -> float | None: ...
+        @property
+        def equivalent_stiffness_error(self) -> float | None: ...
 
 
 #: How parts combine.
@@ -56,27 +76,6 @@ _NOTHING = (Estimate.HERTZ_ITSELF, Estimate.BEYOND_HERTZ, Estimate.NOTHING_TURNS
 _TOLD, _SHOWN, _SIDE = 0.1, 0.1, 0.02
 
 Range = tuple[float, float]
-
-
-class Computed(RunResult, Protocol):
-    """What the intervals of a ``Result`` rest on."""
-
-    @property
-    def errors(self) -> Errors: ...
-    @property
-    def stated(self) -> StatedQuantities: ...
-    @property
-    def bodies(self) -> Tables | None: ...
-    @property
-    def spread(self) -> tuple[Spread | None, Note]: ...
-    @property
-    def tolerances(self) -> Tables | None: ...
-    @property
-    def geometry(self) -> Tables | None: ...
-    @property
-    def kyy_tilts_follow(self) -> float | None: ...
-    @property
-    def equivalent_stiffness_error(self) -> float | None: ...
 
 
 class Cause(TypedDict):

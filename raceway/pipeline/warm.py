@@ -34,7 +34,7 @@ from raceway.planning.plan import ScenePlan, make_plan, plan_of
 from raceway.planning.resolve import Problem, resolve
 from raceway.plugins.quantities.heat import NO_THINNING, ZERO_C
 from raceway.plugins.quantities.thermal_network import thermal_network
-from raceway.scene.changes import with_columns
+from raceway.scene.keys import with_columns
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 

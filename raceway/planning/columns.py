@@ -13,7 +13,7 @@ from raceway.core.columns import with_values
 from raceway.framework.contracts import ContactLaw
 from raceway.framework.duties import finds_orbit, is_synchronous
 from raceway.planning.resolve import Problem, resolve
-from raceway.scene.changes import with_columns
+from raceway.scene.keys import with_columns
 from raceway.scene.lubricant import lubricated
 from raceway.scene.scene import Scene
 

@@ -26,7 +26,7 @@ from raceway.points.attractor import attractor_beside
 from raceway.points.branch import OPENS, PEAK, Followed, Label, Orbit, growth_of_swing, open_contacts, orbit_of, resonance
 from raceway.points.parameter import Parameter, parameter_of
 from raceway.points.workload import Workload, run_times
-from raceway.scene.changes import key_of
+from raceway.scene.keys import key_of
 from raceway.scene.scene import Change, SceneSource, plain_tables
 
 #: Error of orbits over their size that meshes are kept fit for, and that at which a branch is left.

@@ -33,7 +33,7 @@ from raceway.planning.plan import make_plan
 from raceway.planning.resolve import Problem, resolve
 from raceway.plugins.formats import labelled_dataset
 from raceway.points.column_quantities import DIMENSIONS, EXTREMES, MOVING, QUANTITIES, Columns, Computed, jacobian, of_result
-from raceway.scene.changes import key_of, with_columns, with_numbers
+from raceway.scene.keys import key_of, with_columns, with_numbers
 from raceway.scene.scene import Scene, SceneSource, as_scene, scene_from_dict
 from raceway.storage.files import available_bytes
 from raceway.storage.tables import Tables

@@ -25,7 +25,7 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.first_order import definitions, derivatives, described, first_order_band, tolerance_rows, values
 from raceway.pipeline.gradient import Gradient, Gradients, NoDerivative
 from raceway.pipeline.run import steady_plan
-from raceway.scene.changes import Key, continuous_keys, key_of
+from raceway.scene.keys import Key, continuous_keys, key_of
 from raceway.scene.scene import SceneSource, as_scene
 from raceway.storage.files import without_nan
 from raceway.storage.tables import Tables

@@ -14,7 +14,7 @@ from raceway.framework.registry import Registry
 from raceway.points.axes import Design, tables_at
 from raceway.points.engine import plugins_of
 from raceway.points.store import files_of
-from raceway.scene.changes import continuous_keys
+from raceway.scene.keys import continuous_keys
 from raceway.scene.scene import Scene, scene_from_dict
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.storage.tables import ReadTables, Tables

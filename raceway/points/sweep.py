@@ -33,7 +33,7 @@ from raceway.points.function import BLOCK, Function, PointStatus, refuse_bytes
 from raceway.points.store import Row, exists, written
 from raceway.points.survey import survey
 from raceway.points.workload import Workload, of_columns, run_times
-from raceway.scene.changes import continuous_keys
+from raceway.scene.keys import continuous_keys
 from raceway.scene.scene import Scene, SceneSource, plain_tables, scene_from_dict
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables

@@ -3,7 +3,7 @@
 scene       the scene as a frozen tree of attrs objects, SI, of whatever a user hands in, with changes
 bearing     its table [bearing];  sets: rows of balls by their names and one by one;  tables: its other tables
 inputs      text of a scene file, and plain Python values of what is handed in
-changes     ``--set`` changes of plain tables; keys whose numbers can change a little
+changes     `--set` changes of plain tables;  keys: numbers of a scene that can change a little
 reading     plain tables to those of a scene: presets, materials, plug-ins that it requires
 structure   plain tables to attrs objects, strictly, every mistake with its path
 units       numbers given as text with a unit

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 from raceway.errors import RacewayError, SceneError
-from raceway.scene.units import unit_of
 from raceway.storage.files import size_of, why_unreadable
 from raceway.storage.tables import Tables
 
@@ -43,6 +42,8 @@ def tidy(value: object, depth: int = 0) -> Any:
             return os.fsdecode(value)
         if hasattr(value, "magnitude") and hasattr(value, "to_base_units"):
             # A quantity of pint is a number with its unit in text, or several; a number where it has no unit.
+            from raceway.scene.units import unit_of
+
             quantity: Any = value
             unit = f"{quantity.units:~C}"
             try:

@@ -19,7 +19,6 @@ from cattrs.gen import make_dict_structure_fn, override
 
 from raceway.errors import Mistake
 from raceway.framework.options import nearest
-from raceway.scene.units import is_quantity, number_in
 from raceway.storage.tables import Tables
 
 T = TypeVar("T")
@@ -124,7 +123,11 @@ def _without_units(value: object, attribute: Any) -> Any:
         return value
     if isinstance(value, list | tuple):
         return [_without(unit, inner) for inner in value]
-    if attribute.type in _LISTS or (attribute.type in _WORDS and not (isinstance(value, str) and is_quantity(value))):
+    if attribute.type in _LISTS or not isinstance(value, str):
+        return value
+    from raceway.scene.units import is_quantity
+
+    if attribute.type in _WORDS and not is_quantity(value):
         return value
     return _without(unit, value)
 
@@ -132,7 +135,11 @@ def _without_units(value: object, attribute: Any) -> Any:
 def _without(unit: str, value: object) -> object:
     if isinstance(value, list | tuple):
         return [_without(unit, inner) for inner in value]
-    return number_in(unit, value) if isinstance(value, str) else value
+    if not isinstance(value, str):
+        return value
+    from raceway.scene.units import number_in
+
+    return number_in(unit, value)
 
 
 def table_without_units(table: Tables, cls: type) -> Tables:

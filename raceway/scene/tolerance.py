@@ -13,7 +13,8 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
-from raceway.scene.changes import Key, key_of, leaves, with_number
+from raceway.scene.changes import leaves
+from raceway.scene.keys import Key, key_of, with_number
 from raceway.scene.tables import SceneTables
 from raceway.scene.units import number_in
 

@@ -31,7 +31,7 @@ from raceway.planning.columns import why_not
 from raceway.planning.parts import Decisions, decide_balls, decide_motion, decide_tilts
 from raceway.planning.plan import make_plan
 from raceway.planning.resolve import resolve
-from raceway.scene.changes import with_number
+from raceway.scene.keys import with_number
 from raceway.scene.scene import Scene, scene_from_dict
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.storage.files import without_nan

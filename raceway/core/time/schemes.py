@@ -65,9 +65,7 @@ def integrate(
     PluginError
         A scheme without the driver, which a plan refuses before.
     """
-    from raceway.core.recorder import Recorder
     from raceway.core.ring.ring import Ring
-    from raceway.core.ring.stepped import SteppedBearing
     from raceway.core.ring.system import compiled
 
     scheme: Scheme = integrator.scheme
@@ -79,6 +77,9 @@ def integrate(
         raise PluginError(
             f"integrator '{name}' has no driver `{missing_driver(scheme, ring is not None)}`, which these bodies need"
         )
+    from raceway.core.recorder import Recorder
+    from raceway.core.ring.stepped import SteppedBearing
+
     stepper: SteppedSystem = (system.stepped() or SteppedBearing(system)) if isinstance(system, Ring) else system
     with stepper.threads:
         recorder = Recorder(stepper, stepper.begin(start), schedule, on_chunk)
