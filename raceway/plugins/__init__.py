@@ -63,7 +63,7 @@ def raceway_quantities() -> dict[str, str]:
         "film": "raceway.plugins.quantities.film:FilmThickness",
         "film_parameter": "raceway.plugins.quantities.film:FilmParameter",
         "friction": "raceway.plugins.quantities.friction:Friction",
-        "sliding": "raceway.plugins.quantities.friction:Sliding",
+        "sliding": "raceway.plugins.quantities.sliding:Sliding",
         "life": "raceway.plugins.quantities.life:Life",
         "heat": "raceway.plugins.quantities.heat:Temperatures",
     }
