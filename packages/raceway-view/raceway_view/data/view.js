@@ -117,10 +117,14 @@ window.raceway_stage = function (stage, words, shown, data) {
       }
     }
     gl.depthMask(true);
+    const taken = [];  // a label that would lie on another one moves by a line or two, or is left out
     labels.forEach((span, k) => {
-      const q = on(...data.labels[k].at), x = (q[0] * size[0] + 1) * width / 2, y = (1 - q[1] * size[1]) * height / 2;
-      span.style.transform = "translate(" + x + "px," + y + "px) translate(-50%,-50%)";
-      span.style.visibility = x < 20 || y < 10 || x > width - 20 || y > height - 10 ? "hidden" : "visible";
+      const q = on(...data.labels[k].at), x = (q[0] * size[0] + 1) * width / 2, half = 3.4 * span.textContent.length;
+      const free = (y) => taken.every((box) => Math.abs(box.x - x) > box.half + half || Math.abs(box.y - y) > 12);
+      const middle = (1 - q[1] * size[1]) * height / 2, y = [0, 13, -13, 26, -26].map((away) => middle + away).find(free);
+      if (y !== undefined) taken.push({ x, y, half });
+      span.style.transform = "translate(" + x + "px," + (y ?? middle) + "px) translate(-50%,-50%)";
+      span.style.visibility = y === undefined || x < 20 || y < 10 || x > width - 20 || y > height - 10 ? "hidden" : "visible";
     });
   }
   function hidden(name) { return ["outer", "inner"].some((ring) => name.startsWith(ring + " ring") && !shown(ring)); }
