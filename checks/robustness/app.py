@@ -12,7 +12,7 @@ from raceway_app.session import Session
 from raceway_app.worker import Job, News, Worker
 
 from checks.robustness import Row, below
-from checks.validation.browser.application import Application, Tab, hurry, proportional_memory
+from checks.validation.browser.application import WIDTHS, Application, Tab, hurry, proportional_memory
 from checks.validation.browser.chromium import Browser
 from raceway.extend import as_given
 
@@ -28,10 +28,21 @@ def rows() -> list[Row]:
             tab = Tab(browser, served.address)
             start = served.elapsed()
             times = sorted(tab.drag("load.axial", 700 + 10 * k) for k in range(_DRAGS))
+            tab.press("Compare two scenes")
+            tab.settle()
+            both = sorted(tab.drag("load.axial", 700 + 10 * k) for k in range(_DRAGS))
+            tab.press("Compare two scenes")
             page = tab.memory()
             assert page > 1e7, "the processes of the page were not found"
             memory = served.memory() + page
             faults = hurry(tab, _SEQUENCES, 3)
+        with tempfile.TemporaryDirectory() as folder, Application(Path(folder)) as served:
+            cut, serious = list[str](), list[str]()
+            for width in WIDTHS:
+                tab = Tab(browser, served.address, width)
+                tab.settle()
+                cut += [f"{width} px: {fault}" for fault in tab.cut_words()]
+                serious += tab.inaccessible()
     finally:
         browser.close()
     load = f"load average {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores, software WebGL"
@@ -41,7 +52,10 @@ def rows() -> list[Row]:
             "change to picture, rigid, 60 speeds and 31 loads: median [ms]", statistics.median(times), 100.0, COMMAND, load
         ),
         below("the same, 95th percentile [ms]", late, 200.0, COMMAND, load),
+        below("the same, two scenes: median [ms]", statistics.median(both), 100.0, COMMAND, load),
         below("start of the command to the first picture [s]", start, 4.0, COMMAND, load),
+        below("words cut or overlapping at 1280, 1024 and 400 px", len(cut), 0, COMMAND, "; ".join(cut[:2])),
+        below("serious violations that axe finds", len(serious), 0, COMMAND, "; ".join(serious[:2])),
         below("memory of server, worker and page [MB]", 1e-6 * memory, 500.0, COMMAND),
         below(
             f"sequences of {_SEQUENCES} that leave numbers of another scene", len(faults), 0, COMMAND, "; ".join(faults[:2])

@@ -45,6 +45,30 @@ const seen = new MutationObserver(() => {
 seen.observe(app, { attributes: true });
 """
 
+#: What a reader would miss: parts beyond the right edge, and words that lie on others.
+_WHOLE = """
+const box = (e) => e.getBoundingClientRect(), faults = [], shown = (e) => e.textContent.trim() && box(e).width > 0 && getComputedStyle(e).visibility !== "hidden";
+const edge = document.documentElement.clientWidth + 1;
+for (const e of document.querySelectorAll("body *")) {
+  if (!e.closest(".scroll") && shown(e) && box(e).right > edge) faults.push("cut: " + e.textContent.trim().slice(0, 40));
+}
+for (const picture of document.querySelectorAll(".chart svg, .stage, .pair svg")) {
+  const frame = box(picture), words = [...picture.querySelectorAll("text, .label")].filter(shown);
+  words.forEach((a, k) => {
+    const one = box(a);
+    if (one.left < frame.left - 1 || one.right > frame.right + 1) faults.push("cut: " + a.textContent);
+    for (const b of words.slice(k + 1)) {
+      const other = box(b), slack = 2;
+      if (one.left < other.right - slack && other.left < one.right - slack && one.top < other.bottom - 2 * slack && other.top < one.bottom - 2 * slack)
+        faults.push(a.textContent + " lies on " + b.textContent);
+    }
+  });
+}
+return faults;
+"""
+#: Windows in which the page must be whole [px].
+WIDTHS = (1280, 1024, 400)
+
 
 def proportional_memory(pid: int) -> int:
     """Of a process, shared pages in proportion [byte]."""
@@ -155,7 +179,7 @@ class Tab:
 
     def panels(self) -> int:
         """Of scenes that are shown."""
-        return int(self.browser.run("return document.querySelectorAll('.bodies > h2').length"))
+        return int(self.browser.run("return document.querySelectorAll('.bodies > article').length"))
 
     def drag(self, key: str, value: object) -> float:
         """Move a slider; the time until the picture of it is painted [ms]."""
@@ -196,6 +220,22 @@ class Tab:
         return sum(
             proportional_memory(pid) for pid in pids if b"--type=renderer" in Path(f"/proc/{pid}/cmdline").read_bytes()
         )
+
+    def cut_words(self) -> list[str]:
+        """Parts beyond the right edge, words that lie on others."""
+        return [str(fault) for fault in self.browser.run(_WHOLE)]
+
+    def inaccessible(self) -> list[str]:
+        """Serious and critical violations that axe finds, all tables of the form open."""
+        from axe_core_python.selenium import Axe
+
+        self.browser.run("for (const d of document.querySelectorAll('details')) d.open = true")
+        self.settle()
+        return [
+            f"{found['id']}: {found['nodes'][0]['html'][:120]}"
+            for found in Axe().run(self.driver)["violations"]
+            if found["impact"] in ("serious", "critical")
+        ]
 
     def faults(self) -> list[str]:
         """Errors on the console."""

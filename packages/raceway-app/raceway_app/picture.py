@@ -13,7 +13,7 @@ from raceway_view.page import BALL_COLUMNS, ball_cells, rings_data, state_data
 from raceway_view.view import at_rest as at_rest
 
 from raceway import Function, PointStatus, Quantity, RacewayError, Result, Scene, SceneError, function, run, sweep
-from raceway.extend import KNOWN, C, K, Tables, continuous_keys, default_registry, named, plugin_quantities, screen
+from raceway.extend import KNOWN, C, K, Tables, as_given, continuous_keys, default_registry, named, plugin_quantities, screen
 
 #: Relative tolerance of the orbits of curves, far below what is seen.
 _TOLERANCE = 1e-6
@@ -82,14 +82,16 @@ def result_picture(result: Result, state: Snapshot) -> Tables:
     Returns
     -------
     dict : title, bearing, warnings, rows (quantity, value, remark), left_out, columns and balls (of the inner and the outer race), polar
-        (azimuth [deg], load inner, load outer [N]), orbit ((n, 2) [um], or None)
+        (azimuth [deg], load inner, load outer [N]), orbit ((n, 2) [um], or None), intervals (of quantities: value, low, high, relative)
     """
-    parts, balls = screen(result.content), result.content["equilibrium"]["balls"]
+    content = result.content
+    parts, balls = screen(content), content["equilibrium"]["balls"]
     polar = [[ball["azimuth_deg"], ball["load_inner_n"], ball["load_outer_n"]] for ball in balls]
     return {
         "title": parts.title, "bearing": parts.bearing, "warnings": parts.warnings, "left_out": parts.left_out,
         "rows": [list(row) for row in parts.rows if row[0] != "wall time"], "columns": BALL_COLUMNS,
         "balls": {race: ball_cells(state, race == "inner") for race in ("inner", "outer")}, "polar": polar, "orbit": _orbit(result),
+        "intervals": {name: part for name, part in (content["uncertainty"] or {}).items() if isinstance(part, dict)},
     }  # fmt: skip
 
 
@@ -126,9 +128,14 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
     Returns
     -------
     list of dict : panel, axis, label, x, unit, lines (name, label, y with None where the loop has no answer), present (x, or None),
-        missing (points without answer), why (no curves at all)
+        missing (x without answer), why (no curves at all), key
     """
-    scene, panels = result.model.scene, list[Tables]()
+    # Curves are of steady orbits; of a motion that is integrated over time that is its end, where it has one.
+    steady = result.model.scene.to_dict() | {"integrator": {"kind": "periodic"}}
+    scene, panels = (
+        as_given(steady).scene(default_registry()) if result.model.scene.excitation else result.model.scene,
+        list[Tables](),
+    )
     plugin_values = {name: quantity for name, (_, quantity) in plugin_quantities(default_registry()).items()}
     quantities = KNOWN | named(_MULTIPLIER) | plugin_values
     for name, axis in axes.items():
@@ -150,7 +157,8 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
             answer: Tables = {**columns, "points": axis.numbers(), "reason": reasons, "rows": len(scene.bearing.rows)}
         except RacewayError as why:
             if str(why) not in [panel["why"] for panel in panels]:
-                panels.append({"panel": "", "axis": name, "label": axis.label, "why": str(why), "lines": []})
+                nothing = {"panel": "", "why": str(why), "missing": [], "lines": []}
+                panels.append({"axis": name, "label": axis.label, "key": axis.key, **nothing})
             continue
         panels += [_panel(name, axis, t, names, answer, quantities) for t, names in titles.items() if names]
     return panels
@@ -180,7 +188,7 @@ def _panel(
         lines.append({"name": curve, "label": label, "y": y})
     return {
         "panel": title, "axis": name, "label": axis.label, "x": answer["points"].tolist(), "unit": quantities[names[0]].read_unit.replace("K", "°C"),
-        "lines": lines, "present": axis.present, "missing": int(np.count_nonzero(~valid)), "why": next(filter(None, answer["reason"]), ""),
+        "lines": lines, "present": axis.present, "missing": answer["points"][~valid].tolist(), "why": next(filter(None, answer["reason"]), ""), "key": axis.key,
     }  # fmt: skip
 
 

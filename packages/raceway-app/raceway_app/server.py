@@ -10,7 +10,7 @@ import secrets
 import sys
 import webbrowser
 from collections import deque
-from collections.abc import Awaitable, Callable, Iterable, Mapping
+from collections.abc import Awaitable, Callable, Iterable
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,7 @@ import click
 
 from raceway import RacewayError, SceneError
 from raceway.extend import (
-    FILE, Given, SceneSource, Tables, as_given, as_scene, common, csv_text, plugin_files, print_json, registry_with, set_keys,
+    FILE, Given, SceneSource, Tables, as_given, as_scene, common, csv_text, found_by, plugin_files, print_json, registry_with, set_keys,
     writable, write_whole,
 )  # fmt: skip
 from raceway_app.session import Session, groups, texts
@@ -93,13 +93,11 @@ class Page:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._job = -1  # the last that computes pictures
         self._numbers: dict[int, int] = {}  # panel -> number of the change that its picture belongs to
-        self._curves: dict[int, list[Tables]] = {}
         self._reports: deque[News] = deque()
         self.worker = Worker(list(plugins), self._from_worker)
-        self.state.update({f"{name}_{k}": None for k in (0, 1) for name in ("screen", "rings", "bodies")})
-        self.state.update(
-            {"charts": [], "forms": [], "note": "", "ranges": {}, "folder": str(session.folder), "done": -1, "busy": {}}
-        )
+        self.state.update({f"{name}_{k}": None for k in (0, 1) for name in ("screen", "rings", "bodies", "curves")})
+        self.state.update({"forms": [], "note": "", "ranges": {}, "folder": str(session.folder), "done": -1, "busy": {}})
+        self.state.designations = [[entry.name, entry.title.partition(": ")[2]] for entry in found_by("*")]
         self.state.trame__title = "Raceway"
         self._show([0, 1])
         for name in ("change", "compare", "undo", "redo", "range", "stop", "write"):
@@ -150,7 +148,7 @@ class Page:
             if kind == "scene":
                 self.state.note = f"written: {session.save(panel)}"
             elif kind == "csv":
-                text = csv_text(list(_curve_rows(self._curves)))
+                text = csv_text(list(_curve_rows(self.state[f"curves_{k}"] for k in (0, 1))))
                 self.state.note = f"written: {write_whole(text.encode(), session.file('curves', '.csv'))}"
             elif kind in ("png", "ross"):
                 path = session.file(*{"png": ("pictures", ""), "ross": ("bearing", ".toml")}[kind], panel)
@@ -206,9 +204,7 @@ class Page:
 
     def _forget(self, panel: int) -> None:
         """A scene that is refused, or is no more, has no numbers."""
-        self.state.update({f"screen_{panel}": None, f"bodies_{panel}": None})
-        self._curves.pop(panel, None)
-        self.state.charts = _charts(self._curves)
+        self.state.update({f"{name}_{panel}": None for name in ("screen", "bodies", "curves")})
 
     def _from_worker(self, news: News) -> None:
         """In the worker's thread: a picture and the end of its job go to the page together, which is drawn once."""
@@ -248,11 +244,10 @@ class Page:
             if "rings" in news.content:
                 state[f"rings_{panel}"] = {"rings": news.content["rings"], "number": news.number}
             if "curves" in news.content:
-                self._curves[panel] = news.content["curves"]
+                state[f"curves_{panel}"] = news.content["curves"]
                 for curve in news.content["curves"]:  # axes stay while a key is changed
                     if curve["lines"]:
                         self.ranges.setdefault(curve["axis"], (curve["x"][0], curve["x"][-1]))
-                state.charts = _charts(self._curves)
 
     def serve(self, port: int, token: str, ready: Callable[[str], None]) -> None:
         """Until Ctrl-C."""
@@ -286,34 +281,14 @@ class Page:
             self.worker.close()
 
 
-def _charts(curves: Mapping[int, list[Tables]]) -> list[Tables]:
-    """Panels of all scenes, curves of the same quantity in one."""
-    charts: dict[tuple[str, str], Tables] = {}
-    for panel, panels in sorted(curves.items()):
-        for content in panels:
-            key = (content["axis"], content["panel"])
-            chart = charts.setdefault(
-                key, {k: content.get(k) for k in ("axis", "panel", "label", "unit")} | {"series": [], "notes": []}
-            )
-            chart["series"] += [
-                {"panel": panel, "label": line["label"], "x": content["x"], "y": line["y"], "present": content["present"]}
-                for line in content["lines"]
-            ]
-            if content["why"] or content.get("missing"):
-                missing = content.get("missing")
-                points = f"{missing} points without an answer of the fast loop; " if missing else ""
-                chart["notes"].append(f"{_NAMES[panel]}: {points}{content['why'] or 'a run may have one'}")
-    return [chart | {"id": k} for k, chart in enumerate(charts.values())]
-
-
-def _curve_rows(curves: Mapping[int, list[Tables]]) -> Iterable[Tables]:
+def _curve_rows(curves: Iterable[list[Tables] | None]) -> Iterable[Tables]:
     """A row for each point of each curve."""
-    for panel, panels in sorted(curves.items()):
-        for content in panels:
+    for name, panels in zip(_NAMES, curves, strict=True):
+        for content in panels or ():
             for line in content["lines"]:
                 for x, y in zip(content["x"], line["y"], strict=True):
                     yield {
-                        "scene": _NAMES[panel], "axis": content["label"], "x": x, "quantity": line["name"], "unit": content["unit"],
+                        "scene": name, "axis": content["label"], "x": x, "quantity": line["name"], "unit": content["unit"],
                         "value": "" if y is None else y,
                     }  # fmt: skip
 

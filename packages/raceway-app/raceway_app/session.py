@@ -30,7 +30,7 @@ def groups(source: Given) -> list[Tables]:
 
     Returns
     -------
-    list of dict : name, and fields (path, label, unit, help, choices (words, or None), default (text))
+    list of dict : name, and fields (path, unit, help, choices (words, or None), default (text))
     """
     tables, content = source.merged(), []
     for name, schema in _schema()["properties"].items():
@@ -61,7 +61,7 @@ def _field(path: str, schema: ReadTables) -> Tables:
         choices = ["true", "false"]
     open_ended = any(form.get("type") in ("number", "integer", "array", "object") for form in forms) or not choices
     return {
-        "path": path, "label": path.partition(".")[2] or path, "unit": words[2] if words else "", "help": words[1] if words else text,
+        "path": path, "unit": words[2] if words else "", "help": words[1] if words else text,
         "choices": None if open_ended else choices, "hints": choices if open_ended else [],
         "default": told(schema["default"]) if "default" in schema else "",
     }  # fmt: skip
