@@ -178,8 +178,8 @@ def test_nohup_is_respected():
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGTERM])
 def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_path):
-    words = ["--set", "integrator.kind=newmark", "--grid", "load.axial=400:2000:30", "--out"]
-    command = [sys.executable, "-m", "raceway", "sweep", str(ARTICLE), *words, str(tmp_path / "s")]
+    words = ["sweep", str(ARTICLE), "--set", "integrator.kind=newmark", "--grid", "load.axial=400:2000:30", "--out"]
+    command = [sys.executable, "-m", "raceway", *words, str(tmp_path / "s")]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
     end = time.monotonic() + PATIENCE_S
     done = 0
@@ -197,8 +197,8 @@ def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_p
     assert "Traceback" not in error and len(error.strip().splitlines()) == 2, error  # and what is done of how many
     assert not members(process.pid)
     # In processes of their own, like the first points: with more threads a matrix product rounds otherwise.
-    found = raceway(*words, "--resume", "--json")
-    whole = raceway(*words[:-1], tmp_path / "whole", "--json")
+    found = raceway(*words, tmp_path / "s", "--resume", "--json")
+    whole = raceway(*words, tmp_path / "whole", "--json")
     assert json.loads(found.stdout)["rows"] == json.loads(whole.stdout)["rows"]
 
 
