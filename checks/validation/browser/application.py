@@ -177,6 +177,14 @@ class Tab:
         time.sleep(0.3)
         self.wait()
 
+    def rest(self) -> None:
+        """Until curves have all their points, which are computed once no change comes."""
+        script = "return [...document.querySelectorAll('.chart g path.line')].every((e) => e.getAttribute('d').split('L').length > 25)"
+        end = time.monotonic() + PATIENCE_S
+        while not self.browser.run(script):
+            assert time.monotonic() < end, "curves of few points"
+            time.sleep(0.02)
+
     def panels(self) -> int:
         """Of scenes that are shown."""
         return int(self.browser.run("return document.querySelectorAll('.bodies > article').length"))

@@ -119,7 +119,7 @@ def bodies_picture(result: Result, state: Snapshot, rings: bool) -> Tables:
 
 
 def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None] = lambda _name: None) -> list[Tables]:
-    """Curves of the scene of a result, over speed and load, by the compiled loop.
+    """Curves of the scene of a result, of its steady orbits over speed and load, by the compiled loop.
 
     Parameters
     ----------
@@ -130,7 +130,6 @@ def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None]
     list of dict : panel, axis, label, x, unit, lines (name, label, y with None where the loop has no answer), present (x, or None),
         missing (x without answer), why (no curves at all), key
     """
-    # Curves are of steady orbits; of a motion that is integrated over time that is its end, where it has one.
     steady = result.model.scene.to_dict() | {"integrator": {"kind": "periodic"}}
     scene, panels = (
         as_given(steady).scene(default_registry()) if result.model.scene.excitation else result.model.scene,

@@ -26,6 +26,8 @@ _GRACE_S = 2.0
 _HURRY_S = 0.5
 #: Numbers that take longer [s] are shown before the curves.
 _SOON_S = 0.2
+#: Without a change for so long [s] curves get all their points; until then they have a quarter of them.
+_REST_S = 0.15
 
 
 @attrs.frozen
@@ -189,6 +191,8 @@ def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
             if not garbage_free:  # what was compiled has put Python's search for cycles off
                 gc.collect()
                 garbage_free = True
+            if not connection.poll(_REST_S):
+                pictures.refine()
 
 
 class _Pictures:
@@ -197,10 +201,23 @@ class _Pictures:
     def __init__(self, connection: Connection, stop: Event) -> None:
         self._connection, self._stop = connection, stop
         self._shapes: dict[int, object] = {}
+        self._coarse: dict[int, tuple[int, Any, Any]] = {}  # panel -> number, result and axes of curves at few points
+
+    def refine(self) -> None:
+        """Curves at all their points, until another job comes."""
+        from raceway_app import picture
+
+        def wait(_name: str) -> None:
+            if self._connection.poll():
+                raise Stopped
+
+        with contextlib.suppress(Stopped):
+            for panel, (number, result, axes) in list(self._coarse.items()):
+                self._connection.send(News(number, panel, "picture", {"curves": picture.curves(result, axes, wait)}))
+                del self._coarse[panel]
 
     def answer(self, job: Job, panel: int, number: int, scene_input: Given) -> None:
         """One scene; a mistake or a failure is reported, never raised."""
-
         last_report, refusal = time.monotonic(), "failed file" if job.file else "refused"
 
         def tell(kind: str, content: Any = None) -> None:
@@ -255,5 +272,6 @@ class _Pictures:
         if time.monotonic() - start > _SOON_S:  # else one picture with its curves: a page draws itself anew for each
             tell("picture", content)
             content = {}
-        axes = picture.axes_of(scene, job.ranges)
+        self._coarse[panel] = job.scenes[panel][0], result, (axes := picture.axes_of(scene, job.ranges))
+        axes = {name: attrs.evolve(axis, count=axis.count // 4) for name, axis in axes.items()}
         tell("picture", content | {"curves": picture.curves(result, axes, lambda name: progress(f"curves over {name}"))})

@@ -170,6 +170,7 @@ def test_axes_of_the_curves_can_be_set(tab):
 
 
 def test_files_are_written_into_the_folder(tab, folder):
+    tab.rest()
     for words, name in (("Save scene", ".toml"), ("Curves as CSV", "curves.csv"), ("PNG", ".png"), ("ROSS", "bearing.toml")):
         tab.press(words, changes=False)
         end = time.monotonic() + PATIENCE_S

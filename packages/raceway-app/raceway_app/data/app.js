@@ -257,15 +257,15 @@ window.raceway_app = (function () {
       bars() {
         return this.balls.map((b, k) => {
           const a = b[0] * Math.PI / 180, twins = this.balls.flatMap((c, i) => Math.abs(c[0] - b[0]) < 1e-6 ? [i] : []);  // of rows at the same azimuth, beside each other
-          const aside = (twins.indexOf(k) - (twins.length - 1) / 2) * 8, reach = (q) => 18 + 48 * q / this.top;
+          const aside = (twins.indexOf(k) - (twins.length - 1) / 2) * 8, reach = (q) => 18 + 40 * q / this.top;
           const at = (r, s = aside) => [90 + r * Math.cos(a) + s * Math.sin(a), 84 - r * Math.sin(a) + s * Math.cos(a)];
-          return { outer: [at(18), at(reach(b[2]))], inner: [at(18), at(reach(b[1]))], name: at(76, 0), label: twins.join(","), alone: twins[0] === k, thin: twins.length > 1, text: k + ": " + number(b[1]) + " N inner, " + number(b[2]) + " N outer" };
+          return { outer: [at(18), at(reach(b[2]))], inner: [at(18), at(reach(b[1]))], name: at(72, 0), label: twins.join(","), alone: twins[0] === k, thin: twins.length > 1, text: k + ": " + number(b[1]) + " N inner, " + number(b[2]) + " N outer" };
         });
       },
     },
     methods: { number },
     template: `<figure><svg viewBox="0 0 180 168" role="img" :aria-label="'Ball loads round the bearing: ' + bars.map((b) => b.text).join('; ')">
-      <circle class="rule" cx="90" cy="84" r="18"/><circle class="rule" cx="90" cy="84" r="66"/>
+      <circle class="rule" cx="90" cy="84" r="18"/><circle class="rule" cx="90" cy="84" r="58"/>
       <g v-for="b in bars"><title>{{ b.text }}</title>
         <line class="outer" :class="{ thin: b.thin }" :x1="b.outer[0][0]" :y1="b.outer[0][1]" :x2="b.outer[1][0]" :y2="b.outer[1][1]"/>
         <line class="inner" :class="{ thin: b.thin }" :x1="b.inner[0][0]" :y1="b.inner[0][1]" :x2="b.inner[1][0]" :y2="b.inner[1][1]"/>
