@@ -49,7 +49,11 @@ def rows() -> list[Row]:
     late = times[int(0.95 * len(times))]
     return [
         below(
-            "change to picture, rigid, 60 speeds and 31 loads: median [ms]", statistics.median(times), 100.0, COMMAND, load
+            "change to picture, rigid, curves at a quarter of their points: median [ms]",
+            statistics.median(times),
+            100.0,
+            COMMAND,
+            load,
         ),
         below("the same, 95th percentile [ms]", late, 200.0, COMMAND, load),
         below("the same, two scenes: median [ms]", statistics.median(both), 100.0, COMMAND, load),
