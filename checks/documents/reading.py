@@ -14,7 +14,7 @@ PICTURE = ROOT / "docs" / "pictures" / "reading.svg"
 STEPS = (
     ("cli/console.py", "Command"), ("scene/inputs.py", "Scene"), ("planning/plan.py", "Plan"), ("bodies/model.py", "Build"),
     ("pipeline/equilibrium.py", "Equilibrium"), ("pipeline/simulate.py", "Motion"), ("plugins/identifiers/one_frequency.py", "Identify"),
-    ("pipeline/transient_error.py", "Error"), ("pipeline/quantities.py", "Quantities"), ("pipeline/uncertainty.py", "Uncertainty"),
+    ("pipeline/identified.py", "Error"), ("pipeline/quantities.py", "Quantities"), ("pipeline/uncertainty.py", "Uncertainty"),
     ("pipeline/run_screen.py", "Screen"),
 )  # fmt: skip
 _COLOURS = {

@@ -4,6 +4,7 @@ front            ``raceway.run``: one scene in any form, computed
 run              the order of these steps, and the time that they may take
 equilibrium      static equilibrium under the constant loads; pressures, ball-pass frequencies
 simulate         how a motion begins, and the motion
+identified       what is identified in motions, what run-ups and friction leave in it
 error            relative errors of Z: time step, fit, total
 transient_error  relative errors of Z: what has not died out, and what the start decides
 plausible        warnings, and the spread of K over hypotheses that the scene leaves at their defaults

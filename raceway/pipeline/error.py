@@ -25,7 +25,7 @@ Trefethen, Weideman, SIAM Review 56 (2014), 385 (aliasing of the trapezoidal rul
 from __future__ import annotations
 
 from math import ceil, pi
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import attrs
 import numpy as np
@@ -39,9 +39,12 @@ from raceway.framework.estimate import Estimate, Note
 from raceway.framework.registry import default_registry
 from raceway.pipeline.content import ErrorTable
 from raceway.pipeline.equilibrium import solve_equilibrium
+from raceway.pipeline.identified import Identified
 from raceway.pipeline.simulate import Simulation, simulate
-from raceway.pipeline.transient_error import Clean, Identified, Run, distance, settled_value, without_free_vibration
 from raceway.planning.resolve import fits
+
+if TYPE_CHECKING:
+    from raceway.pipeline.transient_error import Clean, Run
 
 #: Least steps per turn (of ``integrator.steps_per_turn``), and how close the second run may come to the stable limit.
 _LEAST_STEPS = 8
@@ -137,7 +140,7 @@ def errors_of(run: Identified) -> Errors:
         step, second = _time_step(run)
         transient = _transient(run, step)
         if model.problem.depends_on_start and transient.size is not None:
-            transient = _from_other_start(run, second or Run.of(run.motion), transient)
+            transient = _from_other_start(run, second, transient)
         parts = {"time_step": step, "transient": transient, "identification": _identification(run)}
     of_bodies = {"mesh": errors.mesh} | ({"contact": errors.contact} if model.traits.calibrated else {})
     errors = attrs.evolve(errors, **parts, bodies=sum(part.size or 0.0 for part in of_bodies.values()))
@@ -201,6 +204,8 @@ def _time_step(run: Identified, second_steps: int | None = None) -> tuple[Part, 
         return Part(None, Estimate.SECOND_RUN_COSTS()), None
     if not method.inertial:
         return _sampling(run), None
+    from raceway.pipeline.transient_error import Run, without_free_vibration
+
     steps = first.steps_per_turn
     limits = [motion.critical_time_step for motion in run.motions if motion.critical_time_step is not None]
     explicit = not method.implicit and bool(limits)
@@ -292,6 +297,8 @@ def _transient(run: Identified, step: Part) -> Part:
     memory = not model.system.conservative or model.problem.contact.law.state_size > 0
     if not method.inertial and (model.plan.turns == 1 or not memory):
         return Part(0.0, Estimate.EQUILIBRIA())
+    from raceway.pipeline.transient_error import settled_value, without_free_vibration
+
     if model.problem.compared_with_steady:
         try:
             steady = settled_value(run)
@@ -335,8 +342,11 @@ def window_misses_transient(model: Model, simulation: Simulation, clean: Clean, 
     return clean.halves is None or clean.halves > _RIGHT * leakage
 
 
-def _from_other_start(run: Identified, reference: Run, transient: Part) -> Part:
+def _from_other_start(run: Identified, second: Run | None, transient: Part) -> Part:
     """With friction the transient, and how far away another start leads."""
+    from raceway.pipeline.transient_error import Run, distance
+
+    reference = second or Run.of(run.motion)
     try:
         size, kind = distance(run.motion, reference, run.on_progress)
     except (ConvergenceError, BeyondPlanError) as why:

@@ -31,11 +31,11 @@ from raceway.framework.registry import Registry, default_registry
 from raceway.pipeline import PATIENCE
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.error import Errors, body_errors, error_warnings, errors_of, misfit_warnings
+from raceway.pipeline.identified import Identified, series_warnings, start_warnings, with_series_error
 from raceway.pipeline.plausible import inertia_warnings, motion_warnings, pressure_warnings, refuse_impossible
 from raceway.pipeline.quantities import StatedQuantities, stated_quantities
 from raceway.pipeline.result import Result, band_table
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
-from raceway.pipeline.transient_error import Identified, series_warnings, start_warnings, with_series_error
 from raceway.planning.plan import ScenePlan, make_plan, plan_of
 from raceway.planning.resolve import Problem, resolve
 from raceway.planning.rules import scene_warnings

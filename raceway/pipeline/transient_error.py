@@ -24,10 +24,6 @@ of them sees it.  A further run begins otherwise, with the steps of the one that
 err alike.  Free vibrations, which each run states as its own error, are taken from both.  The orbit without friction and the motions
 from rest are furthest apart; a growing force leaves the least free vibration.
 
-Of a run-up the distance of each window from the steady motion at its speed is its error: free vibrations, an amplitude that lags
-behind, and the steps in time are in it.  Where no such motion can be solved for, it is the identifier's own error of the window, plus
-that of the time step.
-
 References
 ----------
 Harris, Proc. IEEE 66 (1978), 51 (windows); Nayfeh, Mook, Nonlinear Oscillations (1979), section 4.3 (cubic terms).
@@ -35,71 +31,25 @@ Harris, Proc. IEEE 66 (1978), 51 (windows); Nayfeh, Mook, Nonlinear Oscillations
 
 from __future__ import annotations
 
-from math import pi
-
 import attrs
 import numpy as np
 
-from raceway.bodies.model import Equilibrium, Model
 from raceway.core.record import Record
-from raceway.core.signals import Identification, stiffness, synchronous_phasor, without_drift
-from raceway.errors import BeyondPlanError, ConvergenceError, StabilityError
+from raceway.core.signals import stiffness, synchronous_phasor, without_drift
+from raceway.errors import ConvergenceError, StabilityError
 from raceway.framework.duties import ramp_turns
 from raceway.framework.estimate import Estimate, Note
 from raceway.framework.registry import default_registry
-from raceway.pipeline.simulate import OnProgress, Simulation, SteadyMotions, settles_elsewhere, simulate, steady_record
+from raceway.pipeline.identified import Identified
+from raceway.pipeline.simulate import OnProgress, Simulation, settles_elsewhere, simulate, steady_record
 from raceway.plugins.identifiers.one_frequency import whole_turns
 
 #: Free vibrations below this share of the 1x power shift nothing that can be seen.
 _LEAST_FREE = 1e-10
-#: Relative error of Z in a window above which a warning states it.
-_MUCH = 0.05
 #: Other starts in the order in which they are tried.
 _OTHERS: dict[str, tuple[str, ...]] = {"orbit": ("ramp", "static"), "ramp": ("orbit", "static"), "static": ("orbit", "ramp")}
 #: A series of equilibria knows no velocities: it begins under the force or under one that grows.
 _SERIES: dict[str, tuple[str, ...]] = {"orbit": ("ramp",), "ramp": ("static",), "static": ("ramp",)}
-
-
-@attrs.frozen(eq=False)
-class Identified:
-    """Motions of a scene, and what is identified from them: of this errors are estimated.
-
-    Attributes
-    ----------
-    model, equilibrium : of the scene
-    motions : one at each speed; empty where the identifier needs no motion
-    on_progress : called in further runs and searches; the error of one that it ends is not known
-    steady : steady motions of an excitation that changes its speed
-    """
-
-    model: Model
-    equilibrium: Equilibrium
-    motions: list[Simulation]
-    identification: Identification
-    on_progress: OnProgress | None = None
-    steady: SteadyMotions = attrs.field(init=False)
-
-    @steady.default
-    def _steady_motions(self) -> SteadyMotions:
-        return SteadyMotions(self.model, self.on_progress)
-
-    @property
-    def motion(self) -> Simulation:
-        """That at the last speed."""
-        return self.motions[-1]
-
-    @property
-    def value(self) -> complex:
-        """Z [N/m]."""
-        return self.identification.dynamic_stiffness
-
-    @property
-    def several_speeds(self) -> bool:
-        return self.model.problem.several_speeds
-
-    def identify(self, records: list[Record]) -> complex:
-        """Z [N/m] by the scene's identifier."""
-        return self.model.problem.identifier.method.identify(records, self.equilibrium, self.model).dynamic_stiffness
 
 
 def settled_value(run: Identified) -> complex | None:
@@ -256,55 +206,3 @@ def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None
             value = Run.of(other_motion).value
             return abs(run.value - value) / min(abs(run.value), abs(value)), kind
     raise failure or ConvergenceError("no orbit was found to start on")
-
-
-def start_warnings(model: Model, size: float | None, how: str) -> list[str]:
-    """Says that an error is not known because no other start could be compared with."""
-    if not model.problem.depends_on_start or size is not None:
-        return []
-    return [f"friction: the dependence of the answer on the start of the motion, and so its error, is unknown: {how}"]
-
-
-def with_series_error(run: Identified, time_step: float | None) -> Identification:
-    """The identification with ``series_error`` from steady motions where the speed changes.
-
-    Parameters
-    ----------
-    time_step : relative error of the time step
-
-    Notes
-    -----
-    Of windows whose search is ended by ``run.on_progress`` no error is stated.
-    """
-    identification, errors = run.identification, list[float | None]()
-    if not identification.series_error:
-        return identification
-    has_reference = run.model.excitation.period_s is None and run.model.problem.compared_with_steady
-    for (speed, z), error in zip(identification.series, identification.series_error, strict=True):
-        try:
-            reference = run.steady.value(speed) if has_reference else None
-        except BeyondPlanError:  # of this window and of those to come nothing is known
-            errors += [None] * (len(identification.series) - len(errors))
-            break
-        if reference is not None:
-            errors.append(abs(z - reference) / min(abs(z), abs(reference)))
-        else:
-            errors.append(None if error is None else error + (time_step or 0.0))
-    return attrs.evolve(identification, series_error=tuple(errors))
-
-
-def series_warnings(identification: Identification | None) -> list[str]:
-    """Says in which windows of a run-up Z is not that of the speed."""
-    if identification is None:
-        return []
-    windows = zip(identification.series_error, identification.series, strict=False)
-    errors = [(error, speed) for error, (speed, _) in windows if error is not None]
-    bad = [speed * 30.0 / pi for error, speed in errors if not error <= _MUCH]
-    if not bad:
-        return []
-    error, speed = max(errors)
-    return [
-        f"the motion lags behind the speed in {len(bad)} of {len(identification.series)} windows, {min(bad):.0f} to {max(bad):.0f} "
-        f"r/min: the error of Z is up to {error:.2g} of |Z| there (at {speed * 30.0 / pi:.0f} r/min). Change the speed more slowly, or "
-        "run these speeds one by one"
-    ]

@@ -19,15 +19,18 @@ from fnmatch import fnmatch
 from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+from typing import TYPE_CHECKING
 
 import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.bearing import Material
-from raceway.scene.designation import Designation, clearance_range, read_designation, unlisted
 from raceway.scene.sets import RATINGS
 from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from raceway.scene.designation import Designation
 
 #: What a result says of each part of ``raceway/data/uncertainty.toml``.
 _INFERRED, _PART = "inferred geometry", ("part", "axial", "radial", "why", "remedy")
@@ -178,6 +181,8 @@ def _of_maker(name: str, maker: str) -> Preset:
 
     SceneError: of ``preset_of``.
     """
+    from raceway.scene.designation import read_designation
+
     entry, designation, makers = _entry(name), read_designation(name), set[str]()
     for other in catalogue().values():
         makers.add(other.maker)
@@ -194,6 +199,8 @@ def _of_maker(name: str, maker: str) -> Preset:
 def _entry(name: str) -> Preset | None:
     if (entry := _preset_named(name)) is not None:
         return entry
+    from raceway.scene.designation import read_designation
+
     designation = read_designation(name)
     if designation is None:
         return None
@@ -203,6 +210,8 @@ def _entry(name: str) -> Preset | None:
 
 def _with_designation(name: str, entry: Preset, designation: Designation) -> Preset:
     """A bearing of the catalogue with what a designation says of clearance, balls and tolerances."""
+    from raceway.scene.designation import clearance_range
+
     facts, data = {fact.key: fact for fact in entry.facts}, entry.data
     if designation.clearance and "radial_clearance" in facts:
         kind = "roller" if "bodies.kind" in facts else "ball"
@@ -298,6 +307,8 @@ def preset(name: object, maker: object = None) -> Tables:
 
 def no_preset(name: str) -> str:
     """What is said of an unknown designation."""
+    from raceway.scene.designation import read_designation, unlisted
+
     by_lower = {word.lower(): word for word in catalogue()}
     if bearing := unlisted(name):
         return f"is {bearing}, whose balls the catalogue does not have. {_NEEDED}"
