@@ -20,7 +20,7 @@ def compile_beside(*names: str) -> None:
     Who needs one of them meanwhile waits for it; should the process end early, it compiles the kernel itself.
     """
     folder = jit.kernel_folder()
-    busy = usable_cores() < 2 or multiprocessing.parent_process() is not None
+    busy = usable_cores() < 2 or multiprocessing.parent_process() is not None or wheel_kernels.writing
     if busy or folder is None or folder.unwritable or wheel_kernels.folder() is not None:
         return
     missing = [name for name in names if name not in jit.awaited and not _named(name).kept]
