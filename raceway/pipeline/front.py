@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from raceway.scene.scene import SceneSource
 
 #: Time that a note is worth [s].
-_NOTE_S = 2.0
+_NOTE_S = 10.0
 
 
 @door

@@ -51,7 +51,7 @@ class Sliding:
     def why_not(self, problem: Problem) -> str:
         if problem.traits.line_contacts or not problem.kinematics.ball_inertia:
             return "sliding is that of balls with inertia"
-        return "" if problem.points or problem.spin_speed > 0.0 else "sliding needs a speed: kinematics.spin_speed_rpm"
+        return ""
 
     def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:
         balls, speed, problem = ball_contacts(points), points.speed[:, None], points.problem
@@ -76,7 +76,7 @@ class Sliding:
             needed.append(np.where(held, np.hypot(across[:, row].max(axis=1), along), np.nan))
             force = (5.0 * inertia / diameter**2 * pitch * cage**2)[:, row].sum(axis=1)
             axial = (q_i * np.sin(inner))[:, row].sum(axis=1)
-            pressed.append(np.where(held, axial / np.maximum(force, 1e-300), np.nan))
+            pressed.append(np.where(held & (force > 0.0), axial / np.maximum(force, 1e-300), np.nan))
         return {"traction_needed": np.fmax.reduce(needed), "axial_over_centrifugal": np.fmin.reduce(pressed)}
 
     def table(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> Tables:
@@ -98,7 +98,7 @@ class Sliding:
     @staticmethod
     def rows(table: ReadTables) -> list[Fact]:
         """Needed and offered traction."""
-        if table["traction_needed"] is None:
+        if table["axial_over_centrifugal"] is None:
             return []
         ratio = f"F_a / (Z F_c) {table['axial_over_centrifugal']:.3g}"
         return [("traction needed", number(table["traction_needed"], "", 2), f"of {table['traction_offered']:g}; {ratio}")]
