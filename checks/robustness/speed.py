@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 import raceway as rw
+from checks.kernel import least
 from checks.robustness import Row, below
 from checks.robustness.points import PAIR, STATIC, seconds, turning
 
@@ -27,14 +28,8 @@ _SCENE = Path(__file__).parents[2] / "examples" / "minimal.toml"
 
 
 def _least(call: Callable[[], object], repeats: int = 7) -> float:
-    """Least processor time of a call [ms], the first one apart."""
-    call()
-    times = []
-    for _ in range(repeats):
-        begun = time.process_time()
-        call()
-        times.append(time.process_time() - begun)
-    return 1e3 * min(times)
+    """Least processor time of a call [ms], of all threads."""
+    return 1e3 * least(call, repeats, time.process_time)
 
 
 def _of_child(*command: str, **environment: str) -> tuple[float, float]:
