@@ -139,7 +139,7 @@ def test_columns_have_the_derivatives_of_models(name):
     gradients = Gradients(model, still)
     keys = [key for key in continuous_keys(model.scene) if key.value]
     ends = gradients._ends(keys)
-    keys = [key for key in keys if key.path not in ends and not why_no_column(model.scene, key.path)]
+    keys = [key for key in keys if key.path not in ends and not why_no_column(model.problem, key.path)]
     columns = gradients._by_columns(keys)
     assert len(columns) > 15
     numbers = {}

@@ -14,7 +14,7 @@ import numpy as np
 
 import raceway as rw
 from raceway import ConvergenceError, scene_from_dict
-from raceway.extend import continuous_keys, registry_with
+from raceway.extend import continuous_keys, registry_with, resolve
 from raceway.planning.columns import why_no_column
 from raceway.points.column_quantities import of_result
 
@@ -87,7 +87,8 @@ def case(seed: int, points: int = 4) -> Case:
     scene = scene_from_dict(tables, _REGISTRY)
     speed = "excitation.speed_rpm" if moving else "kinematics.spin_speed_rpm"
     ranges = {**_RANGES, speed: (1000.0, 18_000.0)} | ({"excitation.unbalance": (1e-6, 5e-5)} if moving else {})
-    keys = [key for key in ranges if _has(scene, key, ring_growth) and not why_no_column(scene, key)]
+    problem = resolve(scene)
+    keys = [key for key in ranges if _has(scene, key, ring_growth) and not why_no_column(problem, key)]
     chosen = sorted(rng.choice(keys, size=min(len(keys), int(rng.integers(1, 6))), replace=False).tolist())
     columns = {key: rng.uniform(*ranges[key], size=points) for key in chosen}
     return Case(scene, columns, (*_OUTPUTS, *(_MOTION if moving else ())))

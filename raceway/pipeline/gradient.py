@@ -250,10 +250,10 @@ class Gradients:
         on_progress : called as ``on_progress(what, done, total)``
         """
         answers: dict[str, Gradient | NoDerivative] = dict(self._ends(keys))
-        scene = self.model.scene
+        scene, problem = self.model.scene, self.model.problem
         alone = self.model.traits.contacts_alone and not why_not(scene, False)
         if alone and not (self.orbit and scene.kinematics.orbiting):
-            answers |= self._by_columns([k for k in keys if k.path not in answers and not why_no_column(scene, k.path)])
+            answers |= self._by_columns([k for k in keys if k.path not in answers and not why_no_column(problem, k.path)])
         for count, key in enumerate(keys):
             if on_progress is not None:
                 on_progress("keys", count, len(keys))

@@ -58,9 +58,10 @@ def why_not(scene: Scene, moving: bool) -> str:
     return next((reason for reason, holds in reasons.items() if holds), "")
 
 
-def why_no_column(scene: Scene, key: str) -> str:
+def why_no_column(problem: Problem, key: str) -> str:
     """Why the numbers at a continuous key can not be a column; empty where they can."""
-    if why := resolve(scene).body_kind.why_no_columns(key):
+    scene = problem.scene
+    if why := problem.body_kind.why_no_columns(key):
         return why
     apart = key == "bearing.width" and scene.bearing.arrangement != "single"  # places of rows differ
     of_law = key in law_keys(scene)

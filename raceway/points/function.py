@@ -135,7 +135,7 @@ class Function:
         """Why every point needs a run of its own; empty where a compiled loop computes them."""
         if is_foundation(self.scene.contact.law) and any(n.startswith("p0") or n in self._of_plugins for n in self.outputs):
             return "pressures are those of the contact law"
-        whys = (why_no_column(self.scene, key) for key in self.inputs)
+        whys = (why_no_column(self._problem, key) for key in self.inputs)
         return next(filter(None, whys), "") or why_not(self.scene, self.moving)
 
     def __call__(self, *columns: ArrayLike, **by_name: ArrayLike) -> Columns | xarray.Dataset:
@@ -361,7 +361,10 @@ class Function:
                 part = (
                     QUANTITIES[name](numbers) if name in QUANTITIES else numbers.of_plugin(self._of_plugins[name][0], name)
                 )
-                values.setdefault(name, np.full((n, *part.shape[1:]), np.nan))[rows[fine]] = part[fine]
+                if len(rows) == n and fine.all():
+                    values[name] = np.ascontiguousarray(part)
+                else:
+                    values.setdefault(name, np.full((n, *part.shape[1:]), np.nan))[rows[fine]] = part[fine]
         return {**values, "status": status, "reason": reason}
 
     def _refusals(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:

@@ -5,7 +5,7 @@ Temperatures are given numbers: nothing here knows where the heat comes from.
 
 from __future__ import annotations
 
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from math import degrees, inf, pi
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -80,14 +80,15 @@ def _growth(b: Bearing, depth: Number) -> Number:
 
     numbers: tuple[Number, ...] = (b.bore, b.width, b.pitch_diameter, b.ball_diameter, b.conformity_inner, b.contact_angle)
     points = np.stack(np.broadcast_arrays(*numbers, depth, poisson, np.zeros(length(b))))
-    return interpolated(_growth_of_sections, points, _GROWTH_ERROR) / young
+    return interpolated(lambda some: _growth_of_sections(some.tobytes(), some.shape[1]), points, _GROWTH_ERROR) / young
 
 
-def _growth_of_sections(points: np.ndarray) -> np.ndarray:
-    """Growth (m,) for 1 Pa, too, of rings with the numbers (9, m) of their section and Poisson's."""
+@lru_cache(maxsize=16)
+def _growth_of_sections(table: bytes, count: int) -> np.ndarray:
+    """Growth (m,) for 1 Pa, too, of rings with the numbers (9, m) of their section and Poisson's: bearings stay, loads change."""
     from raceway.core.fem.mesh.ring_section import RingSection
 
-    growth = np.empty(points.shape[1])
+    points, growth = np.frombuffer(table).reshape(-1, count), np.empty(count)
     for k in range(0, len(growth), _TOGETHER):
         *numbers, depth, poisson, _ = points[:, k : k + _TOGETHER]
         section = RingSection.of(SimpleNamespace(**dict(zip(_SECTION, numbers, strict=True))), depth)

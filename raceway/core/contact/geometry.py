@@ -143,14 +143,19 @@ def _balance(rows: Any) -> None:
     for row in rows:
         factor, distance, count, target = row[0], row[1], row[4], row[5]
         along, across, load = distance * row[2], distance * row[3], 0.0
-        # From above, where the force grows faster than the displacement, Newton's iteration falls until rounding ends it.
+        # From above, where the force grows faster than the displacement, Newton's iteration falls until rounding ends it.  The contact
+        # angle grows with the load: at the free one a ball would be pressed more.
         x = distance + (2.0 * target / (count * factor)) ** (2.0 / 3.0)
+        if row[2] > 0.0:
+            most = (target / (count * factor * row[2])) ** (2.0 / 3.0)
+            x = min(x, most * (2.0 * distance + most) / (sqrt((distance + most) ** 2 - across**2) + along))
         for _ in range(_ITERATIONS):
             a = along + x
             s = sqrt(a * a + across * across)
             press = max(s - distance, 0.0)
-            load = factor * press**1.5
-            slope = count * (1.5 * factor * sqrt(press) * (a / s) ** 2 + load * across**2 / s**3)
+            stiffness = factor * sqrt(press)
+            load = stiffness * press
+            slope = count * (1.5 * stiffness * (a / s) ** 2 + load * across**2 / s**3)
             step = (count * load * a / s - target) / max(slope, 1e-300) if slope > 0.0 else 0.0
             if not 1e-15 * x < step <= x:
                 break

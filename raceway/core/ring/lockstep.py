@@ -46,7 +46,7 @@ Q, DQ, LOAD, SHAFT, ARM, ROLLS, TANGENT = 0, 5, 10, 15, 16, 17, 24
 POINT_ROWS = TANGENT + 30
 _ITERATIONS = 25
 #: Relative imbalance from which on moments act; steps of balls over their contacts' approach that end the iteration.
-_NEAR, _SETTLED = 1e-3, 1e-11
+_NEAR, _SETTLED = 5e-2, 1e-11
 #: Longest step of the ring over the groove centres' distance.
 _LONGEST = 0.1
 
