@@ -49,8 +49,6 @@ Examples
 ...     return []
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from lazy_loader import attach_stub

@@ -5,8 +5,6 @@
 turns the first three into exit code 2 and the others into exit code 1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from enum import StrEnum
 from typing import Any
@@ -117,7 +115,7 @@ class SceneError(RacewayError):
         super().__init__("\n".join(str(m) for m in self.mistakes))
 
     @classmethod
-    def at(cls, path: str, value: object, message: str) -> SceneError:
+    def at(cls, path: str, value: object, message: str) -> "SceneError":
         return cls([Mistake(path, value, message)])
 
 
@@ -148,7 +146,7 @@ class MeshError(RacewayError):
     mistake: Mistake | None = None
 
     @classmethod
-    def at(cls, path: str, value: object, message: str) -> MeshError:
+    def at(cls, path: str, value: object, message: str) -> "MeshError":
         mistake = Mistake(path, value, message)
         error = cls(str(mistake))
         error.mistake = mistake

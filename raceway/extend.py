@@ -10,8 +10,6 @@ Examples
 '233.9'
 """
 
-from __future__ import annotations
-
 import ast
 from importlib import import_module
 from pathlib import Path

@@ -18,8 +18,6 @@ Examples
 230.3
 """
 
-from __future__ import annotations
-
 from raceway.framework.installed import further_name
 
 __all__ = ["RollingBearing", "UnbalanceResponse", "run_time_response", "run_unbalance_response"]  # noqa: F822

@@ -3,8 +3,6 @@
 Data sets, CSV heads, axes of pictures, screens and JSON look here; nothing else holds the unit or the words of a quantity.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -64,7 +62,7 @@ class Quantity:
     attribute: str = attrs.Factory(lambda self: self.name, takes_self=True)
     symbol: str = attrs.field(default=attrs.Factory(lambda self: self.name, takes_self=True), kw_only=True)
     label: str = attrs.field(default=attrs.Factory(lambda self: self.name.replace("_", " "), takes_self=True), kw_only=True)
-    error: Quantity | None = attrs.field(default=None, kw_only=True)
+    error: "Quantity | None" = attrs.field(default=None, kw_only=True)
     dims: tuple[str, ...] = attrs.field(default=(), kw_only=True)
 
     def of(self, source: object) -> Any:

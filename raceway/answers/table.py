@@ -1,7 +1,5 @@
 """Parts that every screen is made of: sections, tables, numbers with units."""
 
-from __future__ import annotations
-
 import csv
 import io
 import re

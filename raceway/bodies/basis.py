@@ -1,7 +1,5 @@
 """What every kind of bodies starts from: geometry, contacts, loads and the linear parts of the ring."""
 
-from __future__ import annotations
-
 from math import pi
 
 import attrs

@@ -1,7 +1,5 @@
 """Contacts of balls in grooves: their angles, ellipses that run over the edge, loads that no ball carries."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from raceway.bodies.basis import Basis

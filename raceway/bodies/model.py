@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import attrs
@@ -36,8 +36,6 @@ from raceway.scene.scene import SCENE, Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from raceway.core.fem.structural import ElasticBodies
 
 #: A number and how it was found, or None and why there is none.

@@ -4,16 +4,15 @@ Both are set *before mounting*: of the loose bearing, at standstill and without 
 give; *running*, speed and temperatures do, too.
 """
 
-from __future__ import annotations
-
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, first_guess, growth_of
+from raceway.bodies.model import Equilibrium, Model
 from raceway.core.contact.geometry import Growth
 from raceway.core.contact.hertz import regula_falsi
 from raceway.core.ring.kernels import layout as ring
@@ -23,9 +22,6 @@ from raceway.errors import ConvergenceError
 from raceway.framework.duties import renews
 from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from raceway.bodies.model import Equilibrium, Model
 
 R = TypeVar("R", bound=Ring)
 #: The force of a spring is met to this part of the preload.

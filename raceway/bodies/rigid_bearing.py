@@ -1,7 +1,5 @@
 """Rigid rings and balls: only the contacts deform."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 

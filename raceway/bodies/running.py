@@ -1,7 +1,5 @@
 """Contact laws at the running speed: entraining speeds, loads, and parameters that fit the equilibrium."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import attrs

@@ -4,8 +4,6 @@
 may print and exit.
 """
 
-from __future__ import annotations
-
 import errno
 import json
 import math

@@ -1,7 +1,5 @@
 """Standard streams as they come: closed ones, and consoles that know ASCII only.  Part of ``raceway.cli.main``."""
 
-from __future__ import annotations
-
 import _thread
 import atexit
 import codecs

@@ -4,8 +4,6 @@ Whatever is heavy is imported inside the command that needs it: ``--help`` loads
 ``schema`` and ``cache`` load no numba, scipy or matplotlib.
 """
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 from typing import ClassVar

@@ -1,7 +1,5 @@
 """``raceway plan``."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from math import pi

@@ -1,7 +1,5 @@
 """The commands for developers: plug-ins, caches, a first scene.  Part of ``raceway.cli.main``."""
 
-from __future__ import annotations
-
 import json
 import keyword
 import re

@@ -1,14 +1,12 @@
 """``raceway sweep``: a sweep kept in a store with its files, and pictures of a store."""
 
-from __future__ import annotations
-
 import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from importlib.util import find_spec
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import attrs
 
@@ -19,18 +17,16 @@ from raceway.answers.table import Words, file_lines, micro
 from raceway.cli.frame import RESULTS, require_matplotlib
 from raceway.cli.interrupt import answered
 from raceway.errors import RacewayError, SceneError, extra
+from raceway.framework.contracts import Executor
 from raceway.framework.registry import registry_with
 from raceway.framework.shown import Fact
 from raceway.points.axes import Design, design_file, grid, point_words, sampled, shown
 from raceway.points.dataset import NOT_CHECKED, TABLE, all_failed, blank, open_store, points_of, write_csv, write_netcdf
 from raceway.points.store import POINTS, exists
+from raceway.points.sweep import Sweep
 from raceway.scene.scene import plain_tables
 from raceway.storage.files import slug, writable
 from raceway.storage.tables import ReadTables, Tables
-
-if TYPE_CHECKING:
-    from raceway.framework.contracts import Executor
-    from raceway.points.sweep import Sweep
 
 #: Points of a sweep that a screen shows one by one, and reasons of points that failed.
 _MOST_ROWS, _MOST_REASONS = 30, 5

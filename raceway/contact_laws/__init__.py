@@ -6,8 +6,6 @@ line      line contacts of rollers: constants of ISO/TS 16281 and Palmgren
 film      Hertz behind an elastohydrodynamic film; viscosity of the lubricant at a temperature
 """
 
-from __future__ import annotations
-
 from raceway.framework.hookspecs import hookimpl
 
 

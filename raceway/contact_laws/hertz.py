@@ -8,10 +8,10 @@ import attrs
 import numpy as np
 
 from raceway.core.deferred import deferred
+from raceway.framework.contracts import ContactPairs
 
 if TYPE_CHECKING:
     from raceway.core.jit import Kernel
-    from raceway.framework.contracts import ContactPairs
 
 #: Times the pressure per penetration at which two rigid paraboloids approach as far as Hertz's: the largest penetration
 #: is then 1.5 / 150 = 1 % of Hertz's approach, because the peak of a Hertz pressure is 1.5 times its mean.

@@ -1,7 +1,5 @@
 """A smooth function at many points by Chebyshev interpolation between a few, where that is exact enough."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

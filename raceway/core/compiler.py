@@ -1,7 +1,5 @@
 """What numba does otherwise for kernels: its compiler without needless passes, parts of callers without entry points, marks of sources."""
 
-from __future__ import annotations
-
 import gc
 import hashlib
 import marshal

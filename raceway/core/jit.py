@@ -8,8 +8,6 @@ nothing to read, or others may write, kernels are compiled in memory, after one 
 as they were found.
 """
 
-from __future__ import annotations
-
 import hashlib
 import sys
 import time
@@ -154,10 +152,10 @@ class Kernel(Dispatcher):
         return bool(self.overloads) and not self._of_wheel
 
     @cached_property
-    def _part(self) -> _Part:
+    def _part(self) -> "_Part":
         return _Part(self.py_func, self.signature, self.targetoptions)
 
-    def _compile_for_args(self, *_arguments: object, **_keywords: object) -> Kernel:
+    def _compile_for_args(self, *_arguments: object, **_keywords: object) -> "Kernel":
         """What numba calls next with the arguments of a first call: this, which checks their types."""
         self.compile()
         return self
@@ -174,7 +172,7 @@ class Kernel(Dispatcher):
         return {"function": self.py_func, "signature": self.signature, "options": self.targetoptions, "uuid": self._uuid}
 
     @classmethod
-    def _rebuild(cls, function: Callable[..., Any], signature: Signature, options: dict[str, Any], uuid: str) -> Kernel:
+    def _rebuild(cls, function: Callable[..., Any], signature: Signature, options: dict[str, Any], uuid: str) -> "Kernel":
         kernel = cls._memo.get(uuid)
         if kernel is None:
             kernel = cls(function, signature, options)

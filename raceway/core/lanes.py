@@ -26,8 +26,6 @@ Examples
 array([-1.,  4., -3.,  8., -5.])
 """
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Callable
 from typing import Any

@@ -16,8 +16,6 @@ Lundberg, Palmgren, Dynamic capacity of rolling bearings, Acta Polytechnica 7 (1
 ISO 281:2007, sections 8.3 and 9.3; ISO/TR 1281-2:2008.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

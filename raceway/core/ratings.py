@@ -15,8 +15,6 @@ ISO 281:2007, table 2 and annex B, and ISO/TR 1281-1:2021 (closed form of f_c); 
 (4200 MPa); ISO/TS 16281:2008 (ratings of single contacts).
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import attrs

@@ -1,9 +1,7 @@
 """What a time integration starts from, is asked for, and leaves behind."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 import attrs
 import numpy as np
@@ -11,11 +9,9 @@ from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
 from raceway.core.signatures import VECTOR
+from raceway.core.threads import ThreadPool
 from raceway.errors import PluginError
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from raceway.core.threads import ThreadPool
 
 #: Called between chunks with the steps done and the steps in all.
 OnChunk = Callable[[int, int], None]
@@ -106,7 +102,7 @@ class Record:
     energies: dict[str, np.ndarray] = attrs.field(factory=dict)
     solution: Any = None
 
-    def last(self, turns: int) -> Record:
+    def last(self, turns: int) -> "Record":
         """The part that belongs to the last turns."""
         first = self.schedule.first + self.schedule.steps - turns * self.schedule.steps_per_turn
         keep = self.time > (first + 0.5 * self.schedule.stride) * self.schedule.dt
@@ -207,7 +203,7 @@ class State:
     a: np.ndarray
     net_force: np.ndarray | None = None
 
-    def copy(self) -> State:
+    def copy(self) -> "State":
         return State(self.u.copy(), self.v.copy(), self.a.copy(), None if self.net_force is None else self.net_force.copy())
 
 

@@ -1,7 +1,5 @@
 """Takes the steps of a motion into its record: samples, energies, extremes; stops what grows without bound."""
 
-from __future__ import annotations
-
 import time
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A second process that compiles kernels into the cache while this one compiles others: the first run of a clone waits half as long."""
 
-from __future__ import annotations
-
 import atexit
 import multiprocessing
 import subprocess

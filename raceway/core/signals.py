@@ -7,8 +7,6 @@ Signals are Re(phasor e^{jwt}).  The line of the displacement that does work wit
 it; for a force that turns, the forward (or backward) parts of both.  Z = K - m w^2 + j w C.
 """
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 

@@ -17,8 +17,6 @@ References
 Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapter 7 (networks of temperature nodes).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cached_property
 

@@ -1,7 +1,5 @@
 """Threads that share numbered jobs; kernels let each other run (``jit(releases=True)``), so plain Python threads do."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
@@ -43,7 +41,7 @@ class ThreadPool:
         self._pool: ThreadPoolExecutor | None = None
         self._entered = 0
 
-    def __enter__(self) -> ThreadPool:
+    def __enter__(self) -> "ThreadPool":
         if not self._entered and self.count > 1:
             self._pool = ThreadPoolExecutor(self.count - 1, thread_name_prefix="raceway")
         self._entered += 1

@@ -5,8 +5,6 @@ with a digest of what follows; one that is not what was written is not read, and
 ``python -m checks.kernels`` makes them.
 """
 
-from __future__ import annotations
-
 import hashlib
 import pickle
 import platform

@@ -13,21 +13,22 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeVar, cast
 
 import attrs
+import numpy as np
 
+from raceway.core.contact.hertz import ellipticity
+from raceway.errors import Mistake
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     import click
-    import numpy as np
 
     from raceway.core.fem.mesh.hex_mesh import HexMesh
     from raceway.core.jit import Kernel
     from raceway.core.record import Record
     from raceway.core.signals import Identification
     from raceway.core.time.schemes import Scheme
-    from raceway.errors import Mistake
 
 
 class ContactLaw(attrs.AttrsInstance, Protocol):
@@ -117,8 +118,6 @@ class ContactPairs:
         return self._radius(0.5 * math.pi)
 
     def _radius(self, further: float) -> np.ndarray:
-        import numpy as np
-
         angle = further + (0.0 if self.running_angle is None else self.running_angle)
         across, along = np.sin(angle) ** 2, np.cos(angle) ** 2
         return np.asarray(0.5 / (self.curvature_b * along + self.curvature_a * across))
@@ -126,10 +125,6 @@ class ContactPairs:
     @property
     def ellipticity(self) -> np.ndarray:
         """(n,) a / b of the contact ellipse, from the complete elliptic integrals."""
-        import numpy as np
-
-        from raceway.core.contact.hertz import ellipticity
-
         difference = (self.curvature_b - self.curvature_a) / (self.curvature_b + self.curvature_a)
         values, position = np.unique(difference, return_inverse=True)
         return np.array([ellipticity(float(value)) for value in values])[position]

@@ -1,25 +1,29 @@
 """Duties of plug-ins as the program calls them: faults are put to the plug-in's name, duties that it leaves out have their defaults here."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import attrs
+import numpy as np
 
 from raceway.core.columns import at_rows, distinct, has_columns, length
-from raceway.errors import PluginError
-from raceway.framework.contracts import Cost, LawReport, Traits, said
+from raceway.errors import Mistake, PluginError
+from raceway.framework.contracts import (
+    ContactLaw,
+    ContactPairs,
+    Cost,
+    Excitation,
+    LawReport,
+    Problem,
+    Quantities,
+    SolvedPoints,
+    Traits,
+    said,
+)
+from raceway.framework.shown import Fact
 from raceway.framework.sources import blamed
-
-if TYPE_CHECKING:
-    import numpy as np
-
-    from raceway.errors import Mistake
-    from raceway.framework.contracts import ContactLaw, ContactPairs, Excitation, Problem, Quantities, SolvedPoints
-    from raceway.framework.shown import Fact
-    from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import ReadTables, Tables
 
 T = TypeVar("T")
 
@@ -118,8 +122,6 @@ def turn_samples(plugin: Quantities, problem: Problem) -> int:
 
 def quantities_at(plugin: Quantities, points: SolvedPoints) -> dict[str, np.ndarray]:
     """Numbers (n, ...) of a plug-in by their names, or ``PluginError``."""
-    import numpy as np
-
     title, n = f"quantity '{plugin.name}'", len(points.load)
     values = {
         name: _answer(title, "compute", partial(np.ascontiguousarray, value, dtype=float), np.ndarray)
@@ -186,8 +188,6 @@ def law_params(law: ContactLaw, pairs: ContactPairs, row: str = "ball-race pair"
 
 def reach_of(law: ContactLaw, pairs: ContactPairs) -> np.ndarray:
     """How far from touching the contacts of a law begin to carry (n,) [m], or ``PluginError``; 0 unless it says more."""
-    import numpy as np
-
     n = len(pairs.curvature_a)
     if said(law, "reach") is None:
         return np.zeros(n)
@@ -201,7 +201,6 @@ def reach_of(law: ContactLaw, pairs: ContactPairs) -> np.ndarray:
 
 def _of_contacts(law: ContactLaw, pairs: ContactPairs, duty: str) -> np.ndarray:
     """What a duty returns of contacts (n,): of laws that say ``elementwise`` at once, of others for each distinct value of columns."""
-    import numpy as np
 
     def of(law: ContactLaw, pairs: ContactPairs) -> np.ndarray:
         return _array(f"contact law '{law.name}'", duty, lambda: getattr(law, duty)(pairs))
@@ -235,8 +234,6 @@ def force_params(excitation: Excitation) -> np.ndarray:
 
 
 def _array(plugin: str, duty: str, call: Callable[[], object]) -> np.ndarray:
-    import numpy as np
-
     return _answer(plugin, duty, lambda: np.ascontiguousarray(call(), dtype=float), np.ndarray)
 
 

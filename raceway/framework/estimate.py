@@ -4,8 +4,6 @@ A part of the program, and a kind of bodies, states an estimate as a size and a 
 is a plain sentence, which screens show as it stands.
 """
 
-from __future__ import annotations
-
 from enum import Enum, unique
 
 
@@ -18,9 +16,9 @@ class Note(str):
     """
 
     short: str
-    estimate: Estimate | None
+    estimate: "Estimate | None"
 
-    def __new__(cls, sentence: str, short: str = "", estimate: Estimate | None = None) -> Note:
+    def __new__(cls, sentence: str, short: str = "", estimate: "Estimate | None" = None) -> "Note":
         note = super().__new__(cls, sentence)
         note.short, note.estimate = short, estimate
         return note

@@ -3,8 +3,6 @@
 Nothing is imported until a name is used, so that ``import raceway`` and ``dir(raceway)`` stay light.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

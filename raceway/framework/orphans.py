@@ -1,7 +1,5 @@
 """Worker processes end with the process that they work for, when it is killed, and by its word alone, when it is asked to end."""
 
-from __future__ import annotations
-
 import os
 import signal
 import threading

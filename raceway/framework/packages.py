@@ -1,7 +1,5 @@
 """This project's packages beside ``raceway``: what each adds, from data/packages.json, which they are made into."""
 
-from __future__ import annotations
-
 import json
 import os
 from functools import cache
@@ -9,6 +7,8 @@ from importlib import import_module
 from importlib.resources import files
 from importlib.util import find_spec
 from typing import Any
+
+from raceway.errors import extra
 
 
 @cache
@@ -35,8 +35,6 @@ def available(package: str) -> bool:
 
 def missing_package(word: str, part: str) -> str:
     """Which of the packages has a word in a part, and how to get it; "" where none has."""
-    from raceway.errors import extra
-
     package = next((package for package, has in packages().items() if word in has[part]), "")
     if package and find_spec(package.replace("-", "_")):
         return f"in {package}, which RACEWAY_DISABLE leaves out"

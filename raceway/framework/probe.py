@@ -14,12 +14,11 @@ import numpy as np
 from raceway.core.jit import Kernel
 from raceway.core.signatures import FORCE, LAW, signature_words
 from raceway.errors import PluginError, RacewayError
+from raceway.framework.contracts import ContactLaw, Excitation
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from numba.core.typing.templates import Signature
-
-    from raceway.framework.contracts import ContactLaw, Excitation
 
 
 #: Kernels that are compiled for the signature of their kind, by identity; they stay alive in it.

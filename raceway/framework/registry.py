@@ -10,8 +10,6 @@ Environment: ``RACEWAY_DISABLE`` (names of distributions or entry points to leav
 exact set of third-party plug-ins to load), ``RACEWAY_TRACE`` (set: every hook call on standard error).
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache, cached_property
@@ -25,6 +23,7 @@ import pluggy
 
 from raceway.errors import PluginError, RacewayError
 from raceway.framework import hookspecs
+from raceway.framework.contracts import KINDS, broken_duties
 from raceway.framework.doors import reader
 from raceway.framework.options import nearest
 from raceway.framework.packages import missing_package, named
@@ -111,7 +110,7 @@ class Entry:
             reason = f"{kind} `{self.place}` has the name '{plugin.name}', its hook says '{self.name}'"
         return Fault(self.label, reason) if reason else plugin
 
-    def is_of(self, other: Entry) -> bool:
+    def is_of(self, other: "Entry") -> bool:
         """Whether both are the same class."""
         if self._given is not None and other._given is not None:
             return self._given is other._given
@@ -135,7 +134,6 @@ class Registry:
         self.entries: dict[tuple[str, str], list[Entry]] = {}
         self.faults: list[Fault] = []
         from raceway import __version__
-        from raceway.framework.contracts import KINDS
 
         self._kinds: dict[str, tuple[str, tuple[str, ...]]] = KINDS
         for module in _BUILT_IN:
@@ -409,8 +407,6 @@ def _label(source: str, distribution: str) -> str:
 
 def _fault_of(kind: str, plugin: Any) -> str:
     """Duties that a class breaks, in words; empty where it breaks none."""
-    from raceway.framework.contracts import broken_duties
-
     words = kind.replace("_", " ")
     try:
         faults, title = broken_duties(kind, plugin), getattr(plugin, "__qualname__", None) or _shown(plugin)

@@ -1,7 +1,5 @@
 """Rules as data: keys of a scene, when their values cannot stand, or do nothing, and why."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Generic, TypeVar
 

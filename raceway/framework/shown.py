@@ -1,7 +1,5 @@
 """Objects that show themselves briefly: in at most 15 lines of text, and as one table in a notebook."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from html import escape
 from math import floor, log10

@@ -1,7 +1,5 @@
 """Sources of plug-ins: entry points of installed distributions, and one-off files."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import sys

@@ -3,8 +3,6 @@
 Tables of plug-ins (bodies, quantities, laws) have the keys that these give them.
 """
 
-from __future__ import annotations
-
 from typing import NotRequired, TypedDict
 
 from raceway.storage.tables import Tables

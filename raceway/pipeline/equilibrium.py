@@ -1,7 +1,5 @@
 """The static state under the constant loads, ball by ball: equilibrium and pressures."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import degrees
 from typing import cast

@@ -7,8 +7,6 @@ sum of its derivatives by each number times what that lies off.  The density of 
 limits of 95 % are taken.  Tolerances that bend the answer within their range need ``raceway band``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np

@@ -12,8 +12,6 @@ laws and keys have a model for each neighbour, equilibrium and steady orbit solv
 steps where building one solves for a preload or for loads of contacts and leaves its tolerance in them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property, partial
 from typing import TypeAlias
@@ -133,7 +131,7 @@ class SteadyOrbit:
         return self.orbit.refined.solved
 
     @classmethod
-    def of(cls, model: Model, equilibrium: Equilibrium) -> SteadyOrbit:
+    def of(cls, model: Model, equilibrium: Equilibrium) -> "SteadyOrbit":
         """Search for it.
 
         Raises

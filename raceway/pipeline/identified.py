@@ -7,8 +7,6 @@ behind, and the steps in time are in it.  Where no such motion can be solved for
 that of the time step.
 """
 
-from __future__ import annotations
-
 from math import pi
 
 import attrs

@@ -1,7 +1,5 @@
 """Quantities of plug-ins at one solved point: their numbers, tables of result.json and warnings."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from functools import partial
 

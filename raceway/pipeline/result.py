@@ -18,10 +18,12 @@ from raceway.answers.quantities import C_ERROR, DRY, IDENTIFIED, KXX, KYY, KYY_T
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.signals import Identification, Line
 from raceway.errors import PluginError, RacewayError
+from raceway.framework.contracts import Format
 from raceway.framework.doors import PATH, door
 from raceway.framework.duties import of_results
 from raceway.framework.estimate import Note, few_words
 from raceway.framework.options import nearest
+from raceway.framework.registry import Entry, Registry
 from raceway.framework.shown import Fact, in_micro, largest_facts, number, tilt_words
 from raceway.framework.sources import blamed
 from raceway.pipeline.content import AtRest, Content, ErrorTable
@@ -42,8 +44,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from raceway.framework.contracts import Format
-    from raceway.framework.registry import Entry, Registry
     from raceway.pipeline.gradient import Gradient
 
 SCHEMA = 2

@@ -1,7 +1,5 @@
 """Rows of ``raceway run``, section by section, from the content of result.json."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from raceway.answers.quantities import HEADLINE, K_ERROR, KXX, KYY, KYY_TILTS_FOLLOW, STIFFNESSES, K, Quantity, X

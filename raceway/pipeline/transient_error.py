@@ -29,8 +29,6 @@ References
 Harris, Proc. IEEE 66 (1978), 51 (windows); Nayfeh, Mook, Nonlinear Oscillations (1979), section 4.3 (cubic terms).
 """
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 
@@ -166,7 +164,7 @@ class Run:
     steps: int
 
     @classmethod
-    def of(cls, motion: Simulation) -> Run:
+    def of(cls, motion: Simulation) -> "Run":
         clean, model = without_free_vibration(motion), motion.model
         if clean is not None:
             return cls(clean.value, motion.steps_per_turn)

@@ -28,18 +28,16 @@ from raceway.bodies.model import Equilibrium, Model, model_of, tilts_follow
 from raceway.bodies.rigid_bearing import build, with_hertz
 from raceway.core.ring.ring import TOLERANCE
 from raceway.errors import RacewayError
-from raceway.framework.estimate import Estimate
+from raceway.framework.estimate import Estimate, Note
 from raceway.framework.shown import Fact, number_within, percents
 from raceway.pipeline.equilibrium import pressures, solve_equilibrium
-from raceway.pipeline.quantities import plugins_stating, solved_point, stated_numbers
+from raceway.pipeline.error import Errors
+from raceway.pipeline.plausible import Spread
+from raceway.pipeline.quantities import StatedQuantities, plugins_stating, solved_point, stated_numbers
 from raceway.planning.resolve import Problem
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
-    from raceway.framework.estimate import Note
-    from raceway.pipeline.error import Errors
-    from raceway.pipeline.plausible import Spread
-    from raceway.pipeline.quantities import StatedQuantities
     from raceway.plugins.formats import RunResult
 
     class Computed(RunResult, Protocol):

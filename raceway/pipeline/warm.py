@@ -10,8 +10,6 @@ of x <- G(x), which follow the warming up.  Where these run away there is no ste
 warmer the bearing is than can leave it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial

@@ -1,7 +1,5 @@
 """Which scenes have points that are solved in compiled columns, and which continuous keys may be such columns."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from contextlib import suppress

@@ -4,8 +4,6 @@ Constants are seconds of processor time of the reference machine of ``slowness``
 for its error beside its answer: tests/evidence/test_cost.py holds whole runs against them.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping
 from functools import cache

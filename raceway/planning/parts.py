@@ -1,7 +1,5 @@
 """Parts that a scene needs, each kept or left out with its reason: coordinates, balls, bodies, motion, output."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 
 import attrs

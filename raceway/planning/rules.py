@@ -1,7 +1,5 @@
 """Combinations that cannot run, each with the reason and the remedy, and values that are possible and unlikely."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache
 from math import inf

@@ -10,8 +10,6 @@ formats      pictures and labelled arrays of one run
 system_libraries   system libraries that packages for meshes and pictures need
 """
 
-from __future__ import annotations
-
 from raceway.framework.hookspecs import hookimpl
 
 

@@ -4,8 +4,6 @@ A package can lack them in two ways: its import fails, or it ends the whole proc
 therefore tried in a process of its own.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from functools import cache

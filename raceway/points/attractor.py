@@ -11,8 +11,6 @@ References
 Nayfeh, Balachandran, Applied Nonlinear Dynamics (1995), sections 4.1 and 4.2.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import attrs

@@ -1,7 +1,5 @@
 """The axes of a study: ``KEY=a,b,c``, ``KEY=start:stop:count``, or keys with their values; checked before anything is run."""
 
-from __future__ import annotations
-
 import csv
 import itertools
 import json
@@ -280,7 +278,7 @@ def _in_units(axis: Axis, tables: ReadTables, registry: Registry) -> Axis:
     return Axis(axis.key, tuple(numbers_at(tables, {axis.key: value}, registry)[axis.key] for value in axis.values))
 
 
-def design_in_units(design: Design, tables: ReadTables, registry: Registry) -> Design:
+def design_in_units(design: "Design", tables: ReadTables, registry: Registry) -> "Design":
     """A design with all values as numbers in the units of their keys."""
     if design.listed and not all(axis.numeric for axis in design.axes):
         return _of_points([numbers_at(tables, point, registry) for point in design.points()])
@@ -372,7 +370,7 @@ class Design:
         return {"listed": self.listed, "axes": {axis.key: list(axis.values) for axis in self.axes}}
 
     @classmethod
-    def from_dict(cls, tables: ReadTables) -> Design:
+    def from_dict(cls, tables: ReadTables) -> "Design":
         return cls(tuple(Axis(key, tuple(values)) for key, values in tables["axes"].items()), tables["listed"])
 
 

@@ -11,6 +11,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Part
+from raceway.answers.picture import Plot
 from raceway.answers.quantities import read_in
 from raceway.answers.table import Words
 from raceway.core.periodic.branch import Branch, Point
@@ -29,7 +30,6 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from raceway.answers.picture import Plot
 
 #: Samples a turn: harmonics up to this order alias nothing.
 _SAMPLES = 360

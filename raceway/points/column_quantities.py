@@ -1,7 +1,5 @@
 """Quantities of many operating points, from what the compiled loops leave; each for itself, so that only what is asked for costs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
@@ -46,7 +44,7 @@ class Computed:
     orbits: Orbits | None
 
     @classmethod
-    def of(cls, bearing: ColumnBearing, moving: bool, tolerance: float, outputs: Iterable[str]) -> Computed:
+    def of(cls, bearing: ColumnBearing, moving: bool, tolerance: float, outputs: Iterable[str]) -> "Computed":
         """Solve for what the outputs need."""
         states = bearing.equilibria()
         if not moving:

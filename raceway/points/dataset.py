@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from raceway.answers.quantities import COLUMNS, ERROR_BODIES, Quantity, named
 from raceway.errors import ConvergenceError, RacewayError, extra
 from raceway.framework.registry import Registry, default_registry
+from raceway.pipeline.result import Result
 from raceway.plugins.formats import labelled_dataset
 from raceway.points.axes import Design, is_number
 from raceway.points.column_quantities import MOVING
@@ -29,12 +30,9 @@ from raceway.storage.files import scratch_file, write_whole
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from sqlite3 import Connection
 
     import xarray
-
-    from raceway.pipeline.result import Result
 
 
 #: Coordinates of the ring, in the order of ``displacement`` and ``stiffness``.

@@ -21,8 +21,6 @@ References
 Box, Hunter, Hunter, Statistics for Experimenters (2nd ed., 2005), chapter 5 (definitions of effects and interactions).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property

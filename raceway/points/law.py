@@ -22,7 +22,7 @@ from raceway.answers.table import Words, sections
 from raceway.bodies.model import build_model
 from raceway.core.ring.kernels.impact import single_contact
 from raceway.core.ring.ring import Increment
-from raceway.core.ring.system import compiled
+from raceway.core.ring.system import System, compiled
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import PATHS, door
 from raceway.framework.options import at_least, positive
@@ -31,15 +31,13 @@ from raceway.framework.shown import Fact
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import damping_origin
 from raceway.planning.resolve import resolve
-from raceway.scene.scene import Change, SceneSource, as_given
+from raceway.scene.scene import Change, Scene, SceneSource, as_given
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from raceway.core.ring.system import System
-    from raceway.scene.scene import Scene
 
 #: The bearing of the article under its load, where no scene is given, and the frequency of its cycle [Hz].
 BASE: Tables = {"title": "B7206C, 1 kN axial", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}

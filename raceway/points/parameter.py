@@ -6,8 +6,6 @@ The model is built anew at each value, about a millisecond for rigid bodies.  Wh
 differ by the excitation and by arrays that are linear in the key (loads, gyroscopic terms), only these change.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import attrs
@@ -41,7 +39,7 @@ _ROUNDING = 1e-12
 _FORM = "must have the form table.key=first:last, for instance excitation.speed_rpm=500:30000"
 
 
-def parameter_of(tables: Tables, over: str, registry: Registry) -> Parameter:
+def parameter_of(tables: Tables, over: str, registry: Registry) -> "Parameter":
     """The key and its ends of the text ``KEY=first:last``, in a scene that is solved for its steady orbits."""
     key, sign, ends = over.partition("=")
     texts = ends.split(":")

@@ -10,8 +10,6 @@ mesh              element sizes about the scene's own, where bodies have a mesh
 models            what changes the physics, one at a time: law, discretisation, bodies, identifier, no inertia
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping
 from itertools import product

@@ -3,8 +3,6 @@
 ``points.sqlite`` is written by one process at a time, in transactions; others may read meanwhile.
 """
 
-from __future__ import annotations
-
 import fcntl
 import hashlib
 import io

@@ -1,7 +1,5 @@
 """A look over all points before any is computed: mistakes, the plug-ins and files that they use."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Collection, Iterator
 from itertools import chain

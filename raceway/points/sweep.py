@@ -19,11 +19,12 @@ from raceway.answers.progress import ShowProgress, telling
 from raceway.answers.quantities import COLUMNS, ENDS, KYY_TILTS_FOLLOW, MODEL_BOUND
 from raceway.core.threads import usable_cores
 from raceway.errors import PluginError, RacewayError, SceneError
-from raceway.framework.contracts import Batch, Lost
+from raceway.framework.contracts import Batch, Executor, Lost
 from raceway.framework.doors import PATH, PATHS, TEXTS, Reader, door, member, reader
 from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import duration
+from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
 from raceway.points.column_quantities import MOVING, QUANTITIES, Columns, stated_columns
@@ -40,8 +41,6 @@ from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     import xarray
-
-    from raceway.framework.contracts import Executor
 
 
 #: Predicted time [s] of runs beyond which a sweep has to be forced.
@@ -65,8 +64,6 @@ class Point:
     further: tuple[str, ...] = ()
 
     def __call__(self, task: tuple[int, Tables], registry: Registry) -> Row:
-        from raceway.pipeline.run import run
-
         number, point = task
         wall, cpu = time.perf_counter(), time.process_time()
         state, reason, content, cost = "failed", "", Tables(), Tables()

@@ -1,7 +1,5 @@
 """Size and cost of many points, before any of them is computed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing
 from pathlib import Path

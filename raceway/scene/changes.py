@@ -1,7 +1,5 @@
 """Tables of a scene with changes at dotted keys."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections.abc import Iterable, Iterator

@@ -1,7 +1,5 @@
 """Makers' designations: ``7206 CD/P4A``, ``HCB7014-C-T-P4S``, ``6205-2RS/C3``; the words are in ``raceway/data/designations.toml``."""
 
-from __future__ import annotations
-
 import csv
 import re
 import tomllib

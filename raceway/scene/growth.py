@@ -3,23 +3,19 @@
 Temperatures are given numbers: nothing here knows where the heat comes from.
 """
 
-from __future__ import annotations
-
 from functools import cache, cached_property, lru_cache
 from math import degrees, inf, pi
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import attrs
 import numpy as np
 
 from raceway.core.columns import Number, acos, at_row, cos, has_columns, largest, least, length, sin, some, where
+from raceway.core.contact.hertz import Ellipse
 from raceway.framework.rules import Rule, speaking
+from raceway.scene.bearing import Bearing
 from raceway.scene.tables import Kinematics, Mounting
-
-if TYPE_CHECKING:
-    from raceway.core.contact.hertz import Ellipse
-    from raceway.scene.bearing import Bearing
 
 
 def ring_inertia(bearing: Bearing) -> tuple[Number, Number, Number]:

@@ -1,7 +1,5 @@
 """A scene file's text as plain tables, and plain Python values of whatever a user hands in."""
 
-from __future__ import annotations
-
 import copy
 import difflib
 import os

@@ -1,7 +1,5 @@
 """Numbers of a scene that change continuously, by their keys."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeAlias, TypeVar
 

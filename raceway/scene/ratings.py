@@ -1,7 +1,5 @@
 """Load ratings of a bearing: as its keys say, as the catalogue prints them, or by ISO 281 and ISO 76 from its geometry."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import attrs

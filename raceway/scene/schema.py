@@ -4,8 +4,6 @@ Editors use it for completion and for underlining mistakes.  It knows types, uni
 installed plug-in; rules between keys (balls that fit the pitch circle) are the loader's alone.
 """
 
-from __future__ import annotations
-
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
 

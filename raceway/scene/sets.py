@@ -4,8 +4,6 @@ A row faces one of two ways: "+" is seated by a positive axial motion of the inn
 alike are in tandem and share a load; rows that face each other's way brace each other under a preload.
 """
 
-from __future__ import annotations
-
 from raceway.framework.options import Rule, nearest, worded
 
 #: Rows that face "+" and "-", and how they stand: with the "+" rows on the side of -x the pressure lines diverge towards the

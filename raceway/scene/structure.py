@@ -4,8 +4,6 @@ cattrs does the walking; here are the strict types (12.7 is not an integer, true
 with a unit, and the translation of what it raises into ``Mistake``.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from contextlib import suppress

@@ -1,8 +1,6 @@
 """The other tables of a scene file as frozen attrs classes, SI; a table with ``kind`` holds the chosen plug-in's own options in
 its last attribute."""
 
-from __future__ import annotations
-
 import json
 from functools import cache
 from typing import Any, ClassVar

@@ -4,8 +4,6 @@ The table ``[tolerances]`` of a scene has a text for each key, such as ``"±1 de
 its balls: ``class = "P4"``, ``balls = "G5"`` (``raceway.scene.tolerance``).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 

@@ -4,8 +4,6 @@ A unit is a product of symbols with whole powers: ``N s/m``, ``kg m2``, ``N/mm^2
 12 000 r/min and 200 Hz are the same speed, and a speed is no inverse of time.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from fractions import Fraction
@@ -27,7 +25,7 @@ class Unit:
     factor: Fraction = Fraction(1)
     pi: int = 0
 
-    def times(self, factor: Unit, power: int) -> Unit:
+    def times(self, factor: "Unit", power: int) -> "Unit":
         dimension = tuple(a + power * b for a, b in zip(self.dimension, factor.dimension, strict=True))
         m, kg, s, rad, kelvin = dimension
         return Unit((m, kg, s, rad, kelvin), self.factor * factor.factor**power, self.pi + power * factor.pi)

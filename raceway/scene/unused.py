@@ -1,7 +1,5 @@
 """Keys that a user wrote and that change nothing in this scene, each with the reason."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from contextlib import suppress
 

@@ -1,7 +1,5 @@
 """Files that a reader sees whole or not at all; refusal of those without end, or beyond the memory that is available."""
 
-from __future__ import annotations
-
 import json
 import math
 import os

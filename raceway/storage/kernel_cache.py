@@ -3,8 +3,6 @@
 Compiled kernels are pickles, and reading one can execute anything: a folder that someone else may write is refused.
 """
 
-from __future__ import annotations
-
 import atexit
 import hashlib
 import os

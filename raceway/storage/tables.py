@@ -1,7 +1,5 @@
 """Types of what files hold before it is checked: a scene's TOML, a result's JSON, a study's rows."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

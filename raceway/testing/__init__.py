@@ -16,14 +16,10 @@ Subclass a suite in a test file, and pytest collects its checks::
 or run all checks at once with ``check(entry)``, as ``raceway dev check-plugin [KIND:]NAME`` does.
 """
 
-from __future__ import annotations
-
 from importlib import import_module
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from raceway.framework.registry import Entry, Registry
-    from raceway.testing.suite import Conformity, Suite
+from raceway.framework.registry import Entry, Registry
+from raceway.testing.suite import Conformity, Suite
 
 #: kind -> (module, class) of its suite
 SUITES: dict[str, tuple[str, str]] = {

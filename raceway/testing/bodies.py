@@ -4,8 +4,6 @@ Bodies are built for their own ``example_scene()``, or for a ball bearing, and f
 bodies do not compute, they must refuse.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Callable, Iterator

@@ -4,8 +4,6 @@ Methods that solve for the steady motion (``steady``) are compared with its clos
 an error that holds; all others are tried on transients.
 """
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 

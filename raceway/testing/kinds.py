@@ -1,7 +1,5 @@
 """The conformance suites of formats, meshers, quantities, executors and studies: kinds of few duties each."""
 
-from __future__ import annotations
-
 import copy
 import json
 import re

@@ -8,8 +8,6 @@ springs, which a gyroscopic term couples.  Balls and tilts do not move.  A beari
 contacts; the second one stays open.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 

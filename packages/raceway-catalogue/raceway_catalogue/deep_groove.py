@@ -5,8 +5,6 @@ diameter.  So the candidates are weighed by what is printed: C, C0, where the ma
 pitch diameter; and by how deep-groove bearings are filled, which were measured over 256 sizes whose f_0 is printed.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from raceway.extend import BallRow

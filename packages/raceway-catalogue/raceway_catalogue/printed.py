@@ -1,7 +1,5 @@
 """What makers print of a bearing, and tables of it as CSV: one line a designation, lines of a size belong together."""
 
-from __future__ import annotations
-
 import csv
 import math
 from functools import cache

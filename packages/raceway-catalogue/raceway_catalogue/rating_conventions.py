@@ -8,8 +8,6 @@ maker, which prints their Z, D and d_m, tell the candidates apart.
 Both give each candidate a log-density of what is printed, so that they can be compared where the maker is not known.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache
 

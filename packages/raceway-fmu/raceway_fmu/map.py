@@ -1,7 +1,5 @@
 """The map of a bearing: quantities of ``raceway.function`` over keys of its scene, as Chebyshev series."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import product

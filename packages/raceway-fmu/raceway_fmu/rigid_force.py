@@ -6,8 +6,6 @@ Numbers of geometry and balls are a + b W^2 in the speed W: centrifugal forces, 
 models at two speeds; a third speed shows whether that holds.
 """
 
-from __future__ import annotations
-
 import math
 
 import attrs

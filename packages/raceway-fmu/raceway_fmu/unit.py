@@ -5,8 +5,6 @@ References
 Functional Mock-up Interface for Model Exchange and Co-Simulation 2.0.4; Functional Mock-up Interface 3.0.2 (Modelica Association).
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import json

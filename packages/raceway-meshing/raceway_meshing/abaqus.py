@@ -1,7 +1,5 @@
 """Input files of Abaqus and CalculiX: nodes, hexahedra, *NSET and *SURFACE."""
 
-from __future__ import annotations
-
 import re
 import warnings
 from collections.abc import Iterator, Sequence

@@ -4,8 +4,6 @@ Nothing is opened by ``gmsh.open``: it executes the .geo language, and for a fil
 (part.step.opt), which are the same language.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import signal
@@ -24,6 +22,7 @@ from raceway import MeshError, one_of, option, positive
 from raceway.extend import Bearing, HexMesh, Prediction, remedy
 from raceway_meshing.formats import readable
 from raceway_meshing.mesh_files import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
+from raceway_meshing.formats import facets_of_quads
 
 _SOLIDS = {4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids"}
 #: Endings of files and OpenCASCADE's readers for them.
@@ -57,7 +56,7 @@ class Gmsh:
         refuse_no_body(self)
 
     @classmethod
-    def examples(cls) -> list[Gmsh]:
+    def examples(cls) -> "list[Gmsh]":
         """A coarse ring of the package's data."""
         path = str(files("raceway_meshing").joinpath("data/meshes/ring.brep"))
         return [cls(inner_ring=path, scale=1e-3, element_size=2e-3)]
@@ -138,8 +137,6 @@ class Gmsh:
             gmsh.finalize()
 
     def _mesh_of(self, gmsh: ModuleType, path: str, scale: float) -> HexMesh:
-        from raceway_meshing.formats import facets_of_quads
-
         self._set_sizes(gmsh, scale)
         gmsh.model.mesh.generate(3)
         # (m, 8) node tags of the hexahedra; ``MeshError`` where there is any other solid

@@ -1,7 +1,5 @@
 """Meshes that the user brings: a file for each body, balls from the mesh of one ball, sets mapped to the program's names."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
@@ -98,7 +96,7 @@ class File:
                 raise ValueError(f"`sets.{body}`: there is no such body{nearest(body, bodies)}; given: {', '.join(bodies)}")
 
     @classmethod
-    def examples(cls) -> list[File]:
+    def examples(cls) -> "list[File]":
         """A coarse ring of the package's data."""
         path = str(files("raceway_meshing").joinpath("data/meshes/ring.inp"))
         return [cls(inner_ring=path, scale=1e-3, sets={"inner_ring": {"raceway": "OUTSIDE"}})]

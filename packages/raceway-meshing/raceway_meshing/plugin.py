@@ -1,7 +1,5 @@
 """What this package adds to ``raceway``: meshes from gmsh and from files."""
 
-from __future__ import annotations
-
 from raceway import hookimpl
 
 

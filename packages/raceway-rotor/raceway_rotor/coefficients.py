@@ -9,8 +9,6 @@ Three sources, each with its assumption:
 Frame and signs: docs/physics.md.  Z(w) = K - m w^2 + j w C; the mass is taken out.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping

@@ -20,8 +20,6 @@ Mechanical APDL, Rotordynamic Analysis Guide, 3.3.2.1, "User-Defined Stiffness a
 KEYOPT(3) = 1 as in another exporter, https://github.com/FE-Berserker/Baffalo (Bearingprint.m, Tableprint.m).
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -3,8 +3,6 @@
 Independent of ROSS; x is the bearing's axis.
 """
 
-from __future__ import annotations
-
 from math import pi
 
 import attrs
@@ -43,7 +41,7 @@ class NodeBearing:
     damping: float = 0.0
     _equilibria: dict[float, tuple[Model, Equilibrium]] = attrs.field(factory=dict, init=False, repr=False)
 
-    def __deepcopy__(self, _memo: object) -> NodeBearing:
+    def __deepcopy__(self, _memo: object) -> "NodeBearing":
         """Itself: it never changes, and ROSS copies rotors."""
         return self
 

@@ -1,7 +1,5 @@
 """The table [rig] of a scene: a shaft on two equal bearings, its disc, sensors and their signals."""
 
-from __future__ import annotations
-
 from math import pi
 
 import attrs

@@ -18,8 +18,6 @@ Przemieniecki, Theory of Matrix Structural Analysis (1968), sections 5.6 and 11.
 Rotating Machines (2010), sections 5.4.3 to 5.4.6.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from functools import lru_cache
 from math import ceil, pi
@@ -60,7 +58,7 @@ class Beam:
         """K - lambda^2 (M_t + M_r) + lambda Omega G for speeds [rad/s]."""
         return self.stiffness - whirl**2 * (self.mass + self.rotary) + whirl * spin * self.polar
 
-    def with_disc(self, position: float, mass: float, transverse: float, polar: float) -> Beam:
+    def with_disc(self, position: float, mass: float, transverse: float, polar: float) -> "Beam":
         """A copy with a rigid disc at a node: mass [kg], inertias [kg m2]."""
         k = 2 * self.node(position)
         m, r, p = self.mass.copy(), self.rotary.copy(), self.polar.copy()
@@ -69,7 +67,7 @@ class Beam:
         p[k + 1, k + 1] += polar
         return attrs.evolve(self, mass=m, rotary=r, polar=p)
 
-    def with_spring(self, position: float, stiffness: float, tilt: float = 0.0) -> Beam:
+    def with_spring(self, position: float, stiffness: float, tilt: float = 0.0) -> "Beam":
         """A copy with a spring against the ground at a node [N/m, N m/rad]."""
         k = 2 * self.node(position)
         s = self.stiffness.copy()
@@ -256,7 +254,7 @@ class Bearing:
     replayed: list[list[float]] = attrs.field(factory=list, repr=False)
     _lines: SteadyLines = attrs.field(factory=SteadyLines, init=False, repr=False)
 
-    def anew(self, replayed: Iterable[list[float]] = ()) -> Bearing:
+    def anew(self, replayed: Iterable[list[float]] = ()) -> "Bearing":
         """The same bearing without a motion to continue: its answers depend on none before.
 
         Parameters

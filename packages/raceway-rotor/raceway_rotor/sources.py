@@ -12,10 +12,9 @@ import numpy as np
 
 from raceway import RacewayError, SceneError
 from raceway.extend import Z_IMAG, Z_REAL, C, K, Selection, is_number, listed, tilt_words
+from collections.abc import Hashable
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable
-
     from xarray import Dataset
 
 DIRECTION = "excitation.direction_deg"

@@ -17,10 +17,9 @@ from raceway.extend import (
     registry_with, sections, slug, write_whole,
 )  # fmt: skip
 from raceway_view.pictures import INK, Plotter, look_from, rendered
+from types import ModuleType
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
     from raceway import Scene
     from raceway.extend import Entry, Format, OnProgress
 

@@ -4,8 +4,6 @@ The page carries everything and asks for nothing.  pyvista's own export to HTML 
 besides pyvista, and its scene carries no numbers.
 """
 
-from __future__ import annotations
-
 import base64
 import json
 from collections.abc import Sequence

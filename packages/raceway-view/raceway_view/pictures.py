@@ -11,10 +11,9 @@ import numpy as np
 from raceway import RacewayError
 from raceway.extend import Tables, new_figure, refuse_pictures
 from raceway_view.bodies import INNER, OUTER, BearingSolids, Snapshot
+from types import ModuleType
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure

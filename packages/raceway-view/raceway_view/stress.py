@@ -15,10 +15,9 @@ from raceway.extend import (
     new_figure, pressures, von_mises,
 )  # fmt: skip
 from raceway_view.pictures import INK, Grid, Plotter, look_from, pyvista_of, quietly, rendered
+from types import ModuleType
 
 if TYPE_CHECKING:
-    from types import ModuleType
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 

@@ -26,8 +26,6 @@ Taylor, J. Lubr. Technol. 101 (1979) 231 (isoviscous-rigid); Jeng, Hamrock, Brew
 Gentle, Duckworth, Cameron, J. Lubr. Technol. 97 (1975) 383.
 """
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 

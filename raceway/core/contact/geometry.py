@@ -11,8 +11,6 @@ References
 Harris & Kotzalas, Essential Concepts of Bearing Technology, chapters 2 and 6; ISO/TS 16281.
 """
 
-from __future__ import annotations
-
 from math import pi, sqrt
 from typing import Any
 
@@ -40,7 +38,7 @@ class BallBearing:
     centred: bool = False
 
     @classmethod
-    def of(cls, bearing: object, centred: bool = False) -> BallBearing:
+    def of(cls, bearing: object, centred: bool = False) -> "BallBearing":
         """The lengths of the same names of a scene's bearing, or of one of its rows."""
         return cls(**{field.name: getattr(bearing, field.name) for field in attrs.fields(cls)[:-1]}, centred=centred)
 
@@ -111,7 +109,7 @@ class Growth:
     by_ball: np.ndarray
 
     @classmethod
-    def of_inner_raceways(cls, growth: float, balls: int) -> Growth:
+    def of_inner_raceways(cls, growth: float, balls: int) -> "Growth":
         """All inner raceways have grown alike, radially [m]."""
         return cls(np.array([0.0, growth, 0.0, 0.0, 0.0]), np.zeros((balls, 5)))
 

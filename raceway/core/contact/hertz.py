@@ -12,8 +12,6 @@ References
 Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter 6 (with E' written as E*).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import cache, lru_cache
 from typing import Any

@@ -1,7 +1,5 @@
 """Finite elements of a ring against Hertz: the approach that a footprint of their mesh takes, calibrated over loads."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 

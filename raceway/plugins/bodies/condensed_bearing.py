@@ -1,7 +1,5 @@
 """Elastic rings and balls, reduced to the compliances that the contacts feel; one force for each contact."""
 
-from __future__ import annotations
-
 from collections.abc import Hashable
 from math import nan
 from threading import Lock
@@ -186,7 +184,7 @@ _COARSER = 2.0
 _NOTHING = 1e-6
 
 
-def build(problem: Problem, plan: ScenePlan) -> _CondensedBearing:
+def build(problem: Problem, plan: ScenePlan) -> "_CondensedBearing":
     """The bearing of a scene with condensed bodies and contact resultants."""
     stiff = rigid.build(problem, plan)
     bodies = elastic_bodies(problem, stiff.basis)

@@ -1,27 +1,21 @@
 """The meshes of a scene's bodies: the mesher that [mesh] names, on the scene's bearing, judged before they are handed on."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Mapping
 from math import log10
-from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
+from raceway.core.fem.mesh.hex_mesh import HexMesh
+from raceway.core.fem.mesh.quality import Prediction, body_bytes, refuse_bad_cells, refuse_memory
 from raceway.errors import MeshError, Mistake, PluginError, SceneError
+from raceway.framework.contracts import Mesher
 from raceway.framework.sources import blamed
 from raceway.planning.resolve import Problem
+from raceway.scene.bearing import Bearing
+from raceway.scene.tables import Supports
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from raceway.core.fem.mesh.hex_mesh import HexMesh
-    from raceway.core.fem.mesh.quality import Prediction
-    from raceway.framework.contracts import Mesher
-    from raceway.scene.bearing import Bearing
-    from raceway.scene.tables import Supports
-
 
 #: Larger or smaller by more than this is another unit (inches for millimetres are 25), not another bearing.
 _OTHER_UNIT = 5.0
@@ -162,9 +156,6 @@ def mesh_bodies(problem: Problem) -> dict[str, HexMesh]:
     PluginError
         A mesher that returns something else, or raises anything but a ``RacewayError``.
     """
-    from raceway.core.fem.mesh.hex_mesh import HexMesh
-    from raceway.core.fem.mesh.quality import refuse_bad_cells
-
     mesher = mesher_of(problem)
     with blamed(f"mesher '{mesher.name}'", "mesh()"):
         meshes = mesher.mesh(problem.bearing)
@@ -225,7 +216,6 @@ def predicted_mesh(problem: Problem) -> Tables | None:
     prediction = None if problem.mesh is None else _prediction(problem)
     if prediction is None:
         return None
-    from raceway.core.fem.mesh.quality import body_bytes
 
     bodies = [{"name": name, "cells": cells, "bytes": body_bytes(cells)} for name, cells in prediction.bodies.items()]
     return {"bodies": bodies, "cells": prediction.cells, "bytes": prediction.memory_bytes}
@@ -236,7 +226,6 @@ def _prediction(problem: Problem) -> Prediction | None:
     mesher = mesher_of(problem)
     if not hasattr(mesher, "predict"):
         return None
-    from raceway.core.fem.mesh.quality import Prediction, refuse_memory
 
     with blamed(f"mesher '{mesher.name}'", "predict()"):
         prediction = mesher.predict(problem.bearing)

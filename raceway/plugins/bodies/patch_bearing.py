@@ -4,8 +4,6 @@ The answer of rigid rings on Hertz's contacts says how far the contacts reach an
 where contacts go further than that, the patches are made wider.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import attrs

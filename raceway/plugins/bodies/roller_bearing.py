@@ -1,7 +1,5 @@
 """Rigid rings on cylindrical rollers: the arrays of a ring on its rollers, and what a result says of line contacts."""
 
-from __future__ import annotations
-
 from math import pi
 from typing import ClassVar, Protocol
 

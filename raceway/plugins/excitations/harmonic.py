@@ -4,7 +4,7 @@ shafts, which studies make and no scene names."""
 from __future__ import annotations
 
 from math import pi
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import attrs
 import numpy as np
@@ -14,8 +14,6 @@ from raceway.framework.options import at_least, between, finite, inside, one_of,
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from typing import Self
-
     from raceway.core.jit import Kernel
 
 

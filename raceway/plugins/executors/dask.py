@@ -14,14 +14,13 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 
 from raceway.errors import PluginError, extra
-from raceway.framework.contracts import Answer, Lost, Refused, Work
+from raceway.framework.contracts import Answer, Batch, Lost, Refused, Work
 from raceway.framework.options import between, inside, option, optional
 from raceway.framework.orphans import deaf_to_terminals, start_tracker
 
 if TYPE_CHECKING:
     from distributed import Client, Future
 
-    from raceway.framework.contracts import Batch
 
 #: How often the list of workers is looked at [s].
 _LOOK_S = 2.0

@@ -3,8 +3,6 @@
 A batch that hangs or kills its process costs that batch only: each process is a pool of its own.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import time

@@ -7,15 +7,14 @@ from math import pi
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
+import numpy as np
 
+from raceway.framework.contracts import Equilibrium, Model
 from raceway.framework.options import between, option, worded
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from raceway.core.record import Record
     from raceway.core.signals import Identification
-    from raceway.framework.contracts import Equilibrium, Model
 
 
 def whole_turns(record: Record) -> Record:
@@ -57,8 +56,6 @@ class Fft1x:
     )
 
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
-        import numpy as np
-
         from raceway.core.signals import fit_harmonics, identification, stiffness, synchronous_phasor, without_drift
 
         record, frequency = whole_turns(records[0]), model.excitation.frequency_hz
@@ -91,8 +88,6 @@ class SineFit:
     harmonics: int = option(5, help="multiples of the excitation's frequency in the fit", rule=between(1, 50))
 
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
-        import numpy as np
-
         from raceway.core.signals import fit_harmonics, identification, stiffness, without_drift
 
         record, frequency = records[0], model.excitation.frequency_hz
@@ -127,8 +122,6 @@ class Tangent:
     )
 
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
-        import numpy as np
-
         from raceway.core.signals import identification
 
         system, excitation = model.system, model.excitation
@@ -190,8 +183,6 @@ class ImpedanceFit:
         return [cls(speeds_rpm=(7200.0, 9600.0, 12000.0, 14400.0, 16800.0))]
 
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
-        import numpy as np
-
         from raceway.core.signals import identification, stiffness
 
         records = [whole_turns(record) for record in records]

@@ -1,22 +1,20 @@
 """Structured hexahedra of a whole bearing: rings with the true groove, balls as cubed spheres, graded to the contacts."""
 
-from __future__ import annotations
-
 from math import ceil, inf, pi
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import attrs
+import numpy as np
 
+from raceway.core.contact.geometry import BallBearing
+from raceway.core.contact.hertz import contact_modulus
+from raceway.core.fem.mesh.ball_mesh import CUBE, ball_cells, ball_mesh
+from raceway.core.fem.mesh.hex_mesh import HexMesh, azimuth, ball_names, graded, growing, placed
+from raceway.core.fem.mesh.quality import Prediction, refuse_coarse, refuse_memory
+from raceway.core.fem.mesh.ring_mesh import RingShape, ring_mesh, ring_shape
 from raceway.errors import MeshError
 from raceway.framework.options import between, option, positive, word_or
-
-if TYPE_CHECKING:
-    import numpy as np
-
-    from raceway.core.fem.mesh.hex_mesh import HexMesh
-    from raceway.core.fem.mesh.quality import Prediction
-    from raceway.core.fem.mesh.ring_mesh import RingShape
-    from raceway.scene.bearing import Bearing
+from raceway.scene.bearing import Bearing
 
 #: Load of a ball [N] whose ellipse the patches follow where neither the scene nor the option says it.
 BALL_LOAD = 300.0
@@ -56,9 +54,6 @@ class Structured:
         MeshError
             Dimensions that are missing or do not fit, elements larger than the wall or too many for the memory.
         """
-        from raceway.core.fem.mesh.ball_mesh import ball_mesh
-        from raceway.core.fem.mesh.hex_mesh import azimuth, ball_names, placed
-
         self.predict(bearing)  # refuses what cannot work
         bodies: dict[str, HexMesh] = {}
         u, v, w, layers, patch = self._ball_lines(bearing)
@@ -79,11 +74,6 @@ class Structured:
         MeshError
             As ``mesh``.
         """
-        from raceway.core.fem.mesh.ball_mesh import ball_cells
-        from raceway.core.fem.mesh.hex_mesh import ball_names
-        from raceway.core.fem.mesh.quality import Prediction, refuse_coarse, refuse_memory
-        from raceway.core.fem.mesh.ring_mesh import ring_shape
-
         if not bearing.equal_rows:
             raise MeshError("bearing.row holds rows of different bearings: mesh each by itself, as a scene of one row")
         volume = pi / 6.0 * bearing.ball_diameter**3 * bearing.ball_count
@@ -117,9 +107,6 @@ class Structured:
 
     def _semi_axes(self, bearing: Bearing, inner: bool) -> tuple[float, float]:
         """Semi-axes [m] of a contact ellipse, along the groove and along the rolling direction."""
-        from raceway.core.contact.geometry import BallBearing
-        from raceway.core.contact.hertz import contact_modulus
-
         rings, balls = bearing.rings, bearing.balls
         modulus = contact_modulus(rings.young, rings.poisson, balls.young, balls.poisson)
         major, minor = BallBearing.of(bearing).ellipses(modulus)[0 if inner else 1].semi_axes(self.ball_load or BALL_LOAD)
@@ -127,11 +114,6 @@ class Structured:
 
     def _ball_lines(self, bearing: Bearing) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]:
         """Lines of the cube along u, v, w, layers, and the semi-axes of the patch along u, v."""
-        import numpy as np
-
-        from raceway.core.fem.mesh.ball_mesh import CUBE
-        from raceway.core.fem.mesh.hex_mesh import graded, growing
-
         # Both contacts of a ball share the cube's lines: the larger ellipse sets the zone, the smaller one the size.
         pairs = [self._semi_axes(bearing, inner) for inner in (True, False)]
         radius, size = 0.5 * bearing.ball_diameter, self.element_size
@@ -157,8 +139,6 @@ class Structured:
         self, bearing: Bearing, shape: RingShape
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[float, float]]:
         """Points of the left land, the groove, the right land, the layers, and the refined band's angles."""
-        from raceway.core.fem.mesh.hex_mesh import graded, growing
-
         major, minor = self._semi_axes(bearing, shape.inner)
         size, (low, high) = self.element_size, shape.edges
         half = self.patch * major / shape.groove
@@ -177,10 +157,6 @@ class Structured:
 
     def _azimuths(self, bearing: Bearing, shape: RingShape) -> np.ndarray:
         """(n,) azimuths of the nodes around a ring, less that of the first ball [rad]: each ball meets the same nodes."""
-        import numpy as np
-
-        from raceway.core.fem.mesh.hex_mesh import graded
-
         setting, count = self.azimuth_cells, bearing.ball_count
         pitch = 2.0 * pi / count
         if setting == "graded" and self.nodes_per_semi_axis:
@@ -196,11 +172,6 @@ class Structured:
         return np.asarray((sector[None, :] + pitch * np.arange(count)[:, None]).ravel())
 
     def _ring(self, bearing: Bearing, inner: bool, side: float, offset: float) -> HexMesh:
-        import numpy as np
-
-        from raceway.core.fem.mesh.hex_mesh import azimuth
-        from raceway.core.fem.mesh.ring_mesh import ring_mesh, ring_shape
-
         shape = ring_shape(bearing, inner)
         left, arc, right, layers, band = self._ring_lines(bearing, shape)
         start = side * azimuth(bearing, 0)

@@ -12,22 +12,17 @@ References
 Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter 10.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from math import acos, cos, degrees, pi
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import attrs
+import numpy as np
 
 from raceway.answers.quantities import Quantity
-
-if TYPE_CHECKING:
-    import numpy as np
-
-    from raceway.framework.contracts import Problem, SolvedPoints
-    from raceway.framework.shown import Fact
-    from raceway.storage.tables import ReadTables, Tables
+from raceway.framework.contracts import Problem, SolvedPoints
+from raceway.framework.shown import Fact
+from raceway.storage.tables import ReadTables, Tables
 
 
 def _over_shaft(name: str, words: str) -> Quantity:
@@ -55,8 +50,6 @@ class BallPass:
         return ""
 
     def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:
-        import numpy as np
-
         cosines, rows = _cosines(points), points.problem.bearing.of_rows
         each = [ball_pass(b.ball_count, b.ball_diameter, b.pitch_diameter, cosines[:, k]) for k, b in enumerate(rows)]
         return {number.name: np.stack([row[number.name] for row in each], axis=1) for number in self.numbers}
@@ -99,8 +92,6 @@ def ball_pass(ball_count: int, ball_diameter: float, pitch_diameter: float, cosi
 
 def _cosines(points: SolvedPoints) -> np.ndarray:
     """(n, rows) of the mean contact angle of the balls that both races load; of the free angle in rows without any."""
-    import numpy as np
-
     cosine, free = np.cos(0.5 * np.abs(points.contact_angle).sum(axis=1)), points.problem.bearing.of_rows
     columns = []
     for k, bearing in enumerate(free):

@@ -12,20 +12,18 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
+import numpy as np
 
 from raceway.answers.quantities import Quantity
-from raceway.core.columns import at_rows
+from raceway.core.columns import Number, at_rows
+from raceway.framework.contracts import Problem, SolvedPoints
 from raceway.framework.options import option, positive
 from raceway.framework.shown import Fact, number
 from raceway.scene.lubricant import Oil
+from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
-    import numpy as np
-
-    from raceway.core.columns import Number
     from raceway.core.contact.film import Film
-    from raceway.framework.contracts import Problem, SolvedPoints
-    from raceway.storage.tables import ReadTables, Tables
 
 
 @attrs.frozen
@@ -106,8 +104,6 @@ def _oil(points: SolvedPoints) -> Oil:
 
 def _films(points: SolvedPoints) -> Film:
     """Of all contacts (n, 2, Z), infinite where a contact is open."""
-    import numpy as np
-
     oil = at_rows(_oil(points), np.repeat(np.arange(len(points.load)), points.load[0].size))
     films, closed = oil.thickness(points.running_contacts()), points.load > 0.0
     central, minimum = (np.where(closed, film.reshape(closed.shape), np.inf) for film in (films.central, films.minimum))

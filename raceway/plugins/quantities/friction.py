@@ -17,16 +17,15 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import Quantity
+from raceway.core.columns import Number
+from raceway.framework.contracts import Problem, SolvedPoints
 from raceway.framework.duties import is_foundation
 from raceway.framework.options import at_least, between, option, word_or
-from raceway.framework.shown import number
+from raceway.framework.shown import Fact, number
+from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
-    from raceway.core.columns import Number
     from raceway.core.rolling_friction import BallContacts, Losses
-    from raceway.framework.contracts import Problem, SolvedPoints
-    from raceway.framework.shown import Fact
-    from raceway.storage.tables import ReadTables, Tables
 
 
 #: Sources of friction, as results name them, and what they are.

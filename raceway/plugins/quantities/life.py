@@ -14,11 +14,9 @@ References
 ISO/TS 16281:2008; ISO 281:2007; ISO 76:2006.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from math import isfinite, lcm, pi
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
@@ -36,13 +34,11 @@ from raceway.core.life import (
     set_rating,
     system_life,
 )
+from raceway.framework.contracts import Problem, SolvedPoints
 from raceway.framework.options import between, option, positive
 from raceway.framework.shown import Fact, number
-
-if TYPE_CHECKING:
-    from raceway.framework.contracts import Problem, SolvedPoints
-    from raceway.scene.ratings import LoadRatings
-    from raceway.storage.tables import ReadTables, Tables
+from raceway.scene.ratings import LoadRatings
+from raceway.storage.tables import ReadTables, Tables
 
 #: Moments of a turn at least.
 _MOMENTS = 20
@@ -148,7 +144,7 @@ class Life:
             sentences.append(f"life: not modified: {self._why_not_modified(points, rows)}")
         return sentences
 
-    def _why_not_modified(self, points: SolvedPoints, rows: list[_Row]) -> str:
+    def _why_not_modified(self, points: SolvedPoints, rows: "list[_Row]") -> str:
         """Of one point what is missing for the modified life; empty where it is known."""
         ratio = min(row.viscosity_ratio[0] for row in rows)
         if ratio >= VISCOSITY_RATIOS[0]:
@@ -159,7 +155,7 @@ class Life:
             return "no oil: [lubricant] or quantities.life.viscosity_ratio"
         return "no speed, which the required viscosity depends on"
 
-    def _rows(self, points: SolvedPoints) -> list[_Row]:
+    def _rows(self, points: SolvedPoints) -> "list[_Row]":
         rows, oil, speed = [], points.problem.lubricant, np.where(points.speed, points.speed, np.nan)
         for k, ratings in enumerate(points.problem.ratings):
             loads, most = self._loads(points, k)

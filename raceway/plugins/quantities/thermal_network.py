@@ -9,21 +9,17 @@ emission from the sizes of the rings.  Oil reaches the inner ring against the ce
 its surface the share of the gaps, 1 - Z D / (pi d_m), is wetted, an estimate from geometry.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from raceway.core.columns import Number
 from raceway.core.contact.film import film, thermal_reduction
 from raceway.core.contact.hertz import contact_modulus
 from raceway.core.thermal import JOINT, Network, oil_convection, rolling_contact, seat_emission
-
-if TYPE_CHECKING:
-    from raceway.core.columns import Number
-    from raceway.framework.contracts import SolvedPoints
-    from raceway.scene.bearing import Bearing
+from raceway.framework.contracts import SolvedPoints
+from raceway.scene.bearing import Bearing
 
 
 def thermal_network(

@@ -3,8 +3,6 @@
 What a case measures is in the module that its ``measure`` names.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping
 from importlib.resources import files

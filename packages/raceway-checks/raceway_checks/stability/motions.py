@@ -2,8 +2,6 @@
 penetrations and chatter, which conserves too well.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from math import ceil, pi, sqrt
 from typing import Any

@@ -9,8 +9,6 @@ result says so): there the seat's force and the slope of the stored energy are c
 motions do.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache, partial
 from math import atan2, sin, sqrt

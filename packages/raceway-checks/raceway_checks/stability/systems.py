@@ -1,7 +1,5 @@
 """Systems that the catalogue's cases are measured on."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import cast
 
@@ -55,11 +53,11 @@ class Bench:
     changes: Tables
     registry: Registry
 
-    def over(self, changes: Tables) -> Bench:
+    def over(self, changes: Tables) -> "Bench":
         """With more keys changed, its own changes upon them."""
         return attrs.evolve(self, changes={**changes, **self.changes})
 
-    def changed(self, changes: Tables) -> Bench:
+    def changed(self, changes: Tables) -> "Bench":
         """With more keys changed, upon its own changes."""
         return attrs.evolve(self, changes={**self.changes, **changes})
 

@@ -1,7 +1,5 @@
 """Reference cases: what sources state and give, and how a computed number compares with theirs."""
 
-from __future__ import annotations
-
 import json
 from functools import cache
 from importlib.resources import files

@@ -5,8 +5,6 @@
 x is the shaft.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import unicodedata

@@ -15,8 +15,6 @@ References
 Seber, Wild, Nonlinear Regression, Wiley 1989, chapters 2 and 3: linearised region, Student's distribution of its half-widths.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from math import inf
 from typing import Protocol
@@ -251,7 +249,7 @@ class Estimate:
         noise = {"noise": self.reach * np.sqrt(np.diag(self.covariance))}
         return noise | {cause: NORMAL * np.linalg.norm(shift, axis=0) for cause, shift in self.shifts.items()}
 
-    def with_shifts(self, cause: str, columns: np.ndarray) -> Estimate:
+    def with_shifts(self, cause: str, columns: np.ndarray) -> "Estimate":
         """With another cause, whose independent standard errors move the weighted residuals by columns (n, k)."""
         sizes = np.array([number.size for number in self.free])
         u, s, v = np.linalg.svd(self.jacobian * sizes, full_matrices=False)

@@ -22,8 +22,6 @@ Pintelon, Schoukens, System Identification: A Frequency Domain Approach, Wiley 2
 MacKinnon, White, J. Econometrics 29 (1985) 305: covariance where variances differ.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import attrs

@@ -6,8 +6,6 @@ Universal file datasets 58 (function at nodal degree of freedom) and 164 (units)
 them: specific data types, units labels, units factors.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path

@@ -11,8 +11,6 @@ residuals are those along the measured response and across it, each over its sta
 balance of shaft and bearing, which is solved to 1e-7: its integrator may be any, and each solution continues the motion before it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import attrs

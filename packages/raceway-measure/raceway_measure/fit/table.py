@@ -3,8 +3,6 @@
 Residuals are those of the scene's answers, with their exact derivatives by the free keys.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping, Sequence
 

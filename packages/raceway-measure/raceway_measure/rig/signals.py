@@ -15,8 +15,6 @@ of Materials), to which the printed formula is equal for an L of twice the span.
 -P a L^2 / (16 E I).
 """
 
-from __future__ import annotations
-
 from cmath import exp
 from math import pi, radians
 

@@ -10,6 +10,7 @@ import attrs
 import numpy as np
 from numba import int64, void
 
+from raceway.core.fem.elastic.contact import Contact
 from raceway.core.fem.elastic.linear_statics import MOTIONS
 from raceway.core.fem.elastic.superelement import Copies, Group
 from raceway.core.fem.elastic.surface import surface_points
@@ -22,11 +23,7 @@ from raceway.core.signatures import CUBE, VECTOR
 from raceway.core.threads import ThreadPool, usable_cores
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from scipy.sparse import csr_matrix
-
-    from raceway.core.fem.elastic.contact import Contact
 
 
 @attrs.frozen(eq=False)

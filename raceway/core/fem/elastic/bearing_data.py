@@ -1,7 +1,5 @@
 """Data of an elastic bearing beyond its meshes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import attrs

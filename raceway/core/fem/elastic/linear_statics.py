@@ -12,15 +12,13 @@ import attrs
 import numpy as np
 from numba import float32, float64, int32, void
 
-from raceway.core.jit import jit
+from raceway.core.jit import Kernel, jit
 from raceway.errors import ConvergenceError, RacewayError
 
 if TYPE_CHECKING:
     from numba.core.typing.templates import Signature
     from scipy.sparse import csr_matrix
     from scipy.sparse.linalg import SuperLU
-
-    from raceway.core.jit import Kernel
 
 
 #: Neighbours up to this many times the distance of the nearest one are strong: all corners of a cube (1.73) and somewhat more,

@@ -1,7 +1,5 @@
 """Equilibrium of elastic bodies in contact: Newton's method on the active set, with a line search and load steps."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Protocol, TypeVar
 

@@ -1,7 +1,5 @@
 """A bearing of elastic bodies seen from its inner ring: the interface of ``raceway.core.ring.ring.Ring``."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -119,11 +117,11 @@ class ElasticRing(SteppedRing):
         on_ring, tangent = force_on_frame - self.stiffness @ y[:5], self._stiffness.copy()
         return Evaluation(on_ring, tangent, np.zeros((5, 5)), gap, force, places, self.law_state.copy())
 
-    def without(self, *entries: int) -> ElasticRing:
+    def without(self, *entries: int) -> "ElasticRing":
         """Itself: balls of elastic bodies do not orbit, and equilibria know no friction."""
         return self
 
-    def stopped(self, t: float) -> ElasticRing:
+    def stopped(self, t: float) -> "ElasticRing":
         return self
 
     def critical_time_step(self, tangent: np.ndarray) -> float:

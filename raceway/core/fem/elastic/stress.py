@@ -1,7 +1,5 @@
 """The normal of a loaded contact at points, through its centre of pressure, in the ball and in the other body."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 

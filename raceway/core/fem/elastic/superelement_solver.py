@@ -1,7 +1,5 @@
 """Elastic bodies in contact, solved exactly: all that is linear once, Newton's method in the contacts alone."""
 
-from __future__ import annotations
-
 import gc
 from collections.abc import Callable
 
@@ -117,7 +115,7 @@ class BallTangent:
     matrix: np.ndarray
 
     @classmethod
-    def of(cls, nodes: np.ndarray, weights: np.ndarray, blocks: np.ndarray) -> BallTangent:
+    def of(cls, nodes: np.ndarray, weights: np.ndarray, blocks: np.ndarray) -> "BallTangent":
         """From points: ``nodes`` (n, 8), four of the ball, then four of a ring, ``weights`` (n, 8), ``blocks`` (n, 3, 3)."""
         ball, rings = np.unique(nodes[:, :4]), np.unique(nodes[:, 4:])
         places = [np.searchsorted(ball, nodes[:, :4]), len(ball) + np.searchsorted(rings, nodes[:, 4:])]

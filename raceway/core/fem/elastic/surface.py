@@ -1,7 +1,5 @@
 """Facets under points of a meshed surface, and the weights of their four nodes."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 from numba import float64, int64, void
@@ -132,7 +130,7 @@ class SurfacePoints:
     nodes: np.ndarray
     weights: np.ndarray
 
-    def __getitem__(self, rows: np.ndarray) -> SurfacePoints:
+    def __getitem__(self, rows: np.ndarray) -> "SurfacePoints":
         return SurfacePoints(self.place[rows], self.area[rows], self.nodes[rows], self.weights[rows])
 
 

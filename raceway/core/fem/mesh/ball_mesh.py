@@ -3,8 +3,6 @@
 Local axes: u along the rolling direction, v across the raceway, w through both contacts; +w is the outer one.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from raceway.core.fem.mesh.hex_mesh import HexMesh, nodes_of

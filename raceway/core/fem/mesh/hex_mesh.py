@@ -4,8 +4,6 @@ Nodes of a cell stand in VTK's order: 0 to 3 around the bottom, 4 to 7 above the
 local faces (``FACES``), which are Abaqus's S1 to S6 in the same order.
 """
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Mapping
 from math import ceil, cos, log, pi, sin
@@ -138,7 +136,7 @@ class HexMesh:
                 total += np.linalg.norm(np.cross(along, across), axis=1) / 16.0
         return total
 
-    def renumbered(self) -> HexMesh:
+    def renumbered(self) -> "HexMesh":
         """The same mesh with neighbours near each other in memory.
 
         Notes

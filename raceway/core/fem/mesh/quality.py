@@ -6,8 +6,6 @@ Knupp, Ernst, Thompson, Stimpson, Pebay: The Verdict geometric quality library, 
 edge ratio, skew of hexahedra.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import attrs
@@ -156,7 +154,7 @@ class Prediction:
     beside_bytes: int
 
     @classmethod
-    def of(cls, bodies: Mapping[str, float], beside_bytes: float | None = None) -> Prediction:
+    def of(cls, bodies: Mapping[str, float], beside_bytes: float | None = None) -> "Prediction":
         """The prediction for bodies of so many cells; by default with what a structured mesh needs beside."""
         if beside_bytes is None:
             beside_bytes = _BYTES_BESIDE * sum(bodies.values())

@@ -4,8 +4,6 @@ The profile is one mapped block: lines along the surface of lands and groove, fr
 from there to the seat (bore, or outer cylinder).  x is the axis of the bearing, the azimuth runs from +y to +z.
 """
 
-from __future__ import annotations
-
 from math import acos, asin, cos, pi, sin, sqrt
 from typing import Any
 

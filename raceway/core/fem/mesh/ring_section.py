@@ -1,7 +1,5 @@
 """A ring with bore, width and groove, integrated over its section: moments, and the growth of its raceway as it turns."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cache
 from math import atan2, ceil, pi
@@ -37,7 +35,7 @@ class RingSection:
     contact: tuple[float, float]
 
     @classmethod
-    def of(cls, bearing: Any, shoulder_height: float) -> RingSection:
+    def of(cls, bearing: Any, shoulder_height: float) -> "RingSection":
         """From bore, width and groove of a scene's [bearing]; where these are columns, arrays have an axis of points before."""
         b = bearing
         offset, alpha = (b.conformity_inner - 0.5) * b.ball_diameter, b.contact_angle

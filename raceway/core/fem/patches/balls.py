@@ -17,8 +17,6 @@ a couple acts on that section; so do gyroscopic moments, which tie both contacts
 a force that falls with their place, ``AppliedLoads``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import attrs

@@ -17,8 +17,6 @@ References
 Mindlin, Compliance of elastic bodies in contact, J. Appl. Mech. 16 (1949); Johnson, Contact Mechanics (1985), 5.4, 7.2.
 """
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs

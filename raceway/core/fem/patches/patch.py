@@ -9,8 +9,6 @@ interpolated.  Away from the anchor the two rows of a pair drift apart by R_groo
 it: the gap is that of the ball's own point, and the compliance of the race belongs to a place so much off.
 """
 
-from __future__ import annotations
-
 from math import ceil, cos, pi
 
 import attrs
@@ -45,7 +43,7 @@ class Spacing:
         return self.along * self.across
 
     @classmethod
-    def of(cls, semi_axes: tuple[float, float], nodes: float, radius: float, widest: float) -> Spacing:
+    def of(cls, semi_axes: tuple[float, float], nodes: float, radius: float, widest: float) -> "Spacing":
         """Spacing of ``nodes`` points per semi-axis.
 
         Parameters
@@ -67,7 +65,7 @@ class Spacing:
         across = float(semi_axes[1]) / nodes
         return cls(2.0 * pi * radius / divisions, across, divisions, ceil(widest / across))
 
-    def holding(self, widest: float) -> Spacing:
+    def holding(self, widest: float) -> "Spacing":
         """The same distances, with points for a minor semi-axis with margin [m]."""
         return attrs.evolve(self, columns=max(self.columns, ceil(widest / self.across)))
 

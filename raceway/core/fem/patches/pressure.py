@@ -1,9 +1,5 @@
 """One ball against one race: resultant, tangent and pressures for a given place of the ball in the groove."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import attrs
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -13,11 +9,8 @@ from raceway.core.contact.hertz import Ellipse
 from raceway.core.fem.patches.friction import Friction, Traction, only_largest
 from raceway.core.fem.patches.gap import between, derivatives, displaced, sphere_in_torus
 from raceway.core.fem.patches.patch import Patch
+from raceway.core.jit import Kernel
 from raceway.errors import ConvergenceError, RacewayError
-
-if TYPE_CHECKING:
-    from raceway.core.jit import Kernel
-
 
 _BORDER = 0.08
 
@@ -503,7 +496,7 @@ class Reach:
     mean_load: float
     largest_load: float
 
-    def grown(self, beyond: BeyondPatch, ellipse: Ellipse, radius: float, room: float) -> Reach:
+    def grown(self, beyond: BeyondPatch, ellipse: Ellipse, radius: float, room: float) -> "Reach":
         """One that holds a contact which left this one, by a clear step at least.
 
         Raises

@@ -1,7 +1,5 @@
 """The ring on balls whose contacts are nodal patches: the interface of ``raceway.core.ring.ring.Ring``, stepped from Python."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import TypeVar
@@ -43,7 +41,7 @@ class SlipHistory:
     slip: np.ndarray
 
     @classmethod
-    def of(cls, memory: np.ndarray, balls: int) -> SlipHistory:
+    def of(cls, memory: np.ndarray, balls: int) -> "SlipHistory":
         """From the rows of a memory (2 Z, 0 or more)."""
         if memory.shape[1] < _SLIP:
             none = np.zeros((balls, 2))
@@ -265,7 +263,7 @@ class PatchSystem(SteppedRing):
     pool: Pool
     ball_mass: float = 0.0
 
-    def of_balls(self, balls: np.ndarray, table: np.ndarray) -> PatchSystem:
+    def of_balls(self, balls: np.ndarray, table: np.ndarray) -> "PatchSystem":
         """With the rigid ring of these balls."""
         return attrs.evolve(super().of_balls(balls, table), rigid=self.rigid.of_balls(balls, table))
 

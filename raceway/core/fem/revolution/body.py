@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,8 +16,6 @@ from raceway.storage.array_cache import kept
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
     from scipy.sparse import csr_matrix
     from scipy.sparse.linalg import SuperLU
 

@@ -1,7 +1,5 @@
 """The section of a body of revolution: quadrilaterals in the half plane of radius and axis."""
 
-from __future__ import annotations
-
 from math import ceil, floor
 
 import attrs
