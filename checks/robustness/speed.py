@@ -15,15 +15,20 @@ from typing import Any
 import numpy as np
 
 import raceway as rw
+from checks import explicit_step
 from checks.kernel import least
 from checks.robustness import Row, below
 from checks.robustness.points import PAIR, STATIC, seconds, turning
+from raceway.extend import resolve
+from raceway.planning.cost import timed
+from raceway.plugins.bodies.elastic import elastic_cost
 
 COMMAND = "python -m checks speed"
 _LOADS = {"load.axial": (300.0, 2000.0), "load.radial[0]": (0.0, 200.0), "kinematics.spin_speed_rpm": (1000.0, 24_000.0)}
 _MOTIONS = {"load.axial": (600.0, 2000.0), "excitation.speed_rpm": (3000.0, 15_000.0)}
 _LOAD = {"load": {"axial": 1000.0}}
 _MOMENTS = STATIC | {"kinematics": {"spin_speed_rpm": 12000.0, "gyroscopic": "traction"}}
+_ELASTIC = Path(__file__).parents[1] / "b7206_elastic_60k.toml"
 _SCENE = Path(__file__).parents[2] / "examples" / "minimal.toml"
 
 
@@ -55,6 +60,22 @@ def _gradients(scene: dict[str, Any]) -> float:
     return 1e3 * min(rw.sensitivities(scene).gradients_s for _ in range(3)) / complete
 
 
+def _explicit_steps() -> list[tuple[str, float, float]]:
+    """An explicit step of 63 120 one-point elements with contact at points and friction 0.03, one thread."""
+    scene = rw.evolve(
+        rw.load_scene(_ELASTIC), "bodies.formulation=one_point", "integrator.kind=central_difference",
+        "excitation.kind=bidirectional", "excitation.speed_rpm=12000", "excitation.unbalance=1e-4",
+    )  # fmt: skip
+    built, cost = explicit_step.bearing(scene), elastic_cost(resolve(scene))
+    assert cost is not None
+    step, force, planned = explicit_step.steps(built, 1)[0], explicit_step.forces_s(built), cost.step_s * timed()
+    return [
+        ("an explicit step of elastic bodies [ns an element]", 1e9 * step / built.cells, 65.0),
+        ("it over the forces of its elements alone", step / force, 1.5),
+        ("it beside the plan's, the larger over the smaller", max(step / planned, planned / step), 1.3),
+    ]
+
+
 def rows() -> list[Row]:
     f, hundred = rw.function(STATIC, ["load.axial"], ["kyy"], threads=1), np.linspace(300.0, 2000.0, 100)
     static, orbit, one_way = (scene | _LOAD for scene in (STATIC, turning("bidirectional"), turning("unidirectional")))
@@ -80,5 +101,6 @@ def rows() -> list[Row]:
             ("all derivatives over the run, one direction", _gradients(one_way), 1.0),
             ("first raceway run examples/minimal.toml, empty cache [s wall]", first, 7.0),
             ("a warm one [CPU-s]", warm, 0.6),
+            *_explicit_steps(),
         ]  # fmt: skip
     return [below(quantity, float(f"{value:.3g}"), target, COMMAND) for quantity, value, target in measured]

@@ -50,7 +50,7 @@ class Recorder:
     def __init__(self, system: SteppedSystem, state: State, schedule: Schedule, on_chunk: OnChunk | None) -> None:
         self.system, self.state, self.schedule, self.evaluations = system, state, schedule, 0
         self._on_chunk, self._reported = on_chunk, time.perf_counter()
-        self._done = 0
+        self.done = 0
         self._rows: list[tuple[float, Observation]] = []
         self._penetration = self._peak = self._work = 0.0
         self._outer = self.load(self.time_of(0))
@@ -76,9 +76,9 @@ class Recorder:
         StabilityError
             A displacement or rotation that no bearing makes, or that is no number.
         """
-        outer = self.load(self.time_of(self._done + 1)) if outer is None else outer
+        outer = self.load(self.time_of(self.done + 1)) if outer is None else outer
         step_work = self._outer_work(state, outer)
-        system, schedule = self.system, self.schedule
+        system = self.system
         self._work += step_work
         self._outer = outer
         penetration, peak, _ = system.contacts()
@@ -86,20 +86,30 @@ class Recorder:
         try:
             system.commit()
         except ConvergenceError as why:
-            raise ConvergenceError(f"{why} It was {self.schedule.when(self._done)}.", self._last_good()) from why
+            raise ConvergenceError(f"{why} It was {self.schedule.when(self.done)}.", self._last_good()) from why
+        self._take(state, velocity)
+
+    def accept_steps(self, count: int, state: State, work: float, penetration: float, peak: float) -> None:
+        """As ``accept``, of steps that are committed: their outer work [J], greatest penetration [m] and contact force [N]."""
+        self._work += work
+        self._penetration, self._peak = max(self._penetration, penetration), max(self._peak, peak)
+        self._take(state, None, count)
+
+    def _take(self, state: State, velocity: np.ndarray | None, count: int = 1) -> None:
+        system, schedule = self.system, self.schedule
         self.state = state
-        self._done += 1
-        if (schedule.first + self._done) % schedule.stride == 0:
-            t = self.time_of(self._done)
+        self.done += count
+        if (schedule.first + self.done) % schedule.stride == 0:
+            t = self.time_of(self.done)
             observation = system.observe(state.u, state.v if velocity is None else velocity)
             if observation.energies:
                 observation.energies["external"] = self._work
             self._rows.append((t, observation))
         now = time.perf_counter()
-        if self._on_chunk is not None and (now - self._reported > _REPORT_S or self._done == schedule.steps):
+        if self._on_chunk is not None and (now - self._reported > _REPORT_S or self.done == schedule.steps):
             self._reported = now
             try:
-                self._on_chunk(self._done, schedule.steps)
+                self._on_chunk(self.done, schedule.steps)
             except RacewayError as why:
                 why.state = {**self._last_good(), **why.state}
                 raise
@@ -167,7 +177,7 @@ class Recorder:
             limit = self.system.stable_step()
         except ConvergenceError:
             limit = float("inf")
-        return unbounded(self.schedule, self.schedule.when(self._done), limit, self._last_good())
+        return unbounded(self.schedule, self.schedule.when(self.done), limit, self._last_good())
 
     def stalled(self, residuals: list[float], why: str = "the iteration of a step did not converge") -> ConvergenceError:
         """The error for a step that found no balance, with the residuals [N] of its iterations."""
@@ -178,14 +188,14 @@ class Recorder:
             else ""
         )
         return ConvergenceError(
-            f"{why} {self.schedule.when(self._done)}{history}. Use more `integrator.steps_per_turn`.",
+            f"{why} {self.schedule.when(self.done)}{history}. Use more `integrator.steps_per_turn`.",
             {**self._last_good(), "residuals": np.array(residuals)},
         )
 
     def _last_good(self) -> dict[str, np.ndarray]:
         self.system.rollback()
         motion = self.system.motion(self.state)
-        state = {"t": np.array(self.time_of(self._done)), "q": motion.q, "v": motion.v, "a": motion.a, "ball": motion.ball}
+        state = {"t": np.array(self.time_of(self.done)), "q": motion.q, "v": motion.v, "a": motion.a, "ball": motion.ball}
         return state | dict(motion.full_state or {})
 
 

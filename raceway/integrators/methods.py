@@ -8,7 +8,7 @@ import attrs
 
 from raceway.core.time.schemes import Drivers, Explicit, OneStep, Static
 from raceway.errors import ConvergenceError
-from raceway.framework.options import between, inside, one_of, option
+from raceway.framework.options import between, inside, one_of, option, optional, positive
 
 if TYPE_CHECKING:
     from raceway.core.record import Motion, OnChunk, Record, Schedule
@@ -74,7 +74,13 @@ class GeneralizedAlpha:
 
 @attrs.frozen
 class CentralDifference:
-    """Explicit, second order, symplectic; the step must stay below 2 / (largest natural frequency)."""
+    """Explicit, second order, symplectic; the step must stay below 2 / (largest natural frequency).
+
+    Notes
+    -----
+    ``least_step`` adds mass to the elements of elastic bodies whose own stable step is smaller, and to no others; contacts still
+    limit the step.  ``model.mass_scaling`` of result.json has what is added.
+    """
 
     name: ClassVar[str] = "central_difference"
     order: ClassVar[int] = 2
@@ -82,6 +88,13 @@ class CentralDifference:
     inertial: ClassVar[bool] = True
     steady: ClassVar[bool] = False
     dissipative: ClassVar[bool] = False
+
+    least_step: float | None = option(
+        None,
+        unit="s",
+        help="stable step that finite elements have at least, by added mass; None: no mass is added",
+        rule=optional(positive()),
+    )
 
     @property
     def scheme(self) -> Explicit:

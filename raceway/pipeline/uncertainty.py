@@ -16,7 +16,7 @@ that are not corrected widen one side).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from math import hypot, isfinite
+from math import hypot, isfinite, pi
 from typing import TYPE_CHECKING, Any, NotRequired, Protocol, TypedDict
 
 import attrs
@@ -153,6 +153,7 @@ def uncertainty_table(result: Computed) -> Tables:
             "data": {**_part(_squares(intervals) if intervals else None, how), "of": each},
             "contact": _contact(result, quantity, hertz.get(static)),
             "bodies": _bodies(elastic, KYY.name if quantity in (K, FOLLOWS) else name),
+            **_added_mass(result, quantity),
         }
         low, high = combined(parts)
         if low == high or (quantity is PRELOAD and not intervals):
@@ -181,6 +182,7 @@ def interval(entry: ReadTables) -> str:
     (low, high), parts = entry["relative"], entry["parts"]
     causes: dict[str, Cause] = {part["part"]: part for part in parts["data"]["of"]} or {"tolerances": parts["data"]}
     causes |= {words: parts[name] for name, words in _SIGNED.items()} | {"numerical": parts["numerical"]}
+    causes |= {name: parts[name] for name in parts if name == "mass scaling"}
     changes = {words: _change(part) for words, part in causes.items()}
     known = {words: change for words, change in changes.items() if change is not None}
     sizes = {words: max(map(abs, change)) for words, change in known.items()}
@@ -243,6 +245,23 @@ def _bodies(elastic: Mapping[str, float] | str, name: str) -> Cause:
     if isinstance(elastic, str) or name not in elastic:
         return _part(None, elastic if isinstance(elastic, str) else "known of stiffnesses alone")
     return _part(_with_zero([elastic[name]]), "walls below the grooves, and balls")
+
+
+def _added_mass(result: Computed, quantity: Quantity) -> dict[str, Cause]:
+    """Of mass that is added to elements for a larger explicit step: its kinetic energy beyond that of the ring as a rigid body.
+
+    The ring's part is in the mass that K is identified with.  What moves with the balls lowers K by w^2 times the mass that has
+    their energy at the ring's speed.
+    """
+    scaling = (result.bodies or {}).get("mass_scaling")
+    if scaling is None or quantity is not K or result.simulation is None:
+        return {}
+    record, w = result.simulation.record, 2.0 * pi * result.model.excitation.frequency_hz
+    ring = 0.5 * (record.velocity[:, 1:3] ** 2).sum(axis=1).mean()
+    extra = record.energies["added mass"].mean() / ring - scaling["ring_gains"]["y_kg"]
+    share = float(abs(extra) * w**2 / abs(K.of(result)))
+    how = f"{100.0 * scaling['moving_share']:.2g} % of the moving mass is added; kinetic energy of what does not move with the ring"
+    return {"mass scaling": _part((0.0, share), how)}
 
 
 def _geometry(result: Computed, quantity: Quantity, scatters: Mapping[str, Range]) -> Iterator[tuple[str, Cause]]:

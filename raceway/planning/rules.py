@@ -141,6 +141,10 @@ _HEAT: tuple[Rule[Problem], ...] = (
 
 _MOTION: tuple[Rule[Problem], ...] = (
     Rule(
+        "integrator.least_step", lambda p: not p.traits.every_node and getattr(p.integrator.method, "least_step", None) is not None,
+        "adds mass to the finite elements of bodies.kind = 'elastic': use those, or leave it out",
+    ),
+    Rule(
         "kinematics.orbiting", lambda p: not p.bearing.equal_rows and p.kinematics.orbiting,
         f"{ROWS}, whose balls travel at different speeds: set it false",
     ),

@@ -18,6 +18,8 @@ HALVINGS = 8
 PATIENCE = 10
 #: A force that is none [N]: a motion that has died out is not resolved further.
 NOTHING = 1e-30
+#: Where explicit steps may have become too long.
+CLOSED = "where contacts have closed or stiffened"
 
 
 def implicit(system: SteppedSystem, recorder: Recorder, numbers: Numbers, tolerance: float) -> None:
@@ -101,9 +103,14 @@ def central_difference(system: SteppedSystem, recorder: Recorder) -> None:
     system.internal(recorder.time_of(0), schedule.dt, start.u, start.v)
     limit = system.stable_step()
     system.rollback()
-    _compare(limit, system, recorder, "")
+    compare(limit, system, recorder, "")
+    ahead, steps = system.explicit(schedule.dt), schedule.steps
+    while ahead is not None and recorder.done < steps:
+        count = min(steps - recorder.done, schedule.stride - (schedule.first + recorder.done) % schedule.stride, ahead.most)
+        recorder.evaluations += count
+        recorder.accept_steps(count, *ahead.take(recorder, count))
     guess = np.empty(system.size)
-    for step in range(1, recorder.schedule.steps + 1):
+    for step in range(recorder.done + 1, steps + 1):
         _explicit_step(system, recorder, recorder.time_of(step), guess)
 
 
@@ -119,7 +126,7 @@ def _explicit_step(system: SteppedSystem, recorder: Recorder, t: float, guess: n
     except ConvergenceError as why:
         raise recorder.stalled([], str(why)) from why
     if system.stiffened():
-        _compare(system.stable_step(), system, recorder, f" at t = {t:.6g} s, where contacts have closed or stiffened")
+        compare(system.stable_step(), system, recorder, f" at t = {t:.6g} s, {CLOSED}")
     # The constant damping acts on the velocity of the step's end, contacts that depend on the rate see the guess.
     outer = recorder.load(t)
     a = np.ascontiguousarray(system.accelerations(outer, internal, before.a, 0.5 * dt))
@@ -128,7 +135,8 @@ def _explicit_step(system: SteppedSystem, recorder: Recorder, t: float, guess: n
     recorder.accept(State(u, v, a), outer=outer)
 
 
-def _compare(limit: float, system: SteppedSystem, recorder: Recorder, where: str) -> None:
+def compare(limit: float, system: SteppedSystem, recorder: Recorder, where: str) -> None:
+    """StabilityError: steps of the recorder above the limit [s]."""
     schedule = recorder.schedule
     if schedule.dt >= limit:
         motion = system.motion(recorder.state)

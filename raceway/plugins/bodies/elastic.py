@@ -45,8 +45,9 @@ _FACTORS = 60_000
 #: the forces that follow it.  Measured with factors at 1900 and 12 000 cells (settling and stiffness: 4.7e-4 and 5.0e-4 s a cell),
 #: with multigrid at 63 000.
 _BUILD_S, _SETUP_S, _SOLVE_S = 2.0e-5, (2.0e-4, 1.5e-4), (4.0e-5, 2.2e-4)
-#: Processor seconds a cell of an explicit step, hexahedra of one point and others, and of its Python beside.
-_FORCE_S, _PYTHON_S = (1.5e-7, 4.9e-6), 1.0e-3
+#: Processor seconds a cell of an explicit step: in compiled loops, of hexahedra of one point and others stepped from Python, and of
+#: the Python beside (``python -m checks.explicit_step`` has the first).
+_LOOP_S, _FORCE_S, _PYTHON_S = 7.0e-8, (1.5e-7, 4.9e-6), 1.0e-3
 #: Thinnest element of a ball over the width of its cells under the patch; first layer of its cells over the finest length
 #: that is asked for.  Both from meshes of 1 cell to the semi-axis, whose steps are 8.5e-9 and 2.1e-8 s by elements.
 _THINNEST, _DEPTH = 0.43, 0.6
@@ -117,9 +118,11 @@ def _by_superelements(problem: Problem, mesh: Tables, cells: int, unknowns: int)
     first, solve = _IMPORTS_S + factor + _POINT_S * cells, _ALL_S * cells
     if not method.inertial or problem.excitation is None:
         return _ElasticCost(cells, unknowns, int(memory), 0.0, first, solve, solve)
-    plain = int(problem.bodies.formulation != "one_point")
     start = 4.0 * solve if problem.integrator.start == "orbit" else 0.0
-    step = cells * _FORCE_S[plain] + _PYTHON_S
+    compiled = (
+        problem.bodies.formulation == "one_point" and "rigid" == problem.supports.inner_seat == problem.supports.outer_seat
+    )
+    step = cells * _LOOP_S if compiled else cells * _FORCE_S[problem.bodies.formulation != "one_point"] + _PYTHON_S
     if method.implicit:
         memory += _FACTOR_BYTES * sum(n ** (4.0 / 3.0) for n in sizes.values())
         start, step = start + factor, _STEP_S * cells
@@ -132,7 +135,13 @@ def _equal_sectors(problem: Problem) -> bool:
 
 
 def _stable_step(problem: Problem) -> float:
-    """Of the ball's thinnest element and the contacts, whose 1/dt^2 add up [s].
+    """Of elements, with the mass that is added to them, and contacts, whose 1/dt^2 add up [s]."""
+    elements, contacts = _single_steps(problem)
+    return float((max(elements, least_step(problem)) ** -2 + contacts**-2) ** -0.5)
+
+
+def _single_steps(problem: Problem) -> tuple[float, float]:
+    """Stable steps of the ball's thinnest element and of the contacts [s].
 
     Elements: h sqrt(rho / M), M = E (1 - nu) / ((1 + nu) (1 - 2 nu)), at h = 0.43 of the width of the cells under the
     patch, for the ball's core, half as wide, is thinner than its surface.  Contacts: a surface point of stiffness k_n A on
@@ -160,9 +169,13 @@ def _stable_step(problem: Problem) -> float:
             for e in ellipses
         )
     if problem.contact.discretisation == "resultant":  # on discs of many cells: far softer than elements
-        return _THINNEST * width / wave
-    elements, contacts = _THINNEST * width / wave, 2.0 * (steel.density * _DEPTH * fine / (4.8 * penalty)) ** 0.5
-    return float((elements**-2 + contacts**-2) ** -0.5)
+        return _THINNEST * width / wave, inf
+    return _THINNEST * width / wave, 2.0 * (steel.density * _DEPTH * fine / (4.8 * penalty)) ** 0.5
+
+
+def least_step(problem: Problem) -> float:
+    """Step that elements have to allow by added mass [s]; 0: none is added."""
+    return float(getattr(problem.integrator.method, "least_step", None) or 0.0)
 
 
 _OTHER = "or use bodies.kind = 'condensed'"
@@ -251,6 +264,13 @@ class Elastic:
         unmeshed = points or mesh_faults(problem)
         if faults or unmeshed:
             return faults + unmeshed
+        wanted, contacts = least_step(problem), _single_steps(problem)[1] if least_step(problem) else inf
+        if wanted >= contacts:
+            why = (
+                f"is above the stable step of the contacts, about {contacts:.2g} s, which limit the step whatever mass elements have: use "
+                "less, or a softer contact.stiffness"
+            )
+            return [Mistake("integrator.least_step", wanted, why)]
         cost, most = elastic_cost(problem), _SHARE * allowed_bytes()
         if cost is None or cost.bytes <= most:
             return []

@@ -21,6 +21,7 @@ from raceway.framework.duties import is_hertzian, law_params
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
+from raceway.plugins.bodies.elastic import least_step
 from raceway.plugins.bodies.elastic_contacts import ElasticBodies, ElasticResultants
 from raceway.plugins.bodies.elastic_stress import ElasticPoints
 from raceway.plugins.bodies.mesh import check_sets, mesh_bodies, mesher_of
@@ -74,6 +75,7 @@ def build(problem: Problem, plan: ScenePlan) -> ElasticBodies:
             )
     fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(Ring)}
     held_by = problem.load.axial if problem.supports.axial == "displacement" else None
+    fields["mass"] = rigid.mass + bodies.system.assembly.added_inertia()
     system = ElasticRing(**fields, rigid=rigid, bodies=bodies, held_by=held_by)
     if resultants:
         return ElasticResultants(basis, system, guess, bodies, rigid, compliances)
@@ -119,6 +121,7 @@ def _setup(problem: Problem, basis: Basis, rigid: System) -> BearingData:
         load=rigid.load,
         formulation=problem.bodies.formulation,
         hourglass=problem.bodies.hourglass,
+        least_step=least_step(problem),
         seat_inner=problem.supports.inner_seat,
         seat_outer=problem.supports.outer_seat,
         contact_damping=contact.dashpot,

@@ -127,11 +127,34 @@ class ElasticBodies(BuiltBearing):
             "energies_j": energies,
             "hourglass_energy_ratio": energies["hourglass"] / max(energies["elastic"], 1e-300),
             **contacts,
+            **({"mass_scaling": self._mass_scaling()} if bodies.assembly.added_mass.any() else {}),
             "linear_solver": {
                 "iterations": bodies.solver.iterations,
                 "solves": bodies.solver.solves,
                 "setups": bodies.solver.setups,
             },
+        }
+
+    def _mass_scaling(self) -> Tables:
+        """By body: elements with added mass, its sum, its share; what the ring gains as a rigid body, and steps by elements and contacts."""
+        system = self.bearing.system
+        a, contact = system.assembly, system.contact
+        assert contact is not None
+        added = np.add.reduceat(a.added_mass, a.starts[:-1]), np.add.reduceat(a.node_mass, a.starts[:-1])
+        moving = added[0].sum() - added[0][1], added[1].sum() - added[1][1]  # all but the outer ring
+        gain = a.added_inertia().diagonal().tolist()
+        return {
+            "bodies": {
+                body.name: {
+                    "elements": int((body.operator.mass_factors > 1.0).sum()),
+                    "added_kg": float(more),
+                    "share": float(more / (mass - more)),
+                }
+                for body, more, mass in zip(a.bodies, *added, strict=True)
+            },
+            "moving_share": float(moving[0] / (moving[1] - moving[0])),
+            "ring_gains": dict(zip(("x_kg", "y_kg", "z_kg", "tilt_y_kgm2", "tilt_z_kgm2"), gain, strict=True)),
+            "stable_step_s": {"elements": system.element_step(), "contacts": contact.stable_step(a.node_mass)},
         }
 
     def mesh_error(self, model: Model, equilibrium: Equilibrium) -> tuple[float | None, str]:

@@ -35,6 +35,7 @@ class Cage:
     rows : (m, 3 nodes) sparse L: a mean displacement [m], or a mean turn [rad], of one ball
     stiffness : (m,) k [N/m, N m/rad]
     nodal : (3 nodes,) springs on single displacements that hold the balls' means about as well [N/m]
+    fields, centres : (balls, rows, 6), (balls, 3) the rows of each ball as its masses times t + w x r
 
     Notes
     -----
@@ -44,6 +45,8 @@ class Cage:
     rows: csr_matrix
     stiffness: np.ndarray
     nodal: np.ndarray
+    fields: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 4, 6)))
+    centres: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 3)))
 
     def force(self, u: np.ndarray) -> np.ndarray:
         """(m,) forces and moments [N, N m]."""
@@ -243,19 +246,15 @@ class BodyForces:
     """Forces K u of bodies whose nodes follow one another.
 
     operators : of the bodies;  starts : (bodies + 1,) first node of each
-    groups : equal parts; bodies in none of them, and single ones of one-point elements, whose forces cost no more without a
-        matrix, are computed element by element
+    groups : equal parts; bodies in none of them, and those of one-point elements, whose forces cost a third of what the product
+        with a matrix does, are computed element by element
 
     The sums have one order whatever the number of threads (``raceway.core.fem.hexahedron.rows``).
     """
 
     def __init__(self, operators: list[HexOperator], starts: np.ndarray, groups: list[Group] | None = None) -> None:
         self._operators, self._starts = operators, [int(start) for start in starts]
-        worth = [
-            group
-            for group in groups or []
-            if len(group.copies.turns) > 1 or operators[group.members[0]].formulation != "one_point"
-        ]
+        worth = [group for group in groups or [] if operators[group.members[0]].formulation != "one_point"]
         #: By the first body of a group.
         self._copied = {group.members[0]: CopiedStiffness(group.copies, operators[group.members[0]]) for group in worth}
         alone = set(range(len(operators))) - {body for group in worth for body in group.members}
@@ -362,6 +361,10 @@ class Assembly:
         self.nodes = int(self.starts[-1])
         self.points = np.concatenate([body.points for body in bodies])
         self.node_mass = np.concatenate([body.operator.lumped_mass() for body in bodies])
+        #: (nodes,) what of it is added for a larger explicit step [kg].
+        self.added_mass = np.concatenate([body.operator.added_mass() for body in bodies])
+        #: (nodes,) without that: means of bodies, and what acts on their mass, are those of the material.
+        self.own_mass = self.node_mass - self.added_mass
         frames = [(index, body.frame) for index, body in enumerate(bodies) if body.frame is not None]
         #: Number of the frames' unknowns.
         self.frame_size = sum(len(frame.motions) for _, frame in frames)
@@ -387,27 +390,27 @@ class Assembly:
         self.size = self.frame_size + len(self.free)
         #: (size,) which unknowns are to be solved for.
         self.unknown = np.concatenate([self.frame_free, np.ones(len(self.free), dtype=bool)])
-        self._tie, self._ride = self.carried[self.tied], self.carried[self.free]
+        self.tie, self._ride = self.carried[self.tied], self.carried[self.free]
         mass = np.repeat(self.node_mass, 3)
         self.free_mass = mass[self.free]
-        self.frame_mass = self.frame_mass + self._tie.T @ (mass[self.tied, None] * self._tie)
+        self.frame_mass = self.frame_mass + self.tie.T @ (mass[self.tied, None] * self.tie)
         self.foundations = self._beds()
         #: Beds at their own entries alone: matrix (k, k), the frame's motion (k, frame_size), and the entries.
         self._seats = []
         for bed, ride in self.foundations:
             entries = np.flatnonzero(np.diff(bed.indptr))
-            seat = Selection.of(entries, self.free, self.tied, self._tie)
+            seat = Selection.of(entries, self.free, self.tied, self.tie)
             self._seats.append((bed[entries][:, entries].tocsr(), np.ascontiguousarray(ride[entries]), seat))
         self._stiffness: csr_matrix = None
         #: Threads that share the work while they are open.
         self.threads = ThreadPool(threads_for(sum(len(body.operator.cells) for body in bodies)))
-        self._means: MeanMotions | None = None
+        self.means: MeanMotions | None = None
         self._near: tuple[object, Selection] | None = None
         self._u = np.zeros(3 * self.nodes)
 
     def hold(self, cage: Cage) -> None:
         """Hold mean motions of bodies by a cage."""
-        self.cage, self._means = cage, MeanMotions(cage.rows)
+        self.cage, self.means = cage, MeanMotions(cage.rows)
 
     def unequal(self) -> list[Body]:
         """One of each group of equal bodies; all where no groups are known."""
@@ -427,13 +430,13 @@ class Assembly:
         out, values = np.zeros(3 * self.nodes) if out is None else out, y[self.frame_size :]
         self.threads.do_shares(len(self.free), lambda a, b: spread(a, b, self.free, values, out))
         if self.frame_size:
-            out[self.tied] = self._tie @ y[: self.frame_size]
+            out[self.tied] = self.tie @ y[: self.frame_size]
         return out
 
     def reduced(self, force: np.ndarray) -> np.ndarray:
         """G^T F, (size,)."""
         out = np.empty(self.size)
-        out[: self.frame_size] = self._tie.T @ force[self.tied]
+        out[: self.frame_size] = self.tie.T @ force[self.tied]
         values = out[self.frame_size :]
         self.threads.do_shares(len(self.free), lambda a, b: gather(a, b, self.free, force, values))
         return out
@@ -445,7 +448,7 @@ class Assembly:
         ----------
         beside : work that is done at the same time
         """
-        means = self._means
+        means = self.means
         mean_displacement = np.empty(0 if means is None else means.count)
         first = [beside] if beside else []
         self.body_forces.compute(u, self.threads, first + ([] if means is None else means.jobs(u, mean_displacement)))
@@ -459,7 +462,7 @@ class Assembly:
             gather(*np.searchsorted(self.free, (begin, end)), self.free, force, values)
 
         force = self.body_forces.sum(self.threads, join)
-        out[: self.frame_size] = self._tie.T @ force[self.tied]
+        out[: self.frame_size] = self.tie.T @ force[self.tied]
         frame = self.frame_stiffness @ y[: self.frame_size]
         for matrix, ride, seat in self._seats:
             pull = matrix @ (u[seat.entries] - ride @ y[: self.frame_size])
@@ -475,7 +478,7 @@ class Assembly:
             return self.internal(y, u), u
         near = contact.near
         if self._near is None or self._near[0] is not near:
-            self._near = near, Selection.of(near.entries, self.free, self.tied, self._tie)
+            self._near = near, Selection.of(near.entries, self.free, self.tied, self.tie)
         at = self._near[1]
         rate = at.nodal(v) if dt > 0.0 else None
         pressing: list[np.ndarray] = []
@@ -493,6 +496,10 @@ class Assembly:
                 matrix = matrix + foundation
             self._stiffness = matrix.tocsr()
         return self._stiffness
+
+    def added_inertia(self) -> np.ndarray:
+        """(frame_size, frame_size) what the frames' bodies gain as rigid ones by added mass."""
+        return np.asarray(self.carried.T @ (np.repeat(self.added_mass, 3)[:, None] * self.carried))
 
     def elastic_energy(self, y: np.ndarray, u: np.ndarray) -> float:
         """Strain energy of the bodies and their beds and what the frames' springs and the cage hold [J]."""

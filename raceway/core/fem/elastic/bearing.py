@@ -10,6 +10,7 @@ import numpy as np
 from raceway.core.fem.elastic.assembly import Assembly, Body, Cage, Frame
 from raceway.core.fem.elastic.bearing_data import BearingData
 from raceway.core.fem.elastic.contact import CIRCLE, Contact, NodalContact
+from raceway.core.fem.elastic.explicit import ExplicitSteps, served
 from raceway.core.fem.elastic.interface import free_nodes, touchable
 from raceway.core.fem.elastic.iterative_solver import LinearSolver, nodal_contact, resultant_contact
 from raceway.core.fem.elastic.newton import TOLERANCE, StaticSolution, solve_equilibrium
@@ -106,15 +107,15 @@ class ElasticSystem:
         return self.assembly.threads
 
     def outer_force(self, t: float) -> np.ndarray:
-        out, force = np.zeros(5), self._on_frame(t)[:5]
+        out, force = np.zeros(5), self.on_frame(t)[:5]
         out[: len(force)] = force
         return out
 
-    def _on_frame(self, t: float) -> np.ndarray:
+    def on_frame(self, t: float) -> np.ndarray:
         return np.zeros(self.assembly.frame_size) if self.excitation is None else np.asarray(self.excitation(t))
 
     def external(self, t: float, scale: float) -> np.ndarray:
-        load, force = self.load, self._on_frame(t)
+        load, force = self.load, self.on_frame(t)
         out = np.empty(self.size)
         self.threads.do_shares(self.size, lambda first, last: np.copyto(out[first:last], load[first:last]))
         out[: len(force)] += scale * force
@@ -201,14 +202,21 @@ class ElasticSystem:
 
     def stable_step(self) -> float:
         """Of elements and contacts together: 1/dt^2 adds up, as the largest eigenvalues at most do [s]."""
+        mine = np.inf if self.contact is None else self.contact.stable_step(self.assembly.node_mass)
+        return float(1.0 / np.sqrt(1.0 / self.element_step() ** 2 + 1.0 / mine**2))
+
+    def element_step(self) -> float:
+        """Stable step of the elements alone [s]."""
         if self._element_step is None:
             self._element_step = min(body.operator.stable_step() for body in self.assembly.unequal())
-        mine = np.inf if self.contact is None else self.contact.stable_step(self.assembly.node_mass)
-        return float(1.0 / np.sqrt(1.0 / self._element_step**2 + 1.0 / mine**2))
+        return self._element_step
 
     def stiffened(self) -> bool:
         """Whether a contact is stiffer than at any ``stable_step`` before: elements stay as they are."""
         return self.contact is not None and self.contact.stiffened()
+
+    def explicit(self, dt: float) -> ExplicitSteps | None:
+        return ExplicitSteps(self, dt) if served(self) else None
 
     def commit(self) -> None:
         if self.contact is not None:
@@ -304,7 +312,8 @@ class ElasticSystem:
         """Energies [J] at the last ``internal``."""
         a = self.assembly
         u = a.nodal(y)
-        return {
+        added = {"added mass": float(0.5 * np.repeat(a.added_mass, 3) @ a.nodal(v) ** 2)} if a.added_mass.any() else {}
+        return added | {
             "elastic": a.elastic_energy(y, u),
             "kinetic": float(0.5 * v @ self.mass_times(v)),
             "contact": 0.0 if self.contact is None else self.contact.energy(),
@@ -332,20 +341,27 @@ def cage_stiffness(normal: float, diameter: float, friction: bool) -> np.ndarray
     return np.asarray(share * normal * np.array([1.0, turning, turning, turning]))
 
 
+def cage_fields(points: np.ndarray, mass: np.ndarray, along: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Centre of mass (3,) of a ball, and its rows as fields t + w x r about that (4, 6): see ``cage_rows``."""
+    total, axis, fields = mass.sum(), np.array([1.0, 0.0, 0.0]), np.zeros((4, 6))
+    centre = (mass[:, None] * points).sum(axis=0) / total
+    arm = points - centre
+    inertia = ((arm**2).sum(axis=1)[:, None, None] * np.eye(3) - arm[:, :, None] * arm[:, None, :]) * mass[:, None, None]
+    about = np.stack([along, np.cross(along, axis), axis])
+    fields[0, :3], fields[1:, 3:] = along / total, np.linalg.solve(inertia.sum(axis=0), about.T).T
+    return centre, fields
+
+
 def cage_rows(points: np.ndarray, mass: np.ndarray, along: np.ndarray) -> np.ndarray:
     """(4, 3 n) of one ball: mass means of the displacement along its orbit, a unit vector, of turns about orbit, radius and axis.
 
     A rigid motion u = c + w x r about the centre of mass gives c . along and the parts of w; elastic motions that are orthogonal to
     the rigid ones give nothing.
     """
-    total = mass.sum()
-    arm = points - (mass[:, None] * points).sum(axis=0) / total
-    inertia = ((arm**2).sum(axis=1)[:, None, None] * np.eye(3) - arm[:, :, None] * arm[:, None, :]) * mass[:, None, None]
-    turn = np.stack([np.cross(np.eye(3)[a], arm) for a in range(3)]) * mass[:, None]
-    turn = np.linalg.solve(inertia.sum(axis=0), turn.reshape(3, -1))
-    axis = np.array([1.0, 0.0, 0.0])
-    about = np.stack([along, np.cross(along, axis), axis])
-    return np.vstack([(mass[:, None] / total * along).reshape(1, -1), about @ turn])
+    centre, fields = cage_fields(points, mass, along)
+    return np.asarray(
+        ((fields[:, None, :3] + np.cross(fields[:, None, 3:], points - centre)) * mass[:, None]).reshape(4, -1)
+    )
 
 
 def _ring_parts(assembly: Assembly, index: int, azimuth: np.ndarray) -> Copies:
@@ -390,7 +406,7 @@ class ElasticBearing:
         assembly.groups = rings + [Group(copies, [ball + 2 for ball in members]) for copies, members in balls]
         if setup.caged:
             assembly.hold(self._cage(assembly))
-        self._mass = [assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]] for k in range(self.ball_count)]
+        self._mass = [assembly.own_mass[assembly.starts[k + 2] : assembly.starts[k + 3]] for k in range(self.ball_count)]
         contact = (nodal_contact if setup.angles is None else resultant_contact)(setup, self._meshes, assembly)
         outward = np.zeros(3 * assembly.nodes)
         for k in range(self.ball_count):
@@ -425,8 +441,8 @@ class ElasticBearing:
         return sum(len(mesh.cells) for mesh in self._meshes)
 
     @property
-    def _formulation(self) -> tuple[str, float]:
-        return self.setup.formulation, self.setup.hourglass
+    def _formulation(self) -> tuple[str, float, float]:
+        return self.setup.formulation, self.setup.hourglass, self.setup.least_step
 
     def guess(self, q: np.ndarray, ball: np.ndarray) -> np.ndarray:
         """(size,) undeformed bodies where a rigid bearing has them: ring q (5,), balls (Z, 2) from the outer groove centre."""
@@ -493,7 +509,7 @@ class ElasticBearing:
     def _cage(self, assembly: Assembly) -> Cage:
         from scipy.sparse import coo_array
 
-        s, data, rows, columns = self.setup, [], [], []
+        s, data, rows, columns, balls = self.setup, [], [], [], []
         g = s.geometry
         inner = g.ellipses(s.modulus)[0]
         normal = 1.5 * s.reference_load / float(inner.approach(s.reference_load))
@@ -501,13 +517,15 @@ class ElasticBearing:
         nodal = np.zeros(3 * assembly.nodes)
         for k in range(len(s.azimuth)):
             body = assembly.bodies[k + 2]
-            mass = assembly.node_mass[assembly.starts[k + 2] : assembly.starts[k + 3]]
+            mass = assembly.own_mass[assembly.starts[k + 2] : assembly.starts[k + 3]]
             along = np.array([0.0, -np.sin(s.azimuth[k]), np.cos(s.azimuth[k])])
             means = cage_rows(body.points, mass, along)
+            balls.append(cage_fields(body.points, mass, along))
             data.append(means.ravel())
             rows.append(np.repeat(4 * k + np.arange(4), means.shape[1]))
             columns.append(np.tile(3 * assembly.starts[k + 2] + np.arange(means.shape[1]), 4))
             nodal[assembly.part(k + 2)] = SHARE * normal * np.repeat(mass / mass.sum(), 3)
         shape = (4 * len(s.azimuth), 3 * assembly.nodes)
         matrix = coo_array((np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))), shape=shape).tocsr()
-        return Cage(matrix, np.tile(springs, len(s.azimuth)), nodal)
+        centres, fields = (np.array(each) for each in zip(*balls, strict=True))
+        return Cage(matrix, np.tile(springs, len(s.azimuth)), nodal, fields, centres)

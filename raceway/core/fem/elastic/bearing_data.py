@@ -27,7 +27,7 @@ class BearingData:
     state_size : columns of the law's memory
     mass, damping, stiffness : (5, 5) of rotor and shaft at the reference point, without the ring
     free : (5,) bool;  load : (5,) constant load [N, N m]
-    formulation, hourglass : of the hexahedra
+    formulation, hourglass, least_step : of the hexahedra
     seat_inner, seat_outer : "rigid" or a bed [N/m3]
     contact_damping : normal damping [N s/m] of each contact at the reference load
     ball_force : outward force on each ball [N], centrifugal
@@ -53,6 +53,7 @@ class BearingData:
     state_size: int = 0
     formulation: str = "full"
     hourglass: float = 0.05
+    least_step: float = 0.0
     seat_inner: float | str = "rigid"
     seat_outer: float | str = "rigid"
     contact_damping: float = 0.0

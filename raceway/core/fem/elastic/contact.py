@@ -112,7 +112,7 @@ def forces_and_tangents(area, pressure, d_gap, d_rate, normal, bend, force, stif
 
 
 @jit(void(CUBE, VECTOR), releases=True)
-def _row_sums(stiffness, out):  # type: ignore[no-untyped-def]
+def row_sums(stiffness, out):  # type: ignore[no-untyped-def]
     """Largest row sum (n,) of the sizes of matrices (n, 3, 3)."""
     for i in range(stiffness.shape[0]):
         out[i] = 0.0
@@ -123,7 +123,7 @@ def _row_sums(stiffness, out):  # type: ignore[no-untyped-def]
 
 
 @jit(boolean(MATRIX, MATRIX, VECTOR), releases=True)
-def _has_moved(where, before, far):  # type: ignore[no-untyped-def]
+def has_moved(where, before, far):  # type: ignore[no-untyped-def]
     """Whether a point (n, 3) has moved along an axis by more than ``far`` (n,)."""
     for i in range(where.shape[0]):
         for a in range(3):
@@ -143,7 +143,7 @@ def penalty_stiffness(modulus: float, size: np.ndarray | float) -> np.ndarray:
 
 
 #: Growth of a point's stiffness that asks for the stable step anew: half of it is what a step may be too long by.
-_STIFFER = 1.02
+STIFFER = 1.02
 
 
 @attrs.frozen(eq=False)
@@ -204,7 +204,7 @@ class Contact(ABC):
         self.gap, self.pressure, self.d_gap, self.d_rate = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
         self.normal, self.bend = np.zeros((n, 3)), np.zeros((n, 3, 3))
         self.force, self.stiffness, self.rate_stiffness = np.zeros((n, 3)), np.zeros((n, 3, 3)), np.zeros((n, 3, 3))
-        self._stiffest = np.zeros(n)
+        self.stiffest = np.zeros(n)
         self.move: csr_matrix = None
         #: (n, 3) where the places were at the last forces [m].
         self.where = place
@@ -255,7 +255,7 @@ class Contact(ABC):
             Of an overlap that nothing has deformed yet, half the depth bounds the contact area.
         """
         rate = None if v is None else self.move @ v
-        self._respond(dt, self.move @ u, rate, share)
+        self.respond(dt, self.move @ u, rate, share)
         return np.asarray(-(self.move.T @ self.force.reshape(-1)))
 
     @property
@@ -268,10 +268,10 @@ class Contact(ABC):
     def evaluate_near(self, dt: float, u: np.ndarray, v: np.ndarray | None) -> np.ndarray:
         """(k,) forces as ``evaluate`` gives them, at the entries of ``near`` alone, of displacements and velocities (k,) there."""
         move = self.near.move
-        self._respond(dt, move @ u, None if v is None else move @ v, 0.0)
+        self.respond(dt, move @ u, None if v is None else move @ v, 0.0)
         return np.asarray(-(move.T @ self.force.reshape(-1)))
 
-    def _respond(self, dt: float, u: np.ndarray, v: np.ndarray | None, share: float) -> None:
+    def respond(self, dt: float, u: np.ndarray, v: np.ndarray | None, share: float) -> None:
         """Forces and tangents of the places, from their displacements and velocities (3 n,) against the second bodies."""
         displacement = u.reshape(-1, 3)
         where = self.where = self.place + displacement
@@ -332,12 +332,12 @@ class Contact(ABC):
 
     def stiffened(self) -> bool:
         """Whether a point has closed or become stiffer than at any ``stable_step`` before."""
-        return bool((self._sizes() > _STIFFER * self._stiffest).any())
+        return bool((self._sizes() > STIFFER * self.stiffest).any())
 
     def _sizes(self) -> np.ndarray:
         """(n,) largest row sum of each point's stiffness [N/m]."""
         out = np.empty(len(self.area))
-        _row_sums(self.stiffness, out)
+        row_sums(self.stiffness, out)
         return out
 
     def commit(self) -> None:
@@ -349,7 +349,7 @@ class Contact(ABC):
 
 #: Half widths of a facet by which a point may have moved along a surface before its place there is looked up anew: at rest, and in
 #: motion, where every new place takes or gives a little energy, while a vibration moves points by less.
-_AT_REST, _IN_MOTION = 0.02, 0.5
+_AT_REST, IN_MOTION = 0.02, 0.5
 
 
 @attrs.frozen(eq=False)
@@ -396,7 +396,7 @@ class NodalContact(Contact):
         #: (n, 8) nodes of the assembly that a point's motion is interpolated from, and their weights.
         self.nodes, self.weights = np.zeros((len(area), 8), dtype=np.int64), np.zeros((len(area), 8))
         #: (n,) half widths of the facets that points were projected on [m].
-        self._facet = np.zeros(len(area))
+        self.facet = np.zeros(len(area))
         self._weights: csr_matrix = None
         self.update(self.place)
 
@@ -424,7 +424,7 @@ class NodalContact(Contact):
     def update(self, where: np.ndarray, in_motion: bool = False) -> bool:
         """Look up where the points lie on the second surface; whether anything changed."""
         where = np.ascontiguousarray(where, dtype=float)
-        if not _has_moved(where, self._projected, (_IN_MOTION if in_motion else _AT_REST) * self._facet):
+        if not has_moved(where, self._projected, (IN_MOTION if in_motion else _AT_REST) * self.facet):
             return False
         from scipy.sparse import csr_array, kron
 
@@ -435,7 +435,7 @@ class NodalContact(Contact):
             part = slice(begin, begin + count)
             begin += count
             facet, values, self.outside[part] = pair.facets.locate(where[part])
-            self._facet[part] = pair.facets.short[facet]
+            self.facet[part] = pair.facets.short[facet]
             columns[part, :4], weights[part, :4] = pair.points.nodes, pair.points.weights
             columns[part, 4:], weights[part, 4:] = pair.facets.quads[facet] + pair.first_node, -values
         self._projected = where.copy()
@@ -452,7 +452,7 @@ class NodalContact(Contact):
         By Gershgorin's theorem on M^-1 B^T D B: 2 / sqrt(largest row sum).
         """
         size = self._sizes()
-        np.maximum(self._stiffest, size, out=self._stiffest)
+        np.maximum(self.stiffest, size, out=self.stiffest)
         touching = np.flatnonzero(size)
         if not len(touching):
             return np.inf

@@ -33,7 +33,7 @@ _ACROSS, _ALONG, _COUPLING = range(3)
 
 
 @jit(void(VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, float64, VECTOR, MATRIX, MATRIX, MATRIX, VECTOR), releases=True)
-def _return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resistance, direction, factors, dissipation):  # type: ignore[no-untyped-def]
+def return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resistance, direction, factors, dissipation):  # type: ignore[no-untyped-def]
     """Resistances of n points, their tangents and what they lost.
 
     pressure, d_gap : (n,) normal pressure [Pa] and its derivative by the gap [N/m3];  normal : (n, 3) unit normals
@@ -71,8 +71,8 @@ def _return_map(pressure, d_gap, normal, shift, before, coefficient, stick, resi
 
 
 @jit(void(MATRIX, MATRIX, MATRIX, boolean, CUBE), releases=True)
-def _tangents(factors, direction, normal, symmetric, out):  # type: ignore[no-untyped-def]
-    """Minus the derivatives (n, 3, 3) of the tractions by the shift, from what ``_return_map`` found [N/m3]."""
+def tangents(factors, direction, normal, symmetric, out):  # type: ignore[no-untyped-def]
+    """Minus the derivatives (n, 3, 3) of the tractions by the shift, from what ``return_map`` found [N/m3]."""
     for i in range(out.shape[0]):
         for a in range(3):
             for b in range(3):
@@ -117,12 +117,12 @@ class CoulombFriction:
         normal : (n, 3);  pressure : (n,) [Pa];  d_gap : (n,) its derivative by the gap [N/m3]
         """
         self._place = np.array(displacement)
-        _return_map(
+        return_map(
             pressure, d_gap, normal, self._place - self.place, self.committed, self.coefficient, self.stick,
             self._trial, self._direction, self._factors, self._lost,
         )  # fmt: skip
         tangent = np.empty((len(normal), 3, 3))
-        _tangents(self._factors, self._direction, normal, self.symmetric, tangent)
+        tangents(self._factors, self._direction, normal, self.symmetric, tangent)
         return -self._trial, tangent
 
     @property

@@ -192,7 +192,7 @@ class ResultantContact(Contact):
         -----
         The eigenvalues of M^-1 B^T D B that are not zero are those of D B M^-1 B^T, of three rows a contact.
         """
-        np.maximum(self._stiffest, self._sizes(), out=self._stiffest)
+        np.maximum(self.stiffest, self._sizes(), out=self.stiffest)
         if self._mobility is None:
             from scipy.sparse import diags_array
 

@@ -13,6 +13,7 @@ from raceway.core.fem.hexahedron.rows import (
     assemble,
     centre_stress,
     divide,
+    mass_factors,
     nodal_volumes,
     stable_step,
 )
@@ -42,6 +43,7 @@ class HexOperator:
     young, poisson, density : of all elements [Pa, -, kg/m3]
     formulation : "one_point" (exact mean gradient, hourglass control), "full" (2 x 2 x 2), "incompatible" or "mean_dilatation"
     hourglass : stiffness of the hourglass modes of "one_point", as a share of lambda + 2 mu; 0 leaves them free
+    least_step : explicit step [s] that every element allows by added mass; 0 adds none
 
     Raises
     ------
@@ -65,6 +67,7 @@ class HexOperator:
         density: float,
         formulation: str = "one_point",
         hourglass: float = 0.05,
+        least_step: float = 0.0,
     ) -> None:
         if formulation not in KINDS:
             raise ValueError(f"formulation {formulation!r} is none of {', '.join(KINDS)}")
@@ -86,6 +89,7 @@ class HexOperator:
             )
         self.cells: NDArray[np.uint32] = np.ascontiguousarray(numbers, dtype=np.uint32)
         self.formulation, self.hourglass, self.density = formulation, float(hourglass), float(density)
+        self._least_step = least_step
         self._material = young, poisson, density
         lame = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
         shear = young / (2.0 * (1.0 + poisson))
@@ -94,15 +98,20 @@ class HexOperator:
         #: (m, 8) Shares of the nodes' lumped masses [kg].
         self.element_masses: Floats = density * nodal_volumes(self.points, self.cells)
         self._kind = KINDS[formulation]
-        self._ranges = divide(self.cells)
-        self._mesh = Mesh(self._ranges, self.cells, self.points.reshape(-1), self.moduli)
-        last = self._ranges[-1]
+        #: (m,) Mass of the elements over that of their material.
+        self.mass_factors: Floats = np.ones(len(self.cells))
+        if least_step > 0.0:
+            self.mass_factors = mass_factors(self.element_stiffness, self.element_masses, least_step)
+            self.element_masses *= self.mass_factors[:, None]
+        self.ranges = divide(self.cells)
+        self._mesh = Mesh(self.ranges, self.cells, self.points.reshape(-1), self.moduli)
+        last = self.ranges[-1]
         self._parts = np.zeros(3 * int(last[4] + last[3] - last[2]))
-        self._work = np.zeros(WORK * len(self._ranges))
+        self._work = np.zeros(WORK * len(self.ranges))
 
     def of_mesh(self, points: ArrayLike, cells: ArrayLike) -> HexOperator:
         """The same material and formulation on another mesh."""
-        return HexOperator(points, cells, *self._material, self.formulation, self.hourglass)
+        return HexOperator(points, cells, *self._material, self.formulation, self.hourglass, self._least_step)
 
     @property
     def bytes(self) -> int:
@@ -112,14 +121,14 @@ class HexOperator:
     @property
     def range_sizes(self) -> NDArray[np.int64]:
         """Elements of each range: what one thread computes at a time."""
-        return np.asarray(self._ranges[:, 1] - self._ranges[:, 0])
+        return np.asarray(self.ranges[:, 1] - self.ranges[:, 0])
 
     def internal_force(self, u: ArrayLike, out: Floats | None = None, threads: int = 1) -> Floats:
         """(n, 3) Internal forces K u [N] of displacements u (n, 3) [m]; ``out`` is overwritten and returned if given."""
         flat = self._flat(u)
         f = np.empty_like(self.points) if out is None else out
         with ThreadPool(threads) as pool:
-            pool.do(len(self._ranges), self.force_job(flat))
+            pool.do(len(self.ranges), self.force_job(flat))
             pool.do_shares(len(self.points), lambda a, b: self.add_parts(a, b, f.reshape(-1)))
         return f
 
@@ -142,11 +151,11 @@ class HexOperator:
         job = self.force_job(flat_u)
 
         def move(first: int, last: int) -> None:
-            add_parts_and_move(first, last, self._ranges, self._parts, outer, inverse_mass, f, dt, flat_u, flat_v)
+            add_parts_and_move(first, last, self.ranges, self._parts, outer, inverse_mass, f, dt, flat_u, flat_v)
 
         with ThreadPool(threads) as pool:
             for _ in range(steps):
-                pool.do(len(self._ranges), job)
+                pool.do(len(self.ranges), job)
                 pool.do_shares(len(self.points), move)
         return f.reshape(-1, 3)
 
@@ -165,6 +174,11 @@ class HexOperator:
         masses = np.bincount(self.cells.ravel(), weights=self.element_masses.ravel(), minlength=len(self.points))
         return masses.astype(np.float64, copy=False)
 
+    def added_mass(self) -> Floats:
+        """(n,) What of the nodes' masses is added for a larger step [kg]."""
+        added = self.element_masses * (1.0 - 1.0 / self.mass_factors)[:, None]
+        return np.asarray(np.bincount(self.cells.ravel(), weights=added.ravel(), minlength=len(self.points)), dtype=float)
+
     def stress(self, u: ArrayLike) -> Floats:
         """(m, 6) Stresses at the elements' centres [Pa], xx yy zz xy yz zx; "one_point" has but these."""
         return centre_stress(self.points, self.cells, self._flat(u).reshape(-1, 3), self.moduli, self.formulation)
@@ -176,7 +190,7 @@ class HexOperator:
     def hourglass_energy(self, u: ArrayLike) -> float:
         """The part of ``energy`` [J] that the hourglass control holds; 0 for the other formulations."""
         flat = self._flat(u)
-        return float(sum(self.range_hourglass_energy(r, flat) for r in range(len(self._ranges))))
+        return float(sum(self.range_hourglass_energy(r, flat) for r in range(len(self.ranges))))
 
     def range_hourglass_energy(self, r: int, u: Floats) -> float:
         """``hourglass_energy`` [J] of one range of elements at u (3 n,) [m]."""
@@ -194,7 +208,7 @@ class HexOperator:
 
     def add_parts(self, first: int, last: int, f: Floats) -> None:
         """Forces of the nodes ``first`` to ``last - 1`` into f (3 n,) [N], from those of the ranges."""
-        add_parts(first, last, self._ranges, self._parts, f)
+        add_parts(first, last, self.ranges, self._parts, f)
 
     def _flat(self, values: ArrayLike) -> Floats:
         flat = np.ascontiguousarray(values, dtype=np.float64).reshape(-1)

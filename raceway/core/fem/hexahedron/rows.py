@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
-from numba import float64, int32, int64, void
+from numba import float64, int32, int64, uint64, void
 from numpy.typing import NDArray
 
 from raceway.core.fem.hexahedron.shape import (
@@ -68,8 +68,8 @@ def nodal_volumes(points: Floats, cells: NDArray[np.uint32]) -> Floats:
     return out
 
 
-#: Ranges of a mesh, and the most threads that can share it.
-RANGES = 8
+#: Ranges of a mesh, and the most threads that can share it; fewer where elements would be less than this in each.
+RANGES, _FEWEST = 8, 4096
 #: Nodes that are summed and moved together, so that their forces stay in the first cache.
 _CHUNK = 512
 
@@ -88,7 +88,7 @@ def divide(cells: NDArray[np.uint32]) -> NDArray[np.int64]:
     whose numbers follow its shape the parts hardly overlap.
     """
     blocks = -(-len(cells) // WIDTH)
-    edges = np.unique(np.linspace(0, blocks, min(RANGES, blocks) + 1).astype(np.int64)) * WIDTH
+    edges = np.unique(np.linspace(0, blocks, min(RANGES, 1 + len(cells) // _FEWEST) + 1).astype(np.int64)) * WIDTH
     edges[-1] = len(cells)
     rows, offset = [], 0
     for first, last in zip(edges[:-1], edges[1:], strict=True):
@@ -101,12 +101,12 @@ def divide(cells: NDArray[np.uint32]) -> NDArray[np.int64]:
 @jit(void(int64, int64, int64[:, ::1], VECTOR, VECTOR), releases=True)
 def add_parts(first, last, ranges, parts, f):  # type: ignore[no-untyped-def]
     """Forces of the nodes ``first`` to ``last - 1``: the sum over the ranges, in their order."""
-    for i in range(3 * first, 3 * last):
+    for i in range(uint64(3 * first), uint64(3 * last)):  # unsigned: no index counts from the end
         f[i] = 0.0
     for r in range(ranges.shape[0]):
         begin, end = max(first, ranges[r, 2]), min(last, ranges[r, 3])
-        shift = 3 * (ranges[r, 4] - ranges[r, 2])
-        for i in range(3 * begin, 3 * end):
+        shift = uint64(3 * (ranges[r, 4] - ranges[r, 2]))
+        for i in range(uint64(3 * begin), uint64(3 * max(begin, end))):
             f[i] += parts[i + shift]
 
 
@@ -269,6 +269,20 @@ def stable_step(matrices: Callable[[slice], Floats], masses: Floats) -> float:
         except np.linalg.LinAlgError:
             largest = max(largest, float(np.linalg.eigvalsh(frequencies_squared)[:, -1].max()))
     return float(2.0 / np.sqrt(largest))
+
+
+def mass_factors(matrices: Callable[[slice], Floats], masses: Floats, step: float) -> Floats:
+    """(m,) what the masses of elements are multiplied with so that no element by itself asks for a step below ``step`` [s].
+
+    See ``stable_step``; 1 for all elements whose own step is as large.
+    """
+    out, least = np.ones(len(masses)), 4.0 / step**2
+    for part in batches(len(masses), _BATCH):
+        scaled = _mass_scaling(matrices(part), masses[part])
+        small = np.flatnonzero(np.abs(scaled).sum(axis=2).max(axis=1) > least)
+        if len(small):
+            out[part.start + small] = np.maximum(np.linalg.eigvalsh(scaled[small])[:, -1] / least, 1.0)
+    return out
 
 
 def _mass_scaling(stiffness: Floats, mass: Floats) -> Floats:

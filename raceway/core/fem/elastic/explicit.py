@@ -1,0 +1,505 @@
+"""Explicit steps of one-point hexahedra in contact at surface points, compiled: no Python between two samples of a record.
+
+Notes
+-----
+The equations are those of ``raceway.core.time``.  Of the surface points only those are evaluated that may touch: a gap grows or shrinks by
+no more than the surfaces travel, and what they have travelled since all gaps were known is summed from their largest speed.  An
+ideal cage pushes a ball with a field of rigid accelerations, m (t + w x r), which is made from six sums over the ball's nodes.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numba import boolean, float64, int64, uint32, uint64, void
+
+from raceway.core.contact.damping import add_damping
+from raceway.core.fem.elastic.assembly import Cage
+from raceway.core.fem.elastic.contact import (
+    IN_MOTION,
+    STIFFER,
+    NodalContact,
+    forces_and_tangents,
+    has_moved,
+    row_sums,
+    surface_gaps,
+)
+from raceway.core.fem.elastic.friction import return_map, tangents
+from raceway.core.fem.hexahedron.rows import add_parts
+from raceway.core.fem.hexahedron.stiffness import WORK, Mesh, range_force
+from raceway.core.jit import Kernel, jit
+from raceway.core.record import State, ramp
+from raceway.core.recorder import BOUND, Recorder
+from raceway.core.signatures import CUBE, LAW_POINTER, MATRIX, VECTOR, record
+from raceway.core.time.stepped import CLOSED, compare
+
+if TYPE_CHECKING:
+    from raceway.core.fem.elastic.bearing import ElasticSystem
+
+#: Gap up to which points are evaluated [m]: surfaces take thousands of steps to travel that far.
+_MARGIN = 1e-6
+#: Nodes that are summed and moved together, so that their forces stay in the first cache.
+_CHUNK = 512
+#: Elements times steps of one call, some tenths of a second.
+_CALL = 5_000_000
+
+
+class _Bodies(NamedTuple):
+    """All bodies as one mesh: see ``raceway.core.fem.hexahedron.stiffness.Mesh``; moduli (ranges, 3); work; parts, the forces by range."""
+
+    ranges: np.ndarray
+    cells: np.ndarray
+    x: np.ndarray
+    moduli: np.ndarray
+    work: np.ndarray
+    parts: np.ndarray
+
+
+class _Nodes(NamedTuple):
+    """Displacement, velocity half a step earlier, acceleration, constant load, 1/m, 0 of what is held or tied, each (3 n,); masses (n,)."""
+
+    u: np.ndarray
+    half: np.ndarray
+    a: np.ndarray
+    load: np.ndarray
+    inverse: np.ndarray
+    mass: np.ndarray
+
+
+class _Cage(NamedTuple):
+    """First node and the one behind the last (balls, 2); t and w of the rows' fields (balls, rows, 6); their springs (balls, rows);
+    centres (balls, 3); out: t and w of the force on a unit of mass (balls, 6).
+    """
+
+    spans: np.ndarray
+    fields: np.ndarray
+    stiffness: np.ndarray
+    centre: np.ndarray
+    field: np.ndarray
+
+
+class _Frame(NamedTuple):
+    """Motion, velocity half a step earlier and acceleration (m,); outer forces by step (steps + 1, m); stiffness, damping, inverse of the
+    mass with half a step of damping (m, m); tied entries (t,) and their motion with the frame (t, m); where their forces stand among
+    the parts, and which of them each is (p,); what accelerates the frame (m,).
+    """
+
+    q: np.ndarray
+    half: np.ndarray
+    a: np.ndarray
+    push: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    inverse: np.ndarray
+    tied: np.ndarray
+    tie: np.ndarray
+    places: np.ndarray
+    rows: np.ndarray
+    left: np.ndarray
+
+
+class _Points(NamedTuple):
+    """Surface points that may touch (k,), each field as ``Contact`` and ``CoulombFriction`` name it; ``parts``: where the forces of their
+    nodes (k, 8) stand; ``far``: how far a point may move before its place is looked up anew; ``surface``: entries of all surfaces' nodes.
+    """
+
+    nodes: np.ndarray
+    parts: np.ndarray
+    weights: np.ndarray
+    x: np.ndarray
+    pair: np.ndarray
+    surfaces: np.ndarray
+    area: np.ndarray
+    params: np.ndarray
+    memory: np.ndarray
+    memory_trial: np.ndarray
+    stick: np.ndarray
+    committed: np.ndarray
+    place: np.ndarray
+    dissipated: np.ndarray
+    projected: np.ndarray
+    far: np.ndarray
+    stiffest: np.ndarray
+    displacement: np.ndarray
+    shift: np.ndarray
+    where: np.ndarray
+    velocity: np.ndarray
+    normal: np.ndarray
+    force: np.ndarray
+    trial: np.ndarray
+    direction: np.ndarray
+    factors: np.ndarray
+    bend: np.ndarray
+    stiffness: np.ndarray
+    tangent: np.ndarray
+    scalar: np.ndarray
+    resultant: np.ndarray
+    surface: np.ndarray
+
+
+_INTEGERS, _TABLE = int64[::1], int64[:, ::1]
+_BODIES = record(_Bodies, _TABLE, uint32[:, ::1], VECTOR, MATRIX, VECTOR, VECTOR)
+_NODES = record(_Nodes, *[VECTOR] * 6)
+_CAGE = record(_Cage, _TABLE, CUBE, MATRIX, MATRIX, MATRIX)
+_FRAME = record(
+    _Frame, VECTOR, VECTOR, VECTOR, MATRIX, MATRIX, MATRIX, MATRIX, _INTEGERS, MATRIX, _INTEGERS, _INTEGERS, VECTOR
+)
+_POINTS = record(
+    _Points, _TABLE, _TABLE, MATRIX, MATRIX, _INTEGERS, MATRIX, VECTOR, MATRIX, MATRIX, MATRIX, VECTOR, MATRIX, MATRIX, VECTOR, MATRIX,
+    VECTOR, VECTOR, *[MATRIX] * 9, *[CUBE] * 3, MATRIX, MATRIX, _INTEGERS,
+)  # fmt: skip
+#: Step [s], coefficient of friction, whether tangents are symmetric, damping [N s/m3]; in and out: distance that the surfaces may have
+#: travelled [m], whether a point moved or stiffened too far, greatest penetration [m] and contact force [N], work on the frame [J].
+_DT, _COEFFICIENT, _SYMMETRIC, _DAMPING, _TRAVEL, _LEFT, _PENETRATION, _FORCE, _WORK = range(9)
+_NUMBERS = 9
+#: Rows of ``_Points.scalar``.
+_GAP, _RATE, _PRESSURE, _D_GAP, _D_RATE, _LOST, _SIZE = range(7)
+
+
+@jit(void(int64, int64, _BODIES, VECTOR), releases=True)
+def elements(first, last, bodies, u):  # type: ignore[no-untyped-def]
+    """Forces of the ranges ``first`` to ``last - 1`` into their parts."""
+    for r in range(first, last):
+        mesh = Mesh(bodies.ranges, bodies.cells, bodies.x, bodies.moduli[r])
+        range_force(r, mesh, u, bodies.work, bodies.parts)
+
+
+@jit(void(_CAGE, VECTOR, VECTOR, VECTOR), releases=True)
+def push_of_cage(cage, mass, x, u):  # type: ignore[no-untyped-def]
+    """Fields of the springs on the balls' mean motions L u = t . sum(m u) + w . sum(m r x u)."""
+    for b in range(cage.spans.shape[0]):
+        c = cage.centre[b]
+        p0, p1, p2, h0, h1, h2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for n in range(cage.spans[b, 0], cage.spans[b, 1]):
+            i = 3 * n
+            m0, m1, m2 = mass[n] * u[i], mass[n] * u[i + 1], mass[n] * u[i + 2]
+            r0, r1, r2 = x[i] - c[0], x[i + 1] - c[1], x[i + 2] - c[2]
+            p0 += m0
+            p1 += m1
+            p2 += m2
+            h0 += r1 * m2 - r2 * m1
+            h1 += r2 * m0 - r0 * m2
+            h2 += r0 * m1 - r1 * m0
+        for k in range(6):
+            cage.field[b, k] = 0.0
+        for row in range(cage.stiffness.shape[1]):
+            f = cage.fields[b, row]
+            amount = cage.stiffness[b, row] * (f[0] * p0 + f[1] * p1 + f[2] * p2 + f[3] * h0 + f[4] * h1 + f[5] * h2)
+            for k in range(6):
+                cage.field[b, k] += amount * f[k]
+
+
+@jit(void(boolean, VECTOR, LAW_POINTER, _NODES, _POINTS), releases=True)
+def press(again, numbers, law, nodes, points):  # type: ignore[no-untyped-def]
+    """Forces of the points; ``again``: the trial of the step before becomes history first."""
+    p, scalar, dt = points, points.scalar, numbers[_DT]
+    count, rubs = p.area.size, numbers[_COEFFICIENT] > 0.0
+    for i in range(count if again else 0):
+        for c in range(p.memory.shape[1]):
+            p.memory[i, c] = p.memory_trial[i, c]
+        if rubs:
+            p.dissipated[i] += scalar[_LOST, i]
+        for c in range(3):
+            p.committed[i, c], p.place[i, c] = p.trial[i, c], p.displacement[i, c]
+    for i in range(count):
+        for c in range(3):
+            u, v = 0.0, 0.0
+            for j in range(8):
+                at, w = 3 * p.nodes[i, j] + c, p.weights[i, j]
+                u += w * nodes.u[at]
+                v += w * (nodes.half[at] + 0.5 * dt * nodes.a[at])
+            p.where[i, c], p.velocity[i, c] = p.x[i, c] + u, v
+            p.displacement[i, c], p.shift[i, c] = u, u - p.place[i, c]
+    surface_gaps(p.where, p.pair, p.surfaces, scalar[_GAP], p.normal, p.bend)
+    for i in range(count):
+        scalar[_RATE, i] = (
+            p.velocity[i, 0] * p.normal[i, 0] + p.velocity[i, 1] * p.normal[i, 1] + p.velocity[i, 2] * p.normal[i, 2]
+        )
+    law(
+        scalar[_GAP],
+        scalar[_RATE],
+        p.params,
+        p.memory,
+        p.memory_trial,
+        dt,
+        scalar[_PRESSURE],
+        scalar[_D_GAP],
+        scalar[_D_RATE],
+    )
+    add_damping(numbers[_DAMPING], scalar[_GAP], scalar[_RATE], scalar[_PRESSURE], scalar[_D_GAP], scalar[_D_RATE])
+    # The tangents by velocity are not needed: they go where those of friction go next.
+    forces_and_tangents(
+        p.area, scalar[_PRESSURE], scalar[_D_GAP], scalar[_D_RATE], p.normal, p.bend, p.force, p.stiffness, p.tangent
+    )
+    if rubs:
+        return_map(
+            scalar[_PRESSURE], scalar[_D_GAP], p.normal, p.shift, p.committed, numbers[_COEFFICIENT], p.stick,
+            p.trial, p.direction, p.factors, scalar[_LOST],
+        )  # fmt: skip
+        tangents(p.factors, p.direction, p.normal, numbers[_SYMMETRIC] > 0.0, p.tangent)
+        for i in range(count):
+            for c in range(3):
+                p.force[i, c] -= p.area[i] * p.trial[i, c]
+                for d in range(3):
+                    p.stiffness[i, c, d] += p.area[i] * p.tangent[i, c, d]
+    row_sums(p.stiffness, scalar[_SIZE])
+    p.resultant[:, :] = 0.0
+    for i in range(count):
+        numbers[_PENETRATION] = max(numbers[_PENETRATION], -scalar[_GAP, i])
+        if scalar[_SIZE, i] > STIFFER * p.stiffest[i]:
+            numbers[_LEFT] = 1.0
+        for c in range(3):
+            p.resultant[p.pair[i], c] += p.force[i, c]
+    for k in range(p.resultant.shape[0]):
+        numbers[_FORCE] = max(
+            numbers[_FORCE], np.sqrt(p.resultant[k, 0] ** 2 + p.resultant[k, 1] ** 2 + p.resultant[k, 2] ** 2)
+        )
+    if has_moved(p.where, p.projected, p.far):
+        numbers[_LEFT] = 1.0
+
+
+@jit(void(int64, VECTOR, _BODIES, _FRAME, _POINTS), releases=True)
+def balance(step, numbers, bodies, frame, points):  # type: ignore[no-untyped-def]
+    """Forces of the points into the parts of their nodes; acceleration of the frame."""
+    dt, m, parts, left = numbers[_DT], frame.q.size, bodies.parts, frame.left
+    for i in range(points.area.size):
+        for j in range(8):
+            at, w = points.parts[i, j], points.weights[i, j]
+            for c in range(3):
+                parts[at + c] -= w * points.force[i, c]
+    for c in range(m):
+        left[c] = frame.push[step + 1, c]
+        for d in range(m):
+            left[c] -= frame.stiffness[c, d] * frame.q[d] + frame.damping[c, d] * frame.half[d]
+    for i in range(frame.places.size):
+        for c in range(m):
+            left[c] -= frame.tie[frame.rows[i], c] * parts[frame.places[i]]
+    for c in range(m):
+        numbers[_WORK] += 0.5 * (frame.push[step, c] + frame.push[step + 1, c]) * dt * frame.half[c]
+        frame.a[c] = 0.0
+        for d in range(m):
+            frame.a[c] += frame.inverse[c, d] * left[d]
+
+
+@jit(void(int64, int64, boolean, float64, _BODIES, _NODES, _CAGE), releases=True)
+def move(first, last, onward, dt, bodies, nodes, cage):  # type: ignore[no-untyped-def]
+    """Accelerations of the nodes ``first`` to ``last - 1``; ``onward``: they move on to the end of the next step."""
+    u, half, a, load, inverse, mass = nodes
+    x = bodies.x
+    for begin in range(first, last, _CHUNK):
+        end = min(begin + _CHUNK, last)
+        add_parts(begin, end, bodies.ranges, bodies.parts, a)
+        for b in range(cage.spans.shape[0]):
+            f, c = cage.field[b], cage.centre[b]
+            for n in range(max(begin, cage.spans[b, 0]), min(end, cage.spans[b, 1])):
+                i = 3 * n
+                r0, r1, r2 = x[i] - c[0], x[i + 1] - c[1], x[i + 2] - c[2]
+                a[i] += mass[n] * (f[0] + f[4] * r2 - f[5] * r1)
+                a[i + 1] += mass[n] * (f[1] + f[5] * r0 - f[3] * r2)
+                a[i + 2] += mass[n] * (f[2] + f[3] * r1 - f[4] * r0)
+        # Unsigned: numba then checks for no index from the end, and the loops are vectorised.
+        for i in range(uint64(3 * begin), uint64(3 * end)):
+            a[i] = (load[i] - a[i]) * inverse[i]
+        if onward:
+            for i in range(uint64(3 * begin), uint64(3 * end)):
+                half[i] += dt * a[i]
+                u[i] += dt * half[i]
+
+
+@jit(void(boolean, VECTOR, _NODES, _FRAME, _POINTS), releases=True)
+def carry(onward, numbers, nodes, frame, points):  # type: ignore[no-untyped-def]
+    """The frame and what is tied to it follow; how far the surfaces travel."""
+    dt, m = numbers[_DT], frame.q.size
+    for c in range(m if onward else 0):
+        frame.half[c] += dt * frame.a[c]
+        frame.q[c] += dt * frame.half[c]
+    for i in range(frame.tied.size):
+        u, half, a = 0.0, 0.0, 0.0
+        for c in range(m):
+            u, half, a = (
+                u + frame.tie[i, c] * frame.q[c],
+                half + frame.tie[i, c] * frame.half[c],
+                a + frame.tie[i, c] * frame.a[c],
+            )
+        nodes.u[frame.tied[i]], nodes.half[frame.tied[i]], nodes.a[frame.tied[i]] = u, half, a
+    fastest = 0.0
+    for i in range(points.surface.size):
+        speed = abs(nodes.half[points.surface[i]])
+        if not speed <= fastest:  # what is no number is kept
+            fastest = speed
+    if onward:
+        numbers[_TRAVEL] += 2.0 * np.sqrt(3.0) * dt * fastest
+
+
+@jit(int64(int64, int64, VECTOR, LAW_POINTER, _BODIES, _NODES, _CAGE, _FRAME, _POINTS), allocates=True, releases=True)
+def advance(first, count, numbers, law, bodies, nodes, cage, frame, points):  # type: ignore[no-untyped-def]
+    """Steps ``first`` to ``count - 1``, fewer where points have to be chosen anew; how many are done of all."""
+    step = first
+    while step < count:
+        if numbers[_LEFT] > 0.0 or not numbers[_TRAVEL] <= _MARGIN:
+            return step
+        onward = step + 1 < count
+        elements(0, bodies.ranges.shape[0], bodies, nodes.u)
+        push_of_cage(cage, nodes.mass, bodies.x, nodes.u)
+        press(step > first, numbers, law, nodes, points)
+        balance(step, numbers, bodies, frame, points)
+        move(0, nodes.mass.size, onward, numbers[_DT], bodies, nodes, cage)
+        carry(onward, numbers, nodes, frame, points)
+        step += 1
+    return step
+
+
+def served(system: ElasticSystem) -> bool:
+    """Whether all of a system is in these loops."""
+    a = system.assembly
+    plain = all(body.operator.formulation == "one_point" for body in a.bodies) and not a.foundations
+    return plain and isinstance(system.contact, NodalContact) and (a.cage is None or len(a.cage.fields) > 0)
+
+
+class ExplicitSteps:
+    """The loops over one system.
+
+    system : ElasticSystem, see ``served``;  dt : step [s]
+    """
+
+    def __init__(self, system: ElasticSystem, dt: float) -> None:
+        a = system.assembly
+        assert isinstance(system.contact, NodalContact)
+        self._system, self._contact, self._dt = system, system.contact, dt
+        self.most = max(1, _CALL // sum(len(body.operator.cells) for body in a.bodies))
+        ranges, moduli, cells, shift = [], [], [], np.zeros(5, dtype=np.int64)
+        for body, first in zip(a.bodies, a.starts, strict=False):
+            mine = body.operator.ranges + shift + [0, 0, first, first, 0]
+            ranges.append(mine)
+            moduli.append(np.tile(body.operator.moduli, (len(mine), 1)))
+            cells.append(body.operator.cells + np.uint32(first))
+            last = mine[-1]
+            shift[:2], shift[4] = last[1], last[4] + last[3] - last[2]
+        table = np.concatenate(ranges)
+        parts, work = np.zeros(3 * shift[4]), np.zeros(WORK * len(table))
+        self._bodies = _Bodies(table, np.concatenate(cells), a.points.reshape(-1), np.concatenate(moduli), work, parts)
+        m, n = a.frame_size, 3 * a.nodes
+        load, inverse = np.zeros(n), np.zeros(n)
+        load[a.free], inverse[a.free] = system.load[m:], 1.0 / a.free_mass
+        self._nodes = _Nodes(np.zeros(n), np.zeros(n), np.zeros(n), load, inverse, a.own_mass)
+        cage = a.cage or Cage(None, np.zeros(0), np.zeros(0))
+        spans = [(begin // 3, (begin + values.shape[1]) // 3) for _, begin, values in (a.means.blocks if a.means else ())]
+        self._cage = _Cage(
+            np.array(spans, dtype=np.int64).reshape(-1, 2), cage.fields, cage.stiffness.reshape(len(spans), -1), cage.centres,
+            np.zeros((len(spans), 6)),
+        )  # fmt: skip
+        free = np.ix_(a.frame_free, a.frame_free)
+        accelerating = np.zeros((m, m))
+        accelerating[free] = np.linalg.inv((a.frame_mass + 0.5 * dt * a.frame_damping)[free])
+        rows, at = [], []
+        for first, last, shifted in zip(table[:, 2], table[:, 3], table[:, 4], strict=True):
+            mine = np.flatnonzero((a.tied >= 3 * first) & (a.tied < 3 * last))
+            rows.append(mine)
+            at.append(a.tied[mine] + 3 * (shifted - first))
+        self._frame = _Frame(
+            np.zeros(m), np.zeros(m), np.zeros(m), np.zeros((1, m)), a.frame_stiffness, a.frame_damping, accelerating, a.tied,
+            np.ascontiguousarray(a.tie), np.concatenate(at), np.concatenate(rows), np.zeros(m),
+        )  # fmt: skip
+        #: Of each node its place among the parts: in the last range that holds it.
+        self._place = np.zeros(a.nodes, dtype=np.int64)
+        for first, last, shifted in table[:, 2:]:
+            self._place[first:last] = 3 * (np.arange(last - first) + shifted)
+
+    def take(self, recorder: Recorder, count: int) -> tuple[State, float, float, float]:
+        """The state after ``count`` steps from the recorder's, their outer work [J], greatest penetration [m] and contact force [N]."""
+        system, dt, a, nodes = self._system, self._dt, self._system.assembly, self._nodes
+        contact, m, before = self._contact, a.frame_size, recorder.state
+        half = before.v + 0.5 * dt * before.a
+        u = before.u + dt * half
+        for values, out in ((u, nodes.u), (half, nodes.half), (before.a, nodes.a)):
+            a.nodal(values, out)
+        times = [recorder.time_of(recorder.done + k) for k in range(count + 1)]
+        push = system.load[:m] + np.array([ramp(t, recorder.schedule.ramp) * system.on_frame(t) for t in times])
+        frame = self._frame = self._frame._replace(q=u[:m].copy(), half=half[:m].copy(), a=before.a[:m].copy(), push=push)
+        friction, numbers = contact.friction, np.zeros(_NUMBERS)
+        numbers[_DT], numbers[_DAMPING] = dt, contact.damping
+        if friction is not None:
+            numbers[_COEFFICIENT], numbers[_SYMMETRIC] = friction.coefficient, float(friction.symmetric)
+        done = 0
+        while done < count:
+            rows, points = self._points(contact)
+            numbers[_TRAVEL] = numbers[_LEFT] = 0.0
+            done = self._advance(done, count, numbers, contact.law, points)
+            moved = nodes.u - (0.0 if done == count else dt) * nodes.half
+            if not np.abs(moved).max() < BOUND:
+                raise recorder.unbounded()
+            # The last step once more, at all points: its beginning is their history still.
+            shift, velocity = contact.move @ moved, np.zeros((len(contact.area), 3))
+            shift.reshape(-1, 3)[rows], velocity[rows], contact.memory[rows] = (
+                points.displacement,
+                points.velocity,
+                points.memory,
+            )
+            if friction is not None:
+                friction.committed[rows], friction.place[rows], friction.dissipated[rows] = points[11:14]
+            contact.respond(dt, shift, velocity.reshape(-1), 0.0)
+            if contact.stiffened():
+                compare(
+                    system.stable_step(),
+                    system,
+                    recorder,
+                    f" at t = {recorder.time_of(recorder.done + done):.6g} s, {CLOSED}",
+                )
+            system.commit()
+        v = nodes.half + 0.5 * dt * nodes.a
+        state = State(
+            *(
+                np.concatenate([x, y[a.free]])
+                for x, y in ((frame.q, nodes.u), (frame.half + 0.5 * dt * frame.a, v), (frame.a, nodes.a))
+            )
+        )
+        work = numbers[_WORK] + system.load[m:] @ (state.u - before.u)[m:]
+        return state, float(work), float(numbers[_PENETRATION]), float(numbers[_FORCE])
+
+    def _points(self, contact: NodalContact) -> tuple[np.ndarray, _Points]:
+        """The points that may touch before the surfaces have travelled by the margin, all where the law remembers, and their data."""
+        shift = (contact.move @ self._nodes.u).reshape(-1, 3)
+        gap, normal, bend = np.empty(len(shift)), np.empty_like(shift), np.empty((len(shift), 3, 3))
+        surface_gaps(contact.place + shift, contact.pair, contact.surfaces, gap, normal, bend)
+        rows = np.flatnonzero((gap < _MARGIN) | (contact.memory.shape[1] > 0))
+        k, friction = len(rows), contact.friction
+        nodes = contact.nodes[rows]
+        history = [np.zeros(k), np.zeros((k, 3)), np.zeros((k, 3)), np.zeros(k)]
+        if friction is not None:
+            history = [each[rows] for each in (friction.stick, friction.committed, friction.place, friction.dissipated)]
+        return rows, _Points._make([
+            nodes, self._place[nodes], contact.weights[rows], contact.place[rows], contact.pair[rows], contact.surfaces,
+            contact.area[rows], contact.params[rows], contact.memory[rows], contact.memory[rows], *history,
+            contact.projected[rows], IN_MOTION * contact.facet[rows], contact.stiffest[rows],
+            *np.zeros((9, k, 3)), *np.zeros((3, k, 3, 3)), np.zeros((7, k)), np.zeros((len(contact.counts), 3)), contact.near.entries,
+        ])  # fmt: skip
+
+    def _advance(self, first: int, count: int, numbers: np.ndarray, law: Kernel, points: _Points) -> int:
+        """``advance``, whose steps threads share where there are several: they leave the same digits."""
+        bodies, nodes, cage, frame, pool = self._bodies, self._nodes, self._cage, self._frame, self._system.threads
+        if pool.count == 1:
+            return int(advance(first, count, numbers, law, bodies, nodes, cage, frame, points))
+        ranges = len(bodies.ranges)
+        for step in range(first, count):
+            if numbers[_LEFT] > 0.0 or not numbers[_TRAVEL] <= _MARGIN:
+                return step
+            onward, again = step + 1 < count, step > first
+
+            def job(k: int, again: bool = again) -> None:
+                if k > 1:
+                    elements(k - 2, k - 1, bodies, nodes.u)
+                elif k == 1:
+                    push_of_cage(cage, nodes.mass, bodies.x, nodes.u)
+                else:
+                    press(again, numbers, law, nodes, points)
+
+            pool.do(ranges + 2, job)
+            balance(step, numbers, bodies, frame, points)
+            pool.do_shares(len(nodes.mass), partial(self._move, onward))
+            carry(onward, numbers, nodes, frame, points)
+        return count
+
+    def _move(self, onward: bool, first: int, last: int) -> None:
+        move(first, last, onward, self._dt, self._bodies, self._nodes, self._cage)
