@@ -53,7 +53,7 @@ from pathlib import Path
 
 from lazy_loader import attach_stub
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 
 _own, _, _names = attach_stub(__name__, str(Path(__file__).with_name("names.pyi")))
 

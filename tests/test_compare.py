@@ -11,6 +11,7 @@ import pytest
 
 from raceway import Comparison, ConvergenceError, SceneError, compare, scene_from_dict
 from raceway.extend import points, tables_at
+from raceway.pipeline.uncertainty import combined, of_ratio
 from raceway.points import compare as study
 from raceway.points.axes import MOST_POINTS, parse_axes
 from raceway.points.effects import Row, percent
@@ -184,7 +185,7 @@ def test_a_failed_point_is_kept_and_the_effects_hold_for_the_rest(monkeypatch):
     assert len(found.rows) == 4 and found.held == {"excitation.speed_rpm": 12000}
     assert [e["term"] for e in found.effects] == [("supports.tilt",)] * 2
     assert any("no luck" in word for word in found.words)
-    assert found.table()[3]["note"] == "failed"
+    assert found.table()[3]["K N/µm"] == "failed"
     json.dumps(found.to_dict(), allow_nan=False)
 
 
@@ -307,31 +308,63 @@ def test_what_lies_between_the_ends_of_an_axis_is_told_where_it_is_beyond_them(a
     assert not any("hardly depends on " + axes[0].partition("=")[0] in words for words in made.words)
 
 
+def _with_intervals(made, parts_of):
+    """The same rows with the interval of K that parts give, relative."""
+    rows = []
+    for row in made.rows:
+        k, causes = row.value("equivalent_stiffness"), {}
+        for name, (low, high) in parts_of(row.point).items():
+            causes[name] = {"low": low, "high": high, "how": "", "of": []}
+        low, high = combined(causes)
+        entry = {"low": (1.0 + low) * k, "high": (1.0 + high) * k, "relative": [low, high], "parts": causes}
+        rows.append(attrs.evolve(row, result={**row.result, "uncertainty": {"equivalent_stiffness": entry}}))
+    return attrs.evolve(made, rows=tuple(rows))
+
+
 @pytest.mark.parametrize(
-    ("ends", "said"),
+    ("data", "numerical", "said"),
     [
-        ((0.9, 1.2), "both, whose causes they share; beyond numerical errors."),
-        ((0.999, 1.0001), "neither."),
-        ((0.99, 1.006), "both at 2 of 3 points, whose causes they share; beyond numerical errors."),
+        ((-0.1, 0.2), 1e-6, "both (K within -10 to +20 %); difference within +- 0.00014 %"),
+        ((0.0, 0.0), 1e-4, "neither (K within +- 0.01 %); difference within +- 0.014 %"),
+        ((-0.008, 0.006), 1e-6, "both at 2 of 3 points (K within -0.8 to +0.6 %); difference within +- 0.00014 %"),
     ],
 )
-def test_the_first_sentence_sets_the_difference_of_two_models_against_their_intervals(ends, said):
-    """By 0.25, 0.5 and 1 %, where an interval of both is wide, narrow, or between these."""
+def test_the_first_sentence_sets_the_difference_of_two_models_against_their_intervals(data, numerical, said):
+    """By 0.25, 0.5 and 1 %, where an interval of both is wide, narrow, or between these; on the picture stands the same."""
     axes = ["excitation.kind=unidirectional,bidirectional", "excitation.speed_rpm=9000:15000:3"]
     percents = {9000: 0.25, 12000: 0.5, 15000: 1.0}
     made = _made(
         axes, lambda p: 1e8 * (1.0 + 0.01 * percents[p["excitation.speed_rpm"]] * (p["excitation.kind"] == "bidirectional"))
     )
-    rows = []
-    for row in made.rows:
-        k = row.value("equivalent_stiffness")
-        entry = {"low": ends[0] * k, "high": ends[1] * k, "relative": [ends[0] - 1.0, ends[1] - 1.0]}
-        rows.append(attrs.evolve(row, result={**row.result, "uncertainty": {"equivalent_stiffness": entry}}))
-    first = attrs.evolve(made, rows=tuple(rows)).words[0]
-    assert (
-        first
-        == f"bidirectional against unidirectional: K +0.25 to +1 % from 9000 to 15000, within the uncertainty of {said}"
+    found = _with_intervals(made, lambda _: {"numerical": (-numerical, numerical), "data": data})
+    start = "bidirectional against unidirectional: K +0.25 to +1 % from 9000 to 15000, within the uncertainty of"
+    assert found.words[0] == f"{start} {said} where shared causes change both alike."
+    title = found.draw().get_suptitle().replace("\n", " ")
+    own, apart = said.partition(" (")[2].rstrip(".").split("); ")
+    assert f"shaded: {own}, {apart} where shared causes" in title
+
+
+def test_a_cause_that_changes_both_alike_leaves_their_ratio_and_one_that_does_not_is_in_its_interval():
+    """Elastic rings in one model only; errors of two solutions; inferred numbers of one bearing and of two."""
+    cause = {"how": "", "of": []}
+    rigid = {"parts": {"numerical": {"low": -3e-3, "high": 3e-3, **cause}, "data": {"low": -0.1, "high": 0.2, **cause},
+                       "bodies": {"low": 0.0, "high": 0.08, **cause}}}  # fmt: skip
+    elastic = {
+        "parts": {
+            **rigid["parts"],
+            "numerical": {"low": -4e-3, "high": 4e-3, **cause},
+            "bodies": {"low": 0.0, "high": 0.0, **cause},
+        }
+    }
+    assert of_ratio(rigid, {"parts": {**rigid["parts"], "numerical": elastic["parts"]["numerical"]}}, True) == pytest.approx(
+        (-5e-3, 5e-3)
     )
+    low, high = of_ratio(rigid, elastic, True)
+    assert low == pytest.approx(-math.hypot(0.08, 5e-3)) and high == pytest.approx(5e-3)
+    low, high = of_ratio(rigid, rigid, False)  # the first may be stiffer while the second is softer
+    assert low == pytest.approx(-math.hypot(0.1, 0.2, 3e-3 * math.sqrt(2.0))) and high == pytest.approx(-low)
+    unknown = {"parts": {**rigid["parts"], "data": {"low": None, "high": None, **cause}}}
+    assert of_ratio(rigid, unknown, False) == pytest.approx((-3e-3 * math.sqrt(2.0), 3e-3 * math.sqrt(2.0)))
 
 
 def test_no_line_crosses_a_point_that_failed():

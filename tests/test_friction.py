@@ -141,10 +141,10 @@ def test_the_traction_that_balls_need_is_that_of_moment_and_drag():
 
 
 def test_balls_slide_where_contacts_offer_less_traction_than_they_need():
-    """By the oil's coefficient, by the scene's, or by the one that sufficed to Jones; drag adds to what they need, a radial load unloads."""
+    """By the oil's coefficient, by the scene's, or by that of oiled steel balls; drag adds to what they need, a radial load unloads."""
     assert not sliding()[1] and sliding(lubricant={**OIL, "traction_limit": 0.004})[1]
     dry, told = sliding(lubricant=None)
-    assert dry["traction_offered"] == 0.06 and "Jones" in dry["source"] and not told
+    assert dry["traction_offered"] == 0.06 and "ASLE 1959" in dry["source"] and not told
     rough, told = sliding(lubricant=None, contact={"friction": 0.001})
     assert rough["source"] == "contact.friction" and told
     light, told = sliding(load={"axial": 10.0})

@@ -107,7 +107,7 @@ def test_screen_and_result_agree_and_a_fit_takes_both_names(tmp_path, free):
     )
     text = " ".join(invoke("run", scene, "--out", tmp_path).stdout.split())
     expected = meant(free)
-    assert f"tangent kyy {1e-6 * expected['kyy']:.3g} N/µm" in text and "Answer at rest, tilt free" in text
+    assert f"tangent kyy {1e-6 * expected['kyy']:.3g} N/µm" in text and "Answer at 12000 r/min, tilt free" in text
     assert f"kyy tilts follow {1e-6 * expected['kyy_tilts_follow']:.3g} N/µm" in text
     below = text[text.index("Tolerances") :]
     for name in ("kyy", "kyy_tilts_follow"):

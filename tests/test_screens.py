@@ -12,6 +12,7 @@ from rich.console import Console
 
 import raceway as rw
 from checks.validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
+from raceway.answers import table
 from raceway.bodies.model import tilts_follow
 from raceway.extend import Words, duration, rows_table
 from raceway.framework.estimate import Estimate, few_words
@@ -226,6 +227,50 @@ def test_a_table_says_once_what_is_the_same_in_all_rows():
     assert text[0] == "same in all rows: axial 400, K N/µm 153.2"
     assert text[1].split() == ["speed", "r/min"] and text[3:] == ["      12000", "      15000"]
     assert "the same" not in lines(rows_table(rows[:1]))[0]
+
+
+def named_twice(column):
+    """Words that stand twice in a column with numbers."""
+    if not any(re.match(r"[-+]?\d", cell) for cell in column.cells):
+        return set()
+    return {cell for cell in column.cells if re.match("[a-z]", cell) and column.cells.count(cell) > 1}
+
+
+def test_a_state_that_a_column_of_numbers_repeats_is_named_once_below_it():
+    states = ["1.5", "not resolved", "failed", "not resolved", "failed", "not resolved", "waiting"]
+    rows = [{"load": str(k), "C N s/m": state, "K": state} for k, state in enumerate(states)]
+    text = lines(rows_table(rows))
+    assert text[-1] == "-: not resolved (C N s/m, K); --: failed (C N s/m, K)" and "\n".join(text).count("waiting") == 2
+    assert [line.split()[1:] for line in text[3:6]] == [["-", "-"], ["--", "--"], ["-", "-"]]
+    words = lines(rows_table([{"kind": kind, "tilt": "free" if k else "locked"} for k, kind in enumerate("aabb")]))
+    assert "-:" not in words[-1]  # words of a column without numbers are its values
+    none = lines(rows_table([{"C": value} for value in (None, 2.0, "lost", "lost")]))
+    assert none[-1] == "--: lost (C)" and none[-2].strip() == "--" and none[-5].strip() == "-"
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("run", MINIMAL, "-v"),
+        ("compare", ARTICLE, "--vary", "excitation.speed_rpm=9000,12000,13500", "--vary", "excitation.kind=unidirectional,bidirectional"),
+        ("compare", MINIMAL, "--vary", "bearing.ball_count=12,16,17"),
+        ("sweep", MINIMAL, "--grid", "load.axial=1000,1e9,2e9"),
+        ("follow", EXAMPLES / "folds.toml", "--over", "excitation.speed_rpm=9000:9500", "--points", "9"),
+        ("band", MINIMAL, "--tolerance", "load.axial=±10 %", "--by", "load.axial"),
+    ],
+    ids=lambda words: words[0],
+)  # fmt: skip
+def test_no_table_of_a_screen_names_a_state_twice(words, tmp_path, monkeypatch):
+    tables, make = [], rows_table
+    monkeypatch.setattr(table, "rows_table", lambda *given: tables.append(make(*given)) or tables[-1])
+    found = invoke(*words, *("--out", tmp_path))
+    assert (tables or words[0] == "run") and not any(named_twice(column) for made in tables for column in made.columns)
+    for made in tables:
+        dashes = {cell for column in made.columns for cell in column.cells if cell and set(cell) == {"-"}}
+        assert all(f"{sign}: " in made.below for sign in dashes) and " ".join(made.below.split()) in " ".join(
+            found.stdout.split()
+        )
+        assert not {"status", "note"} & {column.head for column in made.columns}
 
 
 @pytest.mark.parametrize("width", [40, 80, 120])

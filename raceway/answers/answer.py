@@ -83,8 +83,8 @@ class Answer(Shown):
         return None
 
     @door
-    def save(self, folder: Annotated[str | Path, PATH], pictures: bool = False) -> list[Path]:
-        """Write JSON and texts into a folder, and the picture where ``pictures`` asks for it.
+    def save(self, folder: Annotated[str | Path, PATH], pictures: bool | str = False) -> list[Path]:
+        """Write JSON and texts into a folder, and the picture where ``pictures`` asks for it: "svg" or "pdf" as this and as PNG.
 
         Returns
         -------
@@ -98,15 +98,16 @@ class Answer(Shown):
         folder = Path(folder)
         paths = [write_json(self.to_dict(), folder / f"{self.stem}.json")]
         paths += [
-            write_whole(text.encode(), folder / f"{self.stem}.{suffix}") for suffix, text in self.texts(pictures).items()
+            write_whole(text.encode(), folder / f"{self.stem}.{suffix}")
+            for suffix, text in self.texts(bool(pictures)).items()
         ]
-        return paths + (self.picture(folder) if pictures else [])
+        return paths + (self.picture(folder, "png", *([pictures] if isinstance(pictures, str) else [])) if pictures else [])
 
     @door
-    def picture(self, folder: Annotated[str | Path, PATH], form: Annotated[str, TEXT] = "png") -> list[Path]:
-        """Draw into a folder.
+    def picture(self, folder: Annotated[str | Path, PATH], *forms: Annotated[str, TEXT]) -> list[Path]:
+        """Draw into a folder, once.
 
-        form : "png", at 300 dots per inch, "svg" or "pdf"
+        forms : "png" (default), at 300 dots per inch, "svg", "pdf"
 
         Returns
         -------
@@ -119,7 +120,8 @@ class Answer(Shown):
         """
         from raceway.answers.picture import save_figure
 
-        return [save_figure(figure, Path(folder) / f"{name}.{form}") for name, figure in self.drawings().items()]
+        drawn = self.drawings().items()
+        return [save_figure(figure, Path(folder) / f"{name}.{form}") for name, figure in drawn for form in forms or ("png",)]
 
     @door
     def screen(self, files: Annotated[Iterable[str], TEXTS] = ()) -> RenderableType:

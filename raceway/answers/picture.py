@@ -1,13 +1,14 @@
 """Figures of matplotlib: their look, curves over axes with their differences, a caller's axes, files.
 
 Every answer over axes is drawn alike: the axis with most numbers is x, the next are curves, which differ in colour, line and marker,
-the rest are panels with equal axes; below each stands by how many per cent its curves differ from the first, with their intervals.
+the rest are panels with equal axes, with the intervals of the curves; below each stands by how many per cent they differ from the first,
+with the intervals of these differences.
 """
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,6 +19,7 @@ from raceway.answers.page import svg
 from raceway.answers.table import lines_of
 from raceway.errors import RacewayError, extra
 from raceway.framework.doors import door, reader
+from raceway.framework.shown import interval_percents
 from raceway.storage.files import write_whole
 
 if TYPE_CHECKING:
@@ -35,8 +37,8 @@ _LINES: Sequence[Any] = ("-", "--", ":", "-.", (0, (6, 1, 1, 1, 1, 1)))
 _DENSE = 40
 #: Part of a common axis that each panel's curves fill at least: else every panel has its own limits.
 _SEEN = 1.0 / 6.0
-#: Intervals within so many times what differences span set the limits; wider ones are cut, and told in words.
-_NEAR = 3.0
+#: Intervals within so many times what curves span set the limits; wider ones are cut.  Part of the limits up to which a band has no edges.
+_NEAR, _THIN = 15.0, 0.01
 #: Least size of letters over the figure's width [pt/inch], which are 9 pixels of 600, up to a size; panels in a row at most.
 _READABLE, _LARGEST = 1.05, 11.0
 #: Endings of files of figures.
@@ -98,8 +100,7 @@ def label_axes(axes: Axes, title: str, x: str, y: str, size: float = 11.0) -> No
     axes.set_xlabel(x, fontsize=size)
     axes.set_ylabel(y, fontsize=size)
     axes.tick_params(labelsize=size - 1.0)
-    axes.grid(color="#d8dee4", linewidth=0.7)
-    axes.set_axisbelow(True)
+    dress(axes)
 
 
 def wrapped(title: str, width: int = 80) -> str:
@@ -161,7 +162,8 @@ class Line:
     ----------
     x, y : (n,), broken where y is nan;  label : in the legend;  place : in the cycle of colours, lines and markers
     low, high : (n,) ends of its interval, nan where none is known;  doubt : (n,) numbers that are no part of it, crosses
-    base : the curve that its difference is from, over the same x;  shade : of curves of numbers, its colour, from 0 to 1 in their order
+    base : the curve that its difference is from, over the same x;  apart : (2, n) ends of the interval of y over the base's, relative
+    shade : of curves of numbers, its colour, from 0 to 1 in their order
     style : options of ``Axes.plot`` that are its own
     """
 
@@ -173,6 +175,7 @@ class Line:
     high: np.ndarray | None = None
     doubt: np.ndarray | None = None
     base: Line | None = None
+    apart: np.ndarray | None = None
     shade: float | None = None
     style: dict[str, Any] = attrs.field(factory=dict)
 
@@ -188,11 +191,10 @@ class Line:
         return look | {"markersize": 5.0 if len(self.x) <= _DENSE else 0.0} | self.style
 
     def from_base(self) -> Line:
-        """By how many per cent it differs, and its interval, from the curve ``base``."""
-        zero = (self if self.base is None else self.base).y
-        ends = (None if end is None else 100.0 * (end / zero - 1.0) for end in (self.low, self.high))
-        low, high = ends
-        return attrs.evolve(self, y=100.0 * (self.y / zero - 1.0), label="", low=low, high=high, doubt=None)
+        """By how many per cent it differs from the curve ``base``, and the interval of that."""
+        ratio = self.y / (self if self.base is None else self.base).y
+        low, high = (None, None) if self.apart is None else 100.0 * (ratio * (1.0 + self.apart) - 1.0)
+        return attrs.evolve(self, y=100.0 * (ratio - 1.0), label="", low=low, high=high, doubt=None)
 
 
 @attrs.frozen(eq=False)
@@ -219,36 +221,34 @@ class Plot:
         shown = (one for one in self.curves if one.base is not None or any(one is curve.base for curve in self.curves))
         return attrs.evolve(self, curves=tuple(one.from_base() for one in shown), y="difference [%]", title="", more=None)
 
-    def limits(self, bands: bool = False) -> tuple[float, float]:
+    def limits(self) -> tuple[float, float]:
         """Range of its curves, without margins; with their intervals where these are not far wider."""
         values = np.concatenate([curve.y for curve in self.curves] or [np.zeros(1)])
         values = values[np.isfinite(values)] if np.isfinite(values).any() else np.array([0.0, 1.0])
         low, high = float(values.min()), float(values.max())
-        wide = np.concatenate([self.ends() if bands else [], [low, high]])
-        return (float(wide.min()), float(wide.max())) if np.ptp(wide) <= _NEAR * (high - low) else (low, high)
+        known = [end for curve in self.curves for end in (curve.low, curve.high) if end is not None]
+        ends = np.concatenate([np.zeros(0), *known])
+        wide = [low, high, *ends[np.isfinite(ends)]]
+        return (min(wide), max(wide)) if np.ptp(wide) <= _NEAR * (high - low) else (low, high)
 
-    def ends(self) -> np.ndarray:
-        """Those of all intervals that are known."""
-        ends = [np.ravel(end) for curve in self.curves for end in (curve.low, curve.high) if end is not None]
-        return (found := np.concatenate([*ends, []]))[np.isfinite(found)]
-
-    def draw(self, axes: Axes, limits: tuple[float, float] | None = None, bands: bool = False) -> None:
-        """Draw it.
-
-        limits : of y, without margins; None: of its curves;  bands : with the intervals
-        """
-        low, high = self.limits(bands) if limits is None else limits
+    def draw(self, axes: Axes, limits: tuple[float, float] | None = None) -> None:
+        """Draw it; limits: of y, without margins, None: of its curves."""
+        low, high = self.limits() if limits is None else limits
         margin = 0.07 * (high - low) or 0.01 * abs(high) or 1.0
         low, high = low - margin, high + margin
         for curve in self.curves:
             axes.plot(curve.x, curve.y, label=curve.label or "_", **curve.look)
-            if bands and curve.low is not None and curve.high is not None:
+            axes.update_datalim([(x, low) for x in curve.x], updatey=False)  # where there is no number, too
+            tone = curve.look["color"]
+            if curve.low is not None and curve.high is not None:
                 ends = np.clip(curve.low, low, high), np.clip(curve.high, low, high)
-                axes.fill_between(
-                    curve.x, *ends, color=curve.look["color"], alpha=0.26 / len(self.curves), linewidth=0.0, zorder=0
-                )
+                axes.fill_between(curve.x, *ends, color=tone, alpha=0.26 / len(self.curves), linewidth=0.0, zorder=0)
+                wide = ends[1] - ends[0] > _THIN * (high - low)
+                for end, own in zip(ends, (curve.low, curve.high), strict=True):  # an edge where it is neither cut nor thin
+                    if (seen := wide & (end == own)).any():
+                        edge = np.where(seen, end, np.nan)
+                        axes.plot(curve.x, edge, color=tone, linestyle=curve.look["linestyle"], linewidth=0.8, zorder=1)
             if curve.doubt is not None and np.isfinite(curve.doubt).any():
-                tone = curve.look["color"]
                 (cross,) = axes.plot(curve.x, np.clip(curve.doubt, low, high), "x", color=tone, markersize=6, clip_on=False)
                 cross.set_in_layout(False)  # an artist that is not clipped would count for the layout, wherever it lies
         axes.set_ylim(low, high)
@@ -257,20 +257,25 @@ class Plot:
         else:
             axes.locator_params(axis="x", nbins=6)
         label_axes(axes, self.title, self.x, self.y, 10.5)
-        dress(axes)
         if self.more is not None:
             self.more(axes)
 
     def name_ends(self, axes: Axes) -> None:
-        """Write the last number of each curve beside its end, and the intervals where they reach beyond the axes."""
-        low, high = axes.get_ylim()
+        """Write the last number of each curve beside its end."""
         last = [(float(curve.y[np.isfinite(curve.y)][-1]), curve.look["color"]) for curve in self.curves
                 if curve.base is not None and np.isfinite(curve.y).any()]  # fmt: skip
         name_ends(axes, [(y, f"{signed(y)} %", tone) for y, tone in last], 0.13)
-        ends = self.ends()
-        if ends.size and not (ends.min() >= low and ends.max() <= high):
-            words = f"shaded: intervals, {signed(ends.min())} to {signed(ends.max())} %"
-            axes.set_title(words, fontsize=9.5, loc="right", color=GREY)
+
+
+def within(curves: Iterable[Line]) -> tuple[str, str]:
+    """Words for the intervals of curves and of their differences, the widest of all points; empty where none is known."""
+    own, apart = [np.zeros(0)], [np.zeros(0)]
+    for curve in curves:
+        own += [end / curve.y - 1.0 for end in (curve.low, curve.high) if end is not None]
+        apart += [] if curve.apart is None else [curve.apart.ravel()]
+    each = [ends[np.isfinite(ends)] for ends in map(np.concatenate, (own, apart))]
+    first, second = (f"within {interval_percents(ends)}" if ends.size else "" for ends in each)
+    return first, second and f"{second} where shared causes change both alike"
 
 
 def signed(value: float) -> str:
@@ -300,17 +305,22 @@ def draw_panels(rows: Sequence[Sequence[Plot]], title: str, legend: str = "") ->
 
     legend : what its entries are values of
     """
-    lines: list[tuple[list[Plot], bool]] = []
+    lines, shaded = list[tuple[list[Plot], bool]](), list[str]()
     for row in rows:
         lines.append((list(row), False))
         if below := [panel for panel in (panel.difference() for panel in row) if panel is not None]:
             lines.append((below, True))
+    named_curves = dict[str, list[Line]]()
+    for panel in (panel for row in rows for panel in row):
+        named_curves.setdefault(panel.y.partition(" [")[0], []).extend(panel.curves)
+    for name, curves in named_curves.items():
+        shaded += [f"{what} {words}" for what, words in zip((name, "difference"), within(curves), strict=True) if words]
     columns = max(len(row) for row, _ in lines)
     heights = [1.9 if bands else 3.1 for _, bands in lines]
     figure = new_figure(7.6 if columns == 1 else 1.6 + 3.7 * columns, 1.3 + sum(heights))
     grid = figure.subplots(len(lines), columns, squeeze=False, sharex=True, height_ratios=heights)
     for line, (row, bands) in enumerate(lines):
-        own = [panel.limits(bands) for panel in row]
+        own = [panel.limits() for panel in row]
         alike = len({panel.y for panel in row}) == 1
         common = min(low for low, _ in own), max(high for _, high in own)
         # A panel that is level says nothing about a scale.
@@ -319,7 +329,7 @@ def draw_panels(rows: Sequence[Sequence[Plot]], title: str, legend: str = "") ->
         for column, (panel, axes) in enumerate(zip(row, grid[line], strict=False)):
             last = line == len(lines) - 1
             panel = attrs.evolve(panel, x=panel.x if last else "", y="" if column and alike else panel.y)
-            panel.draw(axes, common if equal else None, bands)
+            panel.draw(axes, common if equal else None)
             if bands:
                 panel.name_ends(axes)
         for axes in grid[line, len(row) :]:
@@ -329,5 +339,6 @@ def draw_panels(rows: Sequence[Sequence[Plot]], title: str, legend: str = "") ->
     if named and any(len(line.x) > 1 for row, _ in lines for panel in row for line in panel.curves):
         across = max(1, int(9.0 * figure.get_figwidth() / (max(map(len, named)) + 7)))
         figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=min(len(named), across), frameon=False, fontsize=10, title=legend or None, title_fontsize=10)  # fmt: skip
+    title += f"\nshaded: {', '.join(shaded)}" if shaded else ""
     figure.suptitle(wrapped(title, int(9.0 * figure.get_figwidth())), fontsize=12)
     return figure

@@ -4,6 +4,7 @@ import csv
 import io
 import re
 import textwrap
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import takewhile
 from typing import TypeVar
@@ -173,15 +174,24 @@ _PLACE = "#"
 def rows_table(rows: Sequence[Mapping[str, object]], title: str = "") -> RenderableType:
     """A table of dictionaries with the same keys; underscores become blanks, numbers are aligned.
 
-    Columns that hold the same in all of several rows are said in one line above.  What is wider than the screen goes on in a
-    second table, whose rows have the first one's numbers.
+    Columns that hold the same in all of several rows are said in one line above, and below what dashes stand for: words that a column
+    of numbers would repeat.  What is wider than the screen goes on in a second table, whose rows have the first one's numbers.
     """
     keys = list(dict.fromkeys(key for row in rows for key in row))
     cells = {key: [_cell(row.get(key)) for row in rows] for key in keys}
     same = [key for key in keys if len(rows) > 1 and len(set(cells[key])) == 1]
+    states = dict[str, list[str]]()  # sign and words -> heads
+    for key in (key for key in keys if key not in same and any(map(_NUMBER.fullmatch, cells[key]))):
+        words = Counter(cell for cell in cells[key] if cell and not _NUMBER.fullmatch(cell) and set(cell) != {"-"})
+        repeated = [word for word, count in words.most_common() if count > 1]
+        signs = {word: "-" * place for place, word in enumerate(repeated, 1 + ("-" in cells[key]))}
+        cells[key] = [signs.get(cell, cell) for cell in cells[key]]
+        for word, sign in signs.items():
+            states.setdefault(f"{sign}: {word}", []).append(" ".join(_head(key).split()))
     columns = tuple(_Column(_head(key), tuple(cells[key])) for key in keys if key not in same)
     constants = ", ".join(f"{' '.join(_head(key).split())} {cells[key][0]}" for key in same if cells[key][0])
-    return _Rows(columns, title, f"same in all rows: {constants}" if constants else "")
+    below = "; ".join(f"{words} ({', '.join(heads)})" for words, heads in states.items())
+    return _Rows(columns, title, f"same in all rows: {constants}" if constants else "", below)
 
 
 @attrs.frozen
@@ -193,7 +203,7 @@ class _Column:
 
     @property
     def numeric(self) -> bool:
-        return all(_NUMBER.fullmatch(cell) or cell in ("", "-", "–") for cell in self.cells)
+        return all(_NUMBER.fullmatch(cell) or set(cell) <= {"-", "–"} for cell in self.cells)
 
     @property
     def whole(self) -> bool:
@@ -220,6 +230,7 @@ class _Rows:
     columns: tuple[_Column, ...]
     title: str
     told: str
+    below: str
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[RenderableType]:
         if self.title:
@@ -245,6 +256,8 @@ class _Rows:
             for cells in zip(*(column.cells for column in columns), strict=True):
                 table.add_row(*map(Words, cells))
             yield table
+        if self.below:
+            yield Words(self.below, "dim")
 
     def _blocks(self, width: int) -> list[list[_Column]]:
         """Columns in tables that fit; from the second on, and in the first then, rows are numbered."""

@@ -139,7 +139,9 @@ class Command(NamedTuple):
             names, usual = ("--pictures/--no-pictures", " (default)") if self.pictures else ("--pictures", "")
             command = click.option(names, is_flag=True, default=self.pictures, help=f"Draw pictures as PNG{usual}.")(command)
             form = click.Choice(["svg", "pdf"])
-            command = click.option("--picture-format", type=form, help="Draw them in this format, too.")(command)
+            command = click.option("--picture-format", type=form, help="Write them in this format, too: for a paper.")(
+                command
+            )
         if self.pictures is not None or self.folder is not None:
             title = self.named_by.upper() or "TITLE"
             default = f"{RESULTS}/{title}{self.folder}" if "scene" in signature.parameters else f"{RESULTS}/{self.name}"
@@ -248,10 +250,8 @@ def _perform(about: Command, front: Callable[..., Value], values: dict[str, Valu
                 answer, interruption = stop.partial, stop  # what is finished is written and shown first
                 answered()
         files: list[str] = []
-        drawn = pictures and interruption is None
+        drawn = pictures and interruption is None and (form or True)
         fault = None if folder is None else attempt(lambda: answer.save(folder, drawn), files)
-        if folder is not None and drawn and form:
-            fault = fault or attempt(lambda: answer.picture(folder, form), files)
         fault = fault or _by_flags(about, answer.failure())
         show(answer.to_dict() if as_json else {}, as_json, fault, lambda: answer.screen(files))
         if interruption is not None:

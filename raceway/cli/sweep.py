@@ -109,9 +109,10 @@ def _row(row: ReadTables) -> dict[str, str]:
     }
     if KYY_TILTS_FOLLOW.name in values:
         numbers[KYY_TILTS_FOLLOW.label] = values[KYY_TILTS_FOLLOW.name]
-    text |= {f"{name} {K.read_unit}": "" if value is None else f"{K.read(value):.3f}" for name, value in numbers.items()}
+    none = "" if row["status"] == "done" else row["status"]
+    text |= {f"{name} {K.read_unit}": none if value is None else f"{K.read(value):.3f}" for name, value in numbers.items()}
     error = values.get(ERROR.name)
-    return {**text, "error %": "" if error is None else f"{100.0 * error:.2g}", "status": row["status"]}
+    return {**text, "error %": none if error is None else f"{100.0 * error:.2g}"}
 
 
 @attrs.frozen(eq=False, repr=False, slots=False)
@@ -143,6 +144,10 @@ class _Choice(NamedTuple):
     y: str | None
     at: tuple[str, ...]
     file: str | Path | None
+
+    @property
+    def asked(self) -> bool:
+        return any(part for part in self)
 
     def foresee(self, design: Design, scene: ReadTables) -> None:
         """Refuse, before anything is computed, a picture that this sweep cannot give."""
@@ -227,18 +232,22 @@ def sweep(
     y : second axis; in curves what the colours stand for
     at : choose a value of an axis
     kind : of the picture; None: map where both axes have more than 8 values, else curves
-    picture : a .png, .svg or .pdf; None: STORE/NAME-KIND.png
+    picture : a .png, .svg or .pdf of K, or of --plot; None: STORE/NAME-KIND.png
     plan : print how many points, how long, how much memory and disk, and stop
     """
     from raceway.points.sweep import executor_of, prepare, workload
 
     scene, choice = Path(source), _Choice(value, kind, x, y, tuple(at), picture)
-    if (is_store := exists(scene)) or value is not None:
+    if (is_store := exists(scene)) or choice.asked:
         require_matplotlib("leave out --plot: --json and --csv have the values")
     if picture is not None:
         writable(Path(picture).parent)
     if is_store:
         return _Drawn(choice.draw(scene))
+    if not (axes or points or design or scene.is_file()):
+        raise SceneError.at(
+            "STORE", source, f"holds no sweep: raceway sweep SCENE --grid key=start:stop:count --out {source} makes it"
+        )
     registry, points_swept = registry_with(plugins), _design(tuple(axes), points, design, tuple(ranges), seed)
     pool = executor_of(executor, {"workers": workers, "scheduler": scheduler}, registry)
     tables = plain_tables(scene, *settings, registry=registry)
@@ -260,7 +269,7 @@ def _answer(
     from raceway.points.sweep import fill_store, refuse_large
 
     refuse_large(task, pool, force)
-    if choice.value is not None:
+    if choice.asked:
         choice.foresee(task.design, task.facts["scene"])
     stop: BaseException | None = None  # what ended the sweep before its last point
     try:
@@ -282,13 +291,13 @@ def _answer(
             warnings.warn(words, stacklevel=2)
         steps: list[Callable[[], object]] = [] if libraries else [lambda: write_netcdf(store)]
         steps += [lambda: write_csv(store, task.store / TABLE)] if csv else []
-        if choice.value is not None and stop is None and missing is None:
+        if choice.asked and stop is None and missing is None:
             steps.append(lambda: choice.draw(task.store)["files"][0])
         answer = _Swept(task.store, *_files(steps, task.store))
     if isinstance(stop, RacewayError) or answer.fault is None:
         answer = attrs.evolve(answer, fault=stop if isinstance(stop, RacewayError) else missing)
     if isinstance(stop, KeyboardInterrupt):
-        words = f"{states['done']} of {states['total']} points are done; the same command with --resume continues"
+        words = f"{states['done']} of {states['total']} points are done; the same command with --resume continues{' and draws' if choice.asked else ''}"
         warnings.warn(words, stacklevel=2)
         raise Interrupted(answer) from stop
     return answer

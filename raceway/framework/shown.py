@@ -1,6 +1,6 @@
 """Objects that show themselves briefly: in at most 15 lines of text, and as one table in a notebook."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from html import escape
 from math import floor, log10
 from textwrap import shorten
@@ -107,6 +107,19 @@ def percents(*changes: float) -> str:
     """Both ends of relative changes in percent, or the one that there is."""
     ends = (f"{100.0 * change:+.{'2g' if abs(change) < 0.995 else '0f'}}" for change in (min(changes), max(changes)))
     return f"{' to '.join(dict.fromkeys(ends))} %"
+
+
+#: Share of an interval below which a side counts as none, and two sides as alike.
+_SIDE = 0.02
+
+
+def interval_percents(change: Iterable[float], even: str = "+- ") -> str:
+    """Both ends of relative changes round 0 in percent; one number with ``even`` of alike sides, with its sign of a single side."""
+    ends = 0.0, *change
+    low, high = min(ends), max(ends)
+    if abs(low + high) <= _SIDE * (high - low):
+        return f"{even}{percents(high)[1:]}"
+    return percents(*(end for end in (low, high) if abs(end) > _SIDE * (high - low)))
 
 
 def duration(seconds: float) -> str:

@@ -357,28 +357,26 @@ class Result(Answer):
         notes = {**error["how"], "model": note}
         how, few = ({name: words(note) for name, note in notes.items()} for words in (str, few_words))
         motion = self.simulation
-        content: Content = without_nan(
-            {
-                "schema": SCHEMA,
-                "title": self.title,
-                "scene": self.model.scene.to_dict(),
-                "plan": self.model.plan.to_dict(),
-                "geometry": self.geometry,
-                "equilibrium": self.at_rest,
-                **self.stated.tables,
-                "not_computed": self.stated.missing,
-                "identification": self._identification(),
-                "model": self.bodies,
-                "motion": None if motion is None else {**motion_table(self.model, motion.record), "orbits": motion.orbits},
-                "uncertainty": self.uncertainty,
-                "tolerances": self.tolerances,
-                "error": {**error, "model": model, "how": how, "short": few},
-                "cost": self.cost,
-                "stability": self.stability,
-                "environment": self.environment,
-                "warnings": list(self.warnings),
-            }
-        )
+        content: Content = without_nan({
+            "schema": SCHEMA,
+            "title": self.title,
+            "scene": self.model.scene.to_dict(),
+            "plan": self.model.plan.to_dict(),
+            "geometry": self.geometry,
+            "equilibrium": self.at_rest,
+            **self.stated.tables,
+            "not_computed": self.stated.missing,
+            "identification": self._identification(),
+            "model": self.bodies,
+            "motion": None if motion is None else {**motion_table(self.model, motion.record), "orbits": motion.orbits},
+            "uncertainty": self.uncertainty,
+            "tolerances": self.tolerances,
+            "error": {**error, "model": model, "how": how, "short": few},
+            "cost": self.cost,
+            "stability": self.stability,
+            "environment": self.environment,
+            "warnings": list(self.warnings),
+        })  # fmt: skip
         return content
 
     def _identification(self) -> Tables | None:
@@ -423,7 +421,7 @@ class Result(Answer):
         return drawings(self)
 
     @door
-    def save(self, folder: Annotated[str | Path, PATH], pictures: bool = False) -> list[Path]:
+    def save(self, folder: Annotated[str | Path, PATH], pictures: bool | str = False) -> list[Path]:
         """Write result.json, pictures where they are asked for, and the reports; remove what an earlier run that failed left there.
 
         Raises

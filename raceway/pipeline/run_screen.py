@@ -28,8 +28,13 @@ def _answer_rows(result: Content) -> list[Row]:
     """The first section."""
     identification = result["identification"]
     if identification is None:
+        spin = result["scene"]["kinematics"].get("spin_speed_rpm")
         return [
-            (f"Answer at rest, {tilt_words(result['scene']['supports']['tilt'])}", "", ""),
+            (
+                f"Answer at {f'{spin:g} r/min' if spin else 'rest'}, {tilt_words(result['scene']['supports']['tilt'])}",
+                "",
+                "",
+            ),
             *run_parts.interval_rows(result, q.KXX, q.KYY, q.KYY_TILTS_FOLLOW),
             *run_parts.held_rows(result),
             *run_parts.loaded_balls(result, ["most"]),

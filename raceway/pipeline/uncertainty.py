@@ -29,7 +29,7 @@ from raceway.bodies.rigid_bearing import build, with_hertz
 from raceway.core.ring.ring import TOLERANCE
 from raceway.errors import RacewayError
 from raceway.framework.estimate import Estimate, Note
-from raceway.framework.shown import Fact, number_within, percents
+from raceway.framework.shown import Fact, interval_percents, number_within, percents
 from raceway.pipeline.equilibrium import pressures, solve_equilibrium
 from raceway.pipeline.error import Errors
 from raceway.pipeline.plausible import Spread
@@ -70,8 +70,8 @@ RULE = (
 _SIGNED = {"hypotheses": "hypotheses", "contact": "exact Hertz", "bodies": "rings and balls elastic"}
 #: Notes on contacts or hypotheses that change nothing.
 _NOTHING = (Estimate.HERTZ_ITSELF, Estimate.BEYOND_HERTZ, Estimate.NOTHING_TURNS, Estimate.HYPOTHESES_STATED)
-#: Share of the interval below which a part is not told; of its smaller side, to which the value is shown; of a side that counts.
-_TOLD, _SHOWN, _SIDE = 0.1, 0.1, 0.02
+#: Share of the interval below which a part is not told; of its smaller side, to which the value is shown.
+_TOLD, _SHOWN = 0.1, 0.1
 
 Range = tuple[float, float]
 
@@ -92,6 +92,21 @@ def combined(parts: Mapping[str, Cause]) -> Range:
     intervals = {name: change for name, part in parts.items() if (change := _change(part)) is not None}
     same_sign = [_with_zero(intervals.pop(name)) for name in _SIGNED if name in intervals]
     return _squares([(sum(low for low, _ in same_sign), sum(high for _, high in same_sign)), *intervals.values()])
+
+
+def of_ratio(base: ReadTables, other: ReadTables, same: bool) -> Range:
+    """Interval of other / base, relative, from the intervals of both.
+
+    Numerical errors of both add as squares, as data of two bearings (not ``same``) do.  Of other causes the difference counts: what changes
+    both by the same factor leaves the ratio.  How far the ratio itself depends on it is not estimated.
+    """
+    causes: dict[str, Cause] = {}
+    for name, first, second in ((name, part, other["parts"][name]) for name, part in base["parts"].items()):
+        if (a := _change(first)) is not None and (b := _change(second)) is not None:
+            alone = name == "numerical" or (name == "data" and not same)
+            ends = (-hypot(b[0], a[1]), hypot(b[1], a[0])) if alone else (b[0] - a[0], b[1] - a[1])
+            causes[name] = _part(ends, "")
+    return combined(causes)
 
 
 def _with_zero(change: Iterable[float]) -> Range:
@@ -187,17 +202,9 @@ def interval(entry: ReadTables) -> str:
     known = {words: change for words, change in changes.items() if change is not None}
     sizes = {words: max(map(abs, change)) for words, change in known.items()}
     largest = [words for words in sorted(sizes, key=lambda words: -sizes[words]) if sizes[words] > _TOLD * max(-low, high)]
-    each = ", ".join(f"{words} {_percents(known[words], '')}" for words in largest)
+    each = ", ".join(f"{words} {interval_percents(known[words], '')[:-2]}" for words in largest)
     unknown = ", ".join(words for words in changes if words not in known)
-    return f"{_percents((low, high), '+- ')} %: {each}{unknown and f'; not estimated: {unknown}'}"
-
-
-def _percents(change: Range, even: str) -> str:
-    """Both ends in percent without the sign; one number of an even interval or of a single side."""
-    low, high = _with_zero(change)
-    if abs(low + high) <= _SIDE * (high - low):
-        return f"{even}{percents(high)[1:-2]}"
-    return percents(*(end for end in (low, high) if abs(end) > _SIDE * (high - low)))[:-2]
+    return f"{interval_percents((low, high))}: {each}{unknown and f'; not estimated: {unknown}'}"
 
 
 def _numerical(result: Computed, quantity: Quantity) -> Cause:

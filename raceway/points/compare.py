@@ -14,16 +14,16 @@ import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Interrupted, Part
-from raceway.answers.picture import Line, Plot, draw_panels, given_axes, signed
+from raceway.answers.picture import Line, Plot, draw_panels, given_axes, signed, within
 from raceway.answers.progress import ShowProgress, telling
-from raceway.answers.quantities import ENDS, K_ERROR, C, K, Quantity, Z, named
+from raceway.answers.quantities import ENDS, K_ERROR, C, Quantity, Z, named
 from raceway.answers.table import Words
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import KEY_VALUES, PATH, PATHS, door, member
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import Fact, number_within
 from raceway.pipeline.run import run
-from raceway.pipeline.uncertainty import interval
+from raceway.pipeline.uncertainty import interval, of_ratio
 from raceway.planning.plan import make_plan
 from raceway.plugins.formats import labelled_dataset
 from raceway.points.axes import Axis, Vary, axes_of, noun, places_of, points, refuse_mistakes, shown, tables_at
@@ -33,6 +33,7 @@ from raceway.points.engine import Item, local, work_through
 from raceway.points.store import row_key, tables_key, written
 from raceway.points.survey import key_facts
 from raceway.scene.scene import SceneSource, plain_tables, scene_from_dict
+from raceway.scene.sets import GEOMETRY
 from raceway.scene.tables import AutoIntegrator
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
@@ -43,9 +44,8 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 
-#: Panels of a quantity at most; part of K from which on |Z| is drawn beside it; part to which ends of intervals of the same causes agree;
-#: differences that one sentence tells by themselves.
-_MOST_PANELS, _INERTIA, _ALIKE, _FEW = 4, 0.01, 0.05, 3
+#: Panels of a quantity at most, and differences that one sentence tells by themselves.
+_MOST_PANELS, _FEW = 4, 3
 
 
 @attrs.frozen(eq=False, slots=False, repr=False)
@@ -154,28 +154,25 @@ class Comparison(Answer, Findings):
         return f"{len(self.rows)} runs compared\n{self.title.splitlines()[0]}", [*changes[:3], words, *runs]
 
     def table(self) -> list[dict[str, str]]:
-        """One row a run, as short text for a screen; why a run is unreliable is a sentence below."""
-        names, with_notes, texts = _short_names(self.axes), any(row.doubt for row in self.rows), list[dict[str, str]]()
+        """One row a run, as short text for a screen; a star marks what is unreliable, of which a sentence below says why."""
+        names, texts = _short_names(self.axes), list[dict[str, str]]()
         quantities, first = self.quantities, next(iter(self.quantities.values()))
         for row in self.rows:
             text = {name: shown(row.point[key]) for key, name in names.items()}
             for name, about in quantities.items():
                 value = row.value(name)
-                text[f"{about.symbol} {about.read_unit}"] = "" if value is None else f"{about.read(value):.3f}"
+                told = row.result["status"] if row.failed else "" if value is None else f"{about.read(value):.3f}"
+                text[f"{about.symbol} {about.read_unit}"] = f"{told}*" if row.doubt and value is not None else told
             text[f"{first.symbol} within"] = _within(row, first)
             if quantities is MOVING:
                 text[f"{C.symbol} {C.unit}"] = row.damping_words
                 text["error %"] = "" if row.value(Z.name) is None else f"{100.0 * row.error:.2g}"
-            if with_notes:
-                text["note"] = row.result["status"] if row.failed else "unreliable" if row.doubt else ""
             texts.append(text)
         return texts
 
     def draw(self) -> Figure:
-        """K, and |Z| where the inertia of the mass makes it another; of static scenes kxx, kyy and x."""
-        pairs = [(row.value(K.name) or 0.0, row.value(Z.name) or 0.0) for row in self.rows if row.doubt is None]
-        seen = any(abs(z - k) > _INERTIA * k for k, z in pairs)
-        quantities = [about for about in self.quantities.values() if about is not Z or seen]
+        """K; of static scenes kxx, kyy and x."""
+        quantities = [about for about in self.quantities.values() if about is not Z]
         parts = [_panels(self, about) for about in quantities]
         rows, axis = [panels for panels, _ in parts], parts[0][1]
         rows = [sum(rows, [])] if len(rows[0]) == 1 else [row[k : k + 2] for row in rows for k in range(0, len(row), 2)]
@@ -201,19 +198,23 @@ def _panels(comparison: Findings, about: Quantity, most: int = _MOST_PANELS) -> 
         of_curves = [along]
     axes = [*of_panels, *of_curves, *([] if alone else [along])]
     at = {tuple(repr(row.point[axis.key]) for axis in axes): row for row in comparison.rows}
-    stride, panels = math.prod(len(axis.values) for axis in of_curves[1:]), []
+    stride, panels = math.prod(len(axis.values) for axis in of_curves[1:]), list[Plot]()
+    same = not any(axis.key.removeprefix("bearing.") in ("preset", *GEOMETRY) for axis in of_curves[:1])
     for setting in product(*(axis.values for axis in of_panels)):
-        lines: list[Line] = []
+        lines, drawn = list[Line](), list[list[Row | None]]()
         for place, chosen in enumerate(product(*(axis.values for axis in of_curves))):
             points_along = [(*setting, *chosen, *end) for end in ([()] if alone else [(value,) for value in values])]
-            rows = [at.get(tuple(map(repr, point))) for point in points_along]
-            y, low, high, doubt = np.array([_numbers(row, about) for row in rows]).T
+            drawn.append([at.get(tuple(map(repr, point))) for point in points_along])
+            y, low, high, doubt = np.array([_numbers(row, about) for row in drawn[-1]]).T
             x = np.array([place] if alone else range(len(values)) if names else values, dtype=float)
             first, *more = [axis.words(value) for axis, value in zip(of_curves, chosen, strict=True)] or [""]
             words = ", ".join([shown(chosen[0]) if chosen else first, *more])
-            base = lines[place % stride] if place >= stride else None
+            base, apart = None, None
+            if place >= stride:
+                base, first_rows = lines[place % stride], drawn[place % stride]
+                apart = np.array([_apart(*pair, about, same) for pair in zip(first_rows, drawn[-1], strict=True)]).T
             shade = place / (len(of_curves[0].values) - 1) if len(of_curves) == 1 and of_curves[0].numeric else None
-            lines.append(Line(x, y, words, place, low, high, doubt, base, shade, {"linestyle": ""} if names else {}))
+            lines.append(Line(x, y, words, place, low, high, doubt, base, apart, shade, {"linestyle": ""} if names else {}))
         title = ", ".join(axis.words(value) for axis, value in zip(of_panels, setting, strict=True))
         panels.append(Plot(tuple(lines), along.label, about.axis, title, names))
     return panels, next(iter(of_curves), None)
@@ -227,6 +228,15 @@ def _numbers(row: Row | None, about: Quantity) -> tuple[float, float, float, flo
     entry = (row.result.get("uncertainty") or {}).get(about.name)
     low, high = (about.read(entry[end]) if entry else math.nan for end in ("low", "high"))
     return about.read(value), low, high, math.nan
+
+
+def _apart(base: Row | None, row: Row | None, about: Quantity, same: bool) -> tuple[float, float]:
+    """Interval of the quantity of a row over that of another, relative; nan where it is not known."""
+    first, other = (
+        None if one is None or one.doubt is not None else (one.result.get("uncertainty") or {}).get(about.name)
+        for one in (base, row)
+    )
+    return of_ratio(first, other, same) if first and other else (math.nan, math.nan)
 
 
 def difference_words(comparison: Findings) -> list[str]:
@@ -256,15 +266,11 @@ def difference_words(comparison: Findings) -> list[str]:
         words += f"{',' if len(panels) > 1 else ''} from {shown(min(along.values))} to {shown(max(along.values))} {along.unit}".rstrip()
     (base, base_low, base_high), (y, low, high) = np.concatenate(every, axis=2)
     if np.isfinite([low, high, base_low, base_high]).all():
-        within = np.array([(base_low <= y) & (y <= base_high), (low <= base) & (base <= high)])
-        both = within.all(axis=0)
-        which = "both" if both.all() else "neither" if not within.any() else f"both at {both.sum()} of {both.size} points"
-        # What is alike in both does not tell them apart; errors of the solver do.
-        apart = np.abs([low / y - base_low / base, high / y - base_high / base]).max()
-        alike = apart < _ALIKE * np.abs([low / y - 1.0, high / y - 1.0]).max()
-        error = max(row.error_of(about.name) for row in comparison.rows if row.doubt is None)
-        share = ", whose causes they share; beyond numerical errors"
-        words += f", within the uncertainty of {which}{share if both.any() and alike and np.abs(y / base - 1.0).min() > 2.0 * error else ''}"
+        inside = np.array([(base_low <= y) & (y <= base_high), (low <= base) & (base <= high)])
+        both = inside.all(axis=0)
+        which = "both" if both.all() else "neither" if not inside.any() else f"both at {both.sum()} of {both.size} points"
+        own, apart = within(curve for panel in panels for curve in panel.curves)
+        words += f", within the uncertainty of {which} ({about.symbol} {own}); difference {apart}"
     return [f"{words}."]
 
 
@@ -278,10 +284,11 @@ def _number_of(row: Row) -> tuple[str, str]:
     if z is None:
         return f"{about.symbol} {about.text(value, 4)}", f"{_within(row, about)}; {about.words}{doubt}"
     error, within = row.error * z, _within(row, about)
-    error_words = (
-        f"{within}; numerical +- {about.text(error, 2)}" if row.estimated else f"{within}; numerical error not known"
+    words = f"numerical +- {about.text(error, 2)}" if row.estimated else "numerical error not known"
+    return (
+        f"{about.symbol} {number_within(about.read(value), about.read(error), about.read_unit)}",
+        f"{within}; {words}{doubt}",
     )
-    return f"{about.symbol} {number_within(about.read(value), about.read(error), about.read_unit)}", error_words + doubt
 
 
 def _within(row: Row, about: Quantity) -> str:

@@ -232,16 +232,14 @@ class LawCurves(Answer):
             }
             for row in self.rows
         ]
-        yield sections(
-            [
-                ("Cycle", "", ""),
-                ("amplitude", f"{1e6 * loop.amplitude:.4g} µm", f"about the equilibrium, at {loop.frequency:.4g} Hz"),
-                ("stiffness K", f"{1e-6 * loop.stiffness:.5g} N/µm", "in phase with the approach"),
-                ("damping C", f"{loop.damping:.4g} N s/m", "in phase with its rate"),
-                ("energy lost", f"{1e6 * loop.energy:.4g} µJ", f"a cycle; {self.damping_origin}"),
-                ("loss factor", _ratio(loop.loss_factor), "w C / K"),
-            ]
-        )
+        yield sections([
+            ("Cycle", "", ""),
+            ("amplitude", f"{1e6 * loop.amplitude:.4g} µm", f"about the equilibrium, at {loop.frequency:.4g} Hz"),
+            ("stiffness K", f"{1e-6 * loop.stiffness:.5g} N/µm", "in phase with the approach"),
+            ("damping C", f"{loop.damping:.4g} N s/m", "in phase with its rate"),
+            ("energy lost", f"{1e6 * loop.energy:.4g} µJ", f"a cycle; {self.damping_origin}"),
+            ("loss factor", _ratio(loop.loss_factor), "w C / K"),
+        ])  # fmt: skip
         if loop.opens:
             yield "the contact opens on the way"
 

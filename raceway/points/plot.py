@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import attrs
 import numpy as np
 
-from raceway.answers.picture import Line, Plot, draw_panels, dress, label_axes, new_figure, save_figure, wrapped
+from raceway.answers.picture import Line, Plot, draw_panels, label_axes, new_figure, save_figure, wrapped
 from raceway.answers.quantities import AXIAL_DISPLACEMENT, COLUMNS, STIFFNESS, Z_REAL, K, entry_unit, read_in
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
@@ -29,10 +29,7 @@ _NO_RESULT = "#c3cad1"
 def draw(layout: _Layout) -> Figure:
     """The picture of a layout.
 
-    Raises
-    ------
-    RacewayError
-        matplotlib is missing.
+    RacewayError: matplotlib is missing.
     """
     data, kind = layout.data, layout.kind
     factor, unit = read_in(1.0, str(data.attrs.get("units", "")))
@@ -95,7 +92,7 @@ def _curves(layout: _Layout, parts: Sequence[DataArray], label: str, title: str)
         style, base = {"linestyle": ""} if as_list or names else {}, curves[0] if curves and not as_list else None
         shade = place / (len(values) - 1) if len(values) > 1 and all(map(is_number, values)) else None
         words = "" if value is None else shown(value)
-        curves.append(Line(np.array(x, dtype=float), y, words, place, low, high, None, base, shade, style))
+        curves.append(Line(np.array(x, dtype=float), y, words, place, low, high, None, base, None, shade, style))
     return Plot(tuple(curves), along.label, label, title, names)
 
 
@@ -103,7 +100,6 @@ def _map(axes: Axes, data: DataArray, x: str, y: str, limits: tuple[float, float
     """A cell round each point; contours where every point has a result."""
     low, high = limits
     if LIST in data.dims:
-        dress(axes)
         return axes.scatter(data[x].values, data[y].values, c=data.values, s=42, cmap="viridis", vmin=low, vmax=high)
     at_x, at_y = data[x].values, data[y].values
     values = data.transpose(y, x).values
@@ -247,10 +243,7 @@ _NAMES = {number.symbol: number.name for number in COLUMNS.values()} | {"kxx": "
 def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:
     """A variable by its name or symbol, with the labels of its other dimensions chosen.
 
-    Raises
-    ------
-    SceneError
-        A name that is not there, or labels that do not fit.
+    SceneError: A name that is not there, or labels that do not fit.
     """
     if text is None:
         text = next((name for name in _DEFAULTS if name.partition(":")[0] in dataset), None)

@@ -181,17 +181,15 @@ class Precision(Answer):
                 continue
             apart = minus(reference.values, base.values)
             comparable = Z_REAL.name in apart or (AXIAL_DISPLACEMENT.name in apart and Z_REAL.name not in base.values)
-            entries.append(
-                {
-                    "model": rows[0]["model"],
-                    "base": physics == self.base,
-                    "reference": _reference_table(reference),
-                    "difference": distance(apart) / base.size if comparable else None,
-                    "differences": base.relative(apart),
-                    "front": self.front(physics),
-                    "cheapest": self.cheapest(physics),
-                }
-            )
+            entries.append({
+                "model": rows[0]["model"],
+                "base": physics == self.base,
+                "reference": _reference_table(reference),
+                "difference": distance(apart) / base.size if comparable else None,
+                "differences": base.relative(apart),
+                "front": self.front(physics),
+                "cheapest": self.cheapest(physics),
+            })  # fmt: skip
         return entries
 
     @cached_property

@@ -104,20 +104,16 @@ class Sensitivities(Answer):
 
     def to_dict(self) -> Tables:
         """Plain tables: quantities, keys with all derivatives, keys without effect or derivative, cost."""
-        return dict(
-            without_nan(
-                {
-                    "title": self.title,
-                    "quantities": {n: described(n, value, self.definitions) for n, value in self.values.items()},
-                    "keys": [_table(row) for row in self.rows],
-                    "without_effect": [key.path for key in self.without_effect],
-                    "refused": [{"key": key.path, "value": key.value, "reason": why} for key, why in self.refused],
-                    "warnings": list(self.warnings),
-                    "tolerances": self.tolerances,
-                    "cost": {"run_s": self.run_s, "gradients_s": self.gradients_s, "models": self.models},
-                }
-            )
-        )
+        return dict(without_nan({
+            "title": self.title,
+            "quantities": {n: described(n, value, self.definitions) for n, value in self.values.items()},
+            "keys": [_table(row) for row in self.rows],
+            "without_effect": [key.path for key in self.without_effect],
+            "refused": [{"key": key.path, "value": key.value, "reason": why} for key, why in self.refused],
+            "warnings": list(self.warnings),
+            "tolerances": self.tolerances,
+            "cost": {"run_s": self.run_s, "gradients_s": self.gradients_s, "models": self.models},
+        }))  # fmt: skip
 
     def texts(self, pictures: bool) -> dict[str, str]:
         """sensitivities.csv, a line a key: value, unit, relative influences, derivatives."""

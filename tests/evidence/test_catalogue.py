@@ -109,7 +109,7 @@ def test_spindle_pairs_at_light_preload_and_grease_limit_do_not_slide(claim):
         needed.append(result.to_dict()["sliding"]["traction_needed"])
         told += any("balls slide" in text for text in result.warnings)
     what = f"of {len(sizes)} pairs DB of NSK and NTN, light preload, n d_m = 1.17e6 mm r/min (grease)"
-    source = f"bound: traction coefficient 0.06, Jones 1959 as cited by Harris & Kotzalas; {NSK}; NTN-SNR, ULTAGE, 2015"
+    source = f"bound: traction coefficient 0.06, below the 0.08 of conventional lubricants (ASLE 1959); {NSK}; NTN-SNR, ULTAGE, 2015"
     claim(f"{what}: share with a warning of sliding", told / len(sizes), at_most=0.05, basis="published", source=source)
     claim(f"{what}: largest traction coefficient needed", max(needed), at_most=0.06, basis="published", source=source)
 

@@ -36,12 +36,12 @@ from raceway_article.rules import BRIDGED, FAILED, HOLDS, LEVEL, NOT, PARTLY, UN
 _LARGEST_DEVIATION, _HEAVIEST_DEVIATION = 0.0242, 0.0033
 _LOW_ZONE, _HIGH_ZONE = (0.0, 0.25), (0.75, 1.0)
 _LOW_EFFECT, _HIGH_EFFECT = 0.08, 0.34
-#: Readings of claim 5: number -> effect, rule.
+#: Readings of claim 5: number -> claim, rule.
 _READINGS = {
-    "5a": ("effect of speed inside each zone", "rise of k at one axial load: k(0.25)/k(0) − 1 and k(1)/k(0.75) − 1"),
-    "5b": ("effect of speed up to the end of each zone", "rise at one axial load: k*(0.25) − 1 and k*(1) − 1"),
-    "5c": ("effect of the axial load on k", "largest k over smallest, of all axial loads, where that is largest in the zone"),
-    "5d": ("effect of the axial load on k*", "largest k* over smallest, of all axial loads, where that is largest in the zone"),
+    "5a": ("With speed {} rises by about 8 % from w* = 0 to 0.25 and by about 34 % from 0.75 to 1.", "rise of k at one axial load: k(0.25)/k(0) − 1 and k(1)/k(0.75) − 1"),
+    "5b": ("With speed {} rises by about 8 % up to w* = 0.25 and by about 34 % up to 1.", "rise at one axial load: k*(0.25) − 1 and k*(1) − 1"),
+    "5c": ("Axial load changes {} by about 8 % up to w* = 0.25 and by about 34 % from 0.75.", "largest k over smallest, of all axial loads, where that is largest in the zone"),
+    "5d": ("Axial load changes k* (k = {}) by about 8 % up to w* = 0.25 and by about 34 % from 0.75.", "largest k* over smallest, of all axial loads, where that is largest in the zone"),
 }  # fmt: skip
 
 #: Number, claim, rule, what was computed, outcomes of the rule.
@@ -260,9 +260,8 @@ def verdicts(curves: Curves, static: Sequence[Verified]) -> list[Verdict]:
     out = [*_not_testable(static), *(verdict_of(*row) for row in _unidirectional(curves))]
     for measure in MEASURES:
         rows = [*_hardening(curves, measure), *_axial(curves, measure), *_joint_effect(curves, measure)]
-        mark, ending = ("", "") if measure == "K" else (f" {measure}", f" k = {measure}.")
-        for number, claim, rule, finding, findings in rows:
-            out.append(verdict_of(f"{number}{mark}", f"{claim}{ending}", rule, finding, findings))
+        mark = "" if measure == "K" else f" {measure}"
+        out += [verdict_of(f"{number}{mark}", claim, rule, computed, found) for number, claim, rule, computed, found in rows]
     # Each claim for K, and at once for |Z|.
     return sorted(out, key=lambda verdict: verdict.number[0])
 
@@ -274,9 +273,9 @@ def _not_testable(static: Sequence[Verified]) -> list[Verdict]:
     rule = "none: the load cases are not in the text that is left of the article, so that no case can be computed again"
     out = []
     for number, claim, rows, deviation in (
-        ("1a", f"Static peak pressures are within {_LARGEST_DEVIATION:.2%} of exact Hertz in four load cases.", pressures,
+        ("1a", f"Peak pressures at rest are within {_LARGEST_DEVIATION:.2%} of Hertz in four load cases.", pressures,
          "largest deviation of the peak pressures in four load cases of our own"),
-        ("1b", f"In the heaviest case the inner race's is within {_HEAVIEST_DEVIATION:.2%}.", heaviest,
+        ("1b", f"In the heaviest, that of the inner race is within {_HEAVIEST_DEVIATION:.2%}.", heaviest,
          "deviation of the inner race's peak pressure at 2000 N axial, the heaviest of ours"),
     ):  # fmt: skip
         errors = [row.error for row in rows if row.error is not None]
@@ -285,7 +284,7 @@ def _not_testable(static: Sequence[Verified]) -> list[Verdict]:
         out.append(Verdict(number, claim, rule, finding, UNTESTED if errors or not rows else FAILED, failed=failures))
     rule = "none: the table of measured stiffnesses is not in the text that is left of the article"
     finding = "K at the rig's speeds and loads is reported in a table of its own"
-    return [*out, Verdict("2", "Stiffness is within 9.12 % of the rig's.", rule, finding, UNTESTED)]
+    return [*out, Verdict("2", "Stiffness is within 9.12 % of that measured on the rig.", rule, finding, UNTESTED)]
 
 
 def _unidirectional(curves: Curves) -> list[_Row]:
@@ -295,10 +294,7 @@ def _unidirectional(curves: Curves) -> list[_Row]:
         f"{BRIDGED}"
     )
     rows = []
-    for number, measure, words in (
-        ("3a", "K", "K = Re Z + m w²"),
-        ("3b", "|Z|", "|Z|, which holds the inertia of the mass"),
-    ):
+    for number, measure in (("3a", "K"), ("3b", "|Z|")):
         findings = []
         for model, surface in curves.surfaces(ONE_WAY):
             for curve in surface.curves:
@@ -306,7 +302,7 @@ def _unidirectional(curves: Curves) -> list[_Row]:
                 falls = _is("falls", _course(values, curve.errors, curve.failed))
                 why = curve.missing if falls is None else ""
                 findings.append(Finding({**model, "load": curve.load}, falls, _ratio(values), why))
-        claim = f"Unidirectional: the radial stiffness falls with speed; k = {words}."
+        claim = f"Under a unidirectional force {measure} falls with speed."
         rows.append((number, claim, rule, f"k*(w* = 1): {_by_tilt(findings)}", findings))
     return rows
 
@@ -332,12 +328,9 @@ def _above_lowest(w: np.ndarray, _speeds: np.ndarray, values: np.ndarray, errors
 
 def _hardening(curves: Curves, measure: str) -> list[_Row]:
     """Claim 4, "approximately quadratic", in two readings, and in either."""
-    claim = "Bidirectional: rises roughly quadratically with speed"
+    claim = f"Under a rotating force {measure} rises about quadratically with speed"
     rows: list[_Row] = []
-    for number, words, law, fit in (
-        ("4a", "in the speed", f"{measure} = a + c w^p", _in_speed),
-        ("4b", "in the speed above the lowest", "k* − 1 = c w*^p", _above_lowest),
-    ):
+    for number, law, fit in (("4a", f"{measure} = a + c w^p", _in_speed), ("4b", "k* − 1 = c w*^p", _above_lowest)):
         rule = (
             f"rotating force m e w²: {measure} rises at every step of the speed, by at least {LEVEL:.1%}, and by least squares {law} "
             f"has p from {NEAREST[0]:g} to {NEAREST[1]:g} and a 95 % interval without 1, the straight line; {BRIDGED}"
@@ -363,7 +356,7 @@ def _hardening(curves: Curves, measure: str) -> list[_Row]:
             for region, powers in rising.items()
         ]
         powers = f". Where it rises: {'; '.join(exponents)}" if exponents else ""
-        rows.append((number, f"{claim}; read as {words}.", rule, f"k*(w* = 1): {_by_tilt(findings)}{powers}", findings))
+        rows.append((number, f"{claim}: {law}.", rule, f"k*(w* = 1): {_by_tilt(findings)}{powers}", findings))
     either = [
         Finding(a.at, None if a.holds is None and not b.holds else bool(a.holds or b.holds), a.value, a.why or b.why)
         for a, b in zip(rows[0][-1], rows[1][-1], strict=True)
@@ -385,12 +378,8 @@ def _axial(curves: Curves, measure: str) -> list[_Row]:
     # The two effects in every reading
     effects: dict[str, list[_Effect]] = {reading: [] for reading in _READINGS}
     for model, surface in curves.surfaces(ROTATING):
-        w, values, failures, missing = (
-            np.array(curves.design.relative(surface.speeds)),
-            surface.values(measure),
-            surface.failed,
-            surface.missing,
-        )
+        w = np.array(curves.design.relative(surface.speeds))
+        values, failures, missing = surface.values(measure), surface.failed, surface.missing
         for load, k, failure_of_load in zip(surface.loads, values, failures, strict=True):
             low_change = _change_within(w, k, failure_of_load, *_LOW_ZONE)
             for reading, begin in (("5a", _HIGH_ZONE[0]), ("5b", 0.0)):
@@ -401,14 +390,13 @@ def _axial(curves: Curves, measure: str) -> list[_Row]:
             effects[reading].append(_Effect(model, low_change, high_change, missing))
     rows: list[_Row] = []
     expectation = f"about {_LOW_EFFECT:.0%} and about {_HIGH_EFFECT:.0%} (each within {ABOUT:.0%} of the number); {BRIDGED}"
-    claim = "Axial load: about 8 % effect for w* from 0 to 0.25, about 34 % from 0.75 to 1"
-    for number, (effect, words) in _READINGS.items():
+    for number, (claim, words) in _READINGS.items():
         zones = []
         for zone in ("low", "high"):
             zones.append([Finding(e.at, _as_claimed(e), getattr(e, zone), e.why) for e in effects[number]])
         low, high = (_by_tilt(findings, 100.0, " %", ".1f") for findings in zones)
         finding = f"low zone: {low}. High zone: {high}"
-        rows.append((number, f"{claim}; read as {effect}.", f"{words}: {expectation}", finding, zones[1]))
+        rows.append((number, claim.format(measure), f"{words}: {expectation}", finding, zones[1]))
     grows = []
     for at, low_effect, high_effect, why in effects["5c"]:
         growth = None if low_effect is None or high_effect is None else high_effect - low_effect
@@ -417,7 +405,7 @@ def _axial(curves: Curves, measure: str) -> list[_Row]:
         f"change of that effect from the low to the high zone, in points of percent: {_by_tilt(grows, 100.0, '', '+.1f')}"
     )
     rule = f"the effect of 5c is larger in the high zone than in the low one; {BRIDGED}"
-    return [*rows, ("5e", "The influence of the axial load grows with speed.", rule, finding, grows)]
+    return [*rows, ("5e", f"The influence of axial load on {measure} grows with speed.", rule, finding, grows)]
 
 
 def _as_claimed(effect: _Effect) -> bool | None:
@@ -449,13 +437,13 @@ def _joint_effect(curves: Curves, measure: str) -> list[_Row]:
     first, last = curves.design.loads[0], curves.design.loads[-1]
     step = f"rotating force m e w²: {measure} rises at every step of the"
     return [
-        ("6a", "The stiffness rises with axial load.", f"{step} axial load, at each speed; {BRIDGED}",
+        ("6a", f"{measure} rises with axial load.", f"{step} axial load, at each speed; {BRIDGED}",
          f"{measure} at {last:g} N over {measure} at {first:g} N: {_by_tilt(with_load)}", with_load),
-        ("6b", "The stiffness rises with speed.", f"{step} speed, at each axial load, by at least {LEVEL:.1%}; {BRIDGED}",
+        ("6b", f"Under a rotating force {measure} rises with speed.", f"{step} speed, at each axial load, by at least {LEVEL:.1%}; {BRIDGED}",
          f"k*(w* = 1): {_by_tilt(with_speed)}", with_speed),
-        ("6c", "The speed's influence grows with axial load.",
+        ("6c", f"The influence of speed on {measure} grows with axial load.",
          "the size of the change with speed, |k*(1) - 1|, rises at every step of the axial load; a failed run at any speed or "
          "an unstable motion at either end leaves no judgement",
          f"from {first:g} to {last:g} N that size changes by, in points of percent: {_by_tilt(grows, 100.0, '', '+.1f')}", grows),
-        ("6", "All of this together.", "6a, 6b and 6c, at all speeds and axial loads", "see 6a, 6b and 6c", together),
+        ("6", f"{measure} rises with load and speed, and the heavier the load, the more speed does.", "6a, 6b and 6c, at all speeds and axial loads", "see 6a, 6b and 6c", together),
     ]  # fmt: skip

@@ -188,10 +188,7 @@ def design(
     shaft : tilt stiffness [N m/rad]; the scene's where it has one, else that of the rig's shaft
     friction : see ``friction_of``
 
-    Raises
-    ------
-    SceneError
-        A scene without unbalance, too few speeds or loads, or values that do not ascend.
+    SceneError: A scene without unbalance, too few speeds or loads, or values that do not ascend.
     """
     excitation, tilt = excitation_of(tables), tables.get("supports", {}).get("tilt")
     if shaft is None:
@@ -208,10 +205,7 @@ def design(
 def excitation_of(tables: ReadTables) -> ReadTables:
     """The scene's excitation.
 
-    Raises
-    ------
-    SceneError
-        It has no unbalance.
+    SceneError: It has no unbalance.
     """
     excitation = tables.get("excitation")
     if not isinstance(excitation, Mapping) or excitation.get("unbalance") is None:
@@ -223,10 +217,7 @@ def excitation_of(tables: ReadTables) -> ReadTables:
 def friction_of(tables: ReadTables, friction: float | None) -> float:
     """Coulomb coefficient: the one of ``--friction``, else the scene's, else the article's.
 
-    Raises
-    ------
-    SceneError
-        A friction below 0.
+    SceneError: A friction below 0.
     """
     if friction is None:
         friction = float(tables.get("contact", {}).get("friction", 0.0)) or _FRICTION

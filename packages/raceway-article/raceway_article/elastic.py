@@ -171,10 +171,7 @@ def design(tables: ReadTables, friction: float | None = None, turns: int = TURNS
     ----------
     friction : see ``raceway_article.design.friction_of``
 
-    Raises
-    ------
-    SceneError
-        A scene without unbalance, axial load, mesh or contacts at surface points; a friction below 0.
+    SceneError: A scene without unbalance, axial load, mesh or contacts at surface points; a friction below 0.
     """
     excitation = excitation_of(tables)
     if not isinstance(tables.get("mesh"), Mapping):
@@ -366,44 +363,39 @@ class ElasticArticle(Answer):
         """Everything, as plain tables for JSON; None where a number does not exist."""
         design = self.design
         rows = [self._compared(run, row) for run, row in zip(design.runs(), self.rows, strict=True)]
-        content: Tables = without_nan(
-            {
-                "title": self.title,
-                "scene": design.tables,
-                "friction": design.friction,
-                "speed_rpm": design.speed_rpm,
-                "turns": design.turns,
-                "steps_per_turn": STEPS,
-                "reference": _REFERENCE,
-                "what_differs": list(_DIFFERENCES),
-                "rows": rows,
-                "elements": max((row["cost"]["elements"] or 0 for row in rows), default=0) or None,
-                "runs": len(rows),
-                "failed": self.failed,
-                "cost": {
-                    "wall_s": self.seconds,
-                    "cpu_s": self.cpu_s,
-                    "rows_cpu_s": sum(row["cost"]["cpu_s"] for row in self.rows),
-                    "reused": self.reused,
-                },
-            }
-        )
+        content: Tables = without_nan({
+            "title": self.title,
+            "scene": design.tables,
+            "friction": design.friction,
+            "speed_rpm": design.speed_rpm,
+            "turns": design.turns,
+            "steps_per_turn": STEPS,
+            "reference": _REFERENCE,
+            "what_differs": list(_DIFFERENCES),
+            "rows": rows,
+            "elements": max((row["cost"]["elements"] or 0 for row in rows), default=0) or None,
+            "runs": len(rows),
+            "failed": self.failed,
+            "cost": {
+                "wall_s": self.seconds,
+                "cpu_s": self.cpu_s,
+                "rows_cpu_s": sum(row["cost"]["cpu_s"] for row in self.rows),
+                "reused": self.reused,
+            },
+        })  # fmt: skip
         return content
 
-    def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
+    def save(self, folder: str | Path, pictures: bool | str = False) -> list[Path]:
         """Write JSON and CSV, and where ``pictures`` asks for them the figures and the page, which comes first.
 
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or a folder or disk that cannot be written.
+        RacewayError: matplotlib is missing, or a folder or disk that cannot be written.
         """
         from raceway_article.elastic_page import columns, drawings, page
         from raceway_article.page import write_tables
 
         folder, content = Path(folder), self.to_dict()
         pictured = drawings(content) if pictures else []
-        files = write_tables(self.stem, content, {self.stem: columns(content["rows"])}, pictured, folder)
+        files = write_tables(self.stem, content, {self.stem: columns(content["rows"])}, pictured, folder, pictures)
         if not pictures:
             return files
         stresses = [file for row in self.rows for name in row.get("pictures") or [] if (file := folder / name).is_file()]

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _Colour: TypeAlias = str | tuple[float, float, float, float]
 _WIDTH, _HEIGHT = 4.7, 3.8
-_REFERENCE = "#8794a0"
+_REFERENCE, _LIGHT = "#8794a0", "weightless balls"
 _STAR, _SPEED, _LOAD, _STIFFNESS = "k* = K / K(w_min) [-]", "w* [-]", "axial load [N]", "K [10⁶ N/m]"
 #: Direction and amplitude law -> colour, style, width [pt] and name of a line.
 _PAIRS = {
@@ -62,9 +62,20 @@ class Picture:
     def figure(self) -> Figure:
         rows = -(-len(self.panels) // 3)
         columns = min(3, len(self.panels))
-        figure = new_figure(_WIDTH * columns, _HEIGHT * rows + 0.4)
+        figure, handles = new_figure(_WIDTH * columns, _HEIGHT * rows + 0.4), dict[str, Any]()
         for number, panel in enumerate(self.panels, start=1):
-            panel.draw(figure.add_subplot(rows, columns, number, projection="3d" if panel.solid else None))
+            panel.draw(axes := figure.add_subplot(rows, columns, number, projection="3d" if panel.solid else None))
+            if legend := axes.get_legend():
+                handles |= zip([text.get_text() for text in legend.texts], legend.legend_handles, strict=True)
+                legend.remove()
+        if handles:  # once for all panels
+            figure.legend(
+                handles.values(),
+                handles.keys(),
+                loc="outside lower center",
+                ncols=min(len(handles), 2 * columns),
+                frameon=False,
+            )
         figure.suptitle(self.title, fontsize=13)
         return figure
 
@@ -172,7 +183,9 @@ def _excitations(curves: Curves, kind: str, tilt: str, measure: str, star: bool,
         known = np.isfinite(y := k(curve))
         return _line(w[known], y[known], style, colour, width, label, marked)
 
-    lines = [bridged(curve, "--", _PAIRS[pair][0], 1.1, marked=False) for pair, curve in light.items()]
+    lines = [
+        bridged(curve, "--", _PAIRS[pair][0], 1.1, f"{_PAIRS[pair][3]}, {_LIGHT}", False) for pair, curve in light.items()
+    ]
     lines += [bridged(curve, style, colour, width, name)
               for curve, (colour, style, width, name) in ((curve, _PAIRS[pair]) for pair, curve in run.items())]  # fmt: skip
     # A ring does not stay on an unstable motion; limits are those of the others.
@@ -181,12 +194,18 @@ def _excitations(curves: Curves, kind: str, tilt: str, measure: str, star: bool,
         for pair, curve in run.items()
     ]
 
-    caption = "Dashed: the same with weightless balls."
+    caption = ""
     if any(np.isfinite(curve.values(measure, "unstable")).any() for curve in run.values()):
-        caption += " Crosses: unstable motions, which a ring does not stay on; at the edge where they lie outside."
+        caption = "Crosses: unstable motions, which a ring does not stay on; at the edge where they lie outside."
     gaps = {f"{row['speed_rpm']:g}" for curve in run.values() for row in curve.rows if row["status"] == Status.UNSTEADY}
     if gaps:
         caption += f" No steady motion is found at {', '.join(sorted(gaps))} r/min; what a ring does there stands in the last table."
+    other = {f"{row['speed_rpm']:g}" for curve in run.values() for row in curve.rows if row.get("found") == "from rest"}
+    if other:
+        at = ", ".join(sorted(other, key=float))
+        caption += (
+            f" At {at} r/min stands the motion that a ring reaches from rest: on another branch than its neighbours K jumps."
+        )
     words = f"{label} over w* from 0 to 1, {TILT_WORDS[tilt]}: {_ends({_PAIRS[pair][3]: k(curve) for pair, curve in run.items()})}"
     return _panel(lines, (f"{TILT_WORDS[tilt]}, {load:g} N", _SPEED, label), 2, words, caption)
 
@@ -195,9 +214,12 @@ def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     """Figure 10: at several axial loads; dashed without ball inertia."""
     w, rows = np.array(curves.design.relative(curves.design.speeds)), _few_of(curves.design.loads)
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
-    label, lines, names = _STAR if star else _STIFFNESS, list[Line](), {}
+    label, lines, names = _STAR if star else _STIFFNESS, list[Line](), dict[str, np.ndarray]()
     for row, colour in zip(rows, _colours(len(rows)), strict=True):
-        lines += [_line(w, k[row], "-", colour, 2.0, marked=False), _line(w, light[row], "--", colour, 1.1, marked=False)]
+        lines += [
+            _line(w, k[row], "-", colour, 2.0, marked=False),
+            _line(w, light[row], "--", colour, 1.1, "" if names else _LIGHT, False),
+        ]
         names[f"{curves.design.loads[row]:g} N"] = k[row]
 
     def ends(axes: Axes) -> None:
@@ -212,21 +234,21 @@ def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
         )
 
     words = f"{label} over w*, {TILT_WORDS[tilt]}, with ball inertia: {_ends(names)}"
-    return _panel(lines, (TILT_WORDS[tilt], _SPEED, label), 0, words, "Dashed: weightless balls.", ends)
+    return _panel(lines, (TILT_WORDS[tilt], _SPEED, label), 1, words, more=ends)
 
 
 def _over_load(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     """Figure 11: at several speeds; dashed without ball inertia."""
     loads, columns = np.array(curves.design.loads), _few_of(curves.design.speeds)
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
-    label, lines, names = _STAR if star else _STIFFNESS, list[Line](), {}
+    label, lines, names = _STAR if star else _STIFFNESS, list[Line](), dict[str, np.ndarray]()
     for column, colour in zip(columns, _colours(len(columns)), strict=True):
         name = f"w* = {curves.design.relative(curves.design.speeds)[column]:.2g}"
-        lines.append(_line(loads, light[:, column], "--", colour, 1.1, marked=False))
+        lines.append(_line(loads, light[:, column], "--", colour, 1.1, "" if names else _LIGHT, False))
         lines.append(_line(loads, k[:, column], "-", colour, 1.9, name))
         names[name] = k[:, column]
     words = f"{label} over the axial load, {TILT_WORDS[tilt]}: {_ends(names)}"
-    return _panel(lines, (TILT_WORDS[tilt], _LOAD, label), 3, words, "Dashed: weightless balls.")
+    return _panel(lines, (TILT_WORDS[tilt], _LOAD, label), 3, words)
 
 
 def _with_and_without_inertia(curves: Curves, kind: str, tilt: str, star: bool) -> list[np.ndarray]:
@@ -295,18 +317,16 @@ def _solid(curves: Curves, setting: Setting) -> Panel:
 
 def _friction(curves: Curves, tilt: str) -> Panel:
     """k* over speed without friction, and with it on balls that stand and that orbit, at the heaviest and the lightest load."""
-    design, lines, names = curves.design, list[Line](), {}
+    design, lines, names = curves.design, list[Line](), dict[str, np.ndarray]()
     for load, style in ((design.loads[-1], "-"), (design.loads[0], "--")):
         for friction in design.frictions:
             setting = Setting(**ROTATING, tilt=tilt, inertia=True, bodies="rigid", friction=friction)
             star, w = curves.curve(setting, load).normalised(), np.array(design.relative(design.speeds_of(setting)))
-            label = FRICTION_WORDS[friction] if style == "-" else ""
-            known = np.isfinite(star)
-            lines.append(_line(w[known], star[known], style, _FRICTION_COLOURS[friction], 1.7, label))
-            names[f"{load:g} N, {FRICTION_WORDS[friction]}"] = star
+            known, name = np.isfinite(star), f"{load:g} N, {FRICTION_WORDS[friction]}"
+            lines.append(_line(w[known], star[known], style, _FRICTION_COLOURS[friction], 1.7, name))
+            names[name] = star
     words = f"k* over w* from 0 to 1, {TILT_WORDS[tilt]}: {_ends(names)}"
-    caption = f"Solid: {design.loads[-1]:g} N. Dashed: {design.loads[0]:g} N."
-    return _panel(lines, (TILT_WORDS[tilt], _SPEED, _STAR), 1, words, caption, _reference)
+    return _panel(lines, (TILT_WORDS[tilt], _SPEED, _STAR), 1, words, more=_reference)
 
 
 def _reference(axes: Axes) -> None:

@@ -17,12 +17,18 @@ ARTICLE = "“Dynamic Stiffness Characteristics of Bearings Under Combined Loads
 
 
 def write_tables(
-    name: str, content: ReadTables, tables: dict[str, list[Tables]], pictures: Iterable[Picture], folder: Path
+    name: str,
+    content: ReadTables,
+    tables: dict[str, list[Tables]],
+    pictures: Iterable[Picture],
+    folder: Path,
+    form: bool | str,
 ) -> list[Path]:
-    """JSON of a study, a CSV file of each table and a PNG file of each picture."""
+    """JSON of a study, a CSV file of each table and a PNG file of each picture, of a ``form`` with a name this, too."""
     files = [write_json(content, folder / f"{name}.json")]
     files += [write_whole(csv_text(rows).encode(), folder / f"{title}.csv") for title, rows in tables.items()]
-    return files + [save_figure(picture.figure(), folder / f"{picture.name}.png") for picture in pictures]
+    drawn, forms = ((one.name, one.figure()) for one in pictures), ["png", *([form] if isinstance(form, str) else [])]
+    return files + [save_figure(figure, folder / f"{name}.{ending}") for name, figure in drawn for ending in forms]
 
 
 def page(

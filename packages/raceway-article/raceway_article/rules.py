@@ -69,7 +69,7 @@ class Verdict:
     def where(self) -> str:
         """Where it holds in few words: the region, or of a longer one in how many runs at each tilt."""
         if len(self.region.split()) <= _MOST_WORDS:
-            return self.region
+            return {HOLDS: "everywhere", NOT: "nowhere", UNTESTED: "its data are lost"}.get(self.kind, self.region)
         parts = []
         for tilt in dict.fromkeys(finding.at["tilt"] for finding in self.findings):
             outcomes = [finding.holds for finding in self.findings if finding.at["tilt"] == tilt]

@@ -397,19 +397,16 @@ class Article(Answer):
             "tilt-stiffness": scan,
         }
 
-    def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
+    def save(self, folder: str | Path, pictures: bool | str = False) -> list[Path]:
         """Write JSON and CSV tables, and where ``pictures`` asks for them the figures and the page, which comes first.
 
-        Raises
-        ------
-        RacewayError
-            matplotlib is missing, or a folder or disk that cannot be written.
+        RacewayError: matplotlib is missing, or a folder or disk that cannot be written.
         """
         from raceway_article.figures import drawings
         from raceway_article.page import page, write_tables
 
         folder, content, drawn = Path(folder), self.to_dict(), drawings(self.curves, self.scan) if pictures else []
-        files = write_tables("article", content, self.tables(content), drawn, folder)
+        files = write_tables("article", content, self.tables(content), drawn, folder, pictures)
         if not pictures:
             return files
         view = page(content, self.curves.design.scene_load, self.scan, drawn, self.command)

@@ -72,7 +72,7 @@ class FMU(Answer):
         yield self.rows
         yield from self.notes
 
-    def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
+    def save(self, folder: str | Path, pictures: bool | str = False) -> list[Path]:
         """Write both FMUs into a folder.
 
         Raises

@@ -94,14 +94,12 @@ class Unit:
         counts = {"INPUTS": len(self.inputs), "OUTPUTS": len(self.outputs), "CONSTANTS": len(self.constants)}
         starts = {part: np.array([v.start for v in getattr(self, part)]) for part in ("inputs", "constants")}
         numbers = {"start": starts["inputs"], "constants": starts["constants"], **self.numbers}
-        return "\n".join(
-            [
-                f"/* {self.name} by Raceway {__version__}. */",
-                *(f"#define {name} {word}" for name, word in {**words, **counts}.items()),
-                f"int {self.name}_outputs(const double *inputs, double *outputs);",
-                *(_in_c(name, np.asarray(number)) for name, number in numbers.items()),
-            ]
-        )
+        return "\n".join([
+            f"/* {self.name} by Raceway {__version__}. */",
+            *(f"#define {name} {word}" for name, word in {**words, **counts}.items()),
+            f"int {self.name}_outputs(const double *inputs, double *outputs);",
+            *(_in_c(name, np.asarray(number)) for name, number in numbers.items()),
+        ])  # fmt: skip
 
     @property
     def token(self) -> str:

@@ -151,7 +151,7 @@ BAD = [
     (TABLE, [ANGLE, ANGLE], "twice"),
     (TABLE, ["load.axial"], "column of the data"),
     (TABLE, ["integrator.tolerance"], "setting of a method"),
-    (TABLE, [ANGLE, "bearing.conformity_inner", "bearing.conformity_outer"], "2 measured numbers for 3 free"),
+    (TABLE, [ANGLE, "bearing.conformity_inner", "bearing.conformity_outer"], "2 measured numbers do not determine 3 free"),
     ({}, [ANGLE], "is empty"),
     ({"axial [N]": [], "kxx [N/um]": []}, [ANGLE], "no measurements"),
     ({"axial [N]": [400.0], "kxx": [39.0]}, [ANGLE], "has no unit"),

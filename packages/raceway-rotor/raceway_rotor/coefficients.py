@@ -228,17 +228,15 @@ def _refuse_few(selection: Selection, least: int) -> None:
         )
     few = [key for key in speeds if len(selection.axes[key]) < least]
     if few:
-        raise SceneError(
-            [
-                Mistake(
-                    key,
-                    None,
-                    f"has {len(selection.axes[key])} points ({listed(selection.axes[key])}); rotor programs put cubics through "
-                    f"them, which takes at least {least} on an axis: sweep with --grid {key}=START:STOP:{least} or more",
-                )
-                for key in few
-            ]
-        )
+        raise SceneError([
+            Mistake(
+                key,
+                None,
+                f"has {len(selection.axes[key])} points ({listed(selection.axes[key])}); rotor programs put cubics through "
+                f"them, which takes at least {least} on an axis: sweep with --grid {key}=START:STOP:{least} or more",
+            )
+            for key in few
+        ])  # fmt: skip
 
 
 def _axes(selection: Selection, *arrays: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None, tuple[np.ndarray, ...]]:

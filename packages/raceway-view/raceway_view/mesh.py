@@ -92,7 +92,7 @@ class _Meshes(Answer):
         return self.content
 
     @door
-    def save(self, folder: Annotated[str | Path, PATH], pictures: bool = True) -> list[Path]:
+    def save(self, folder: Annotated[str | Path, PATH], pictures: bool | str = True) -> list[Path]:
         """Write a file for each ring, one for all balls, and the picture.
 
         RacewayError: a folder that cannot be written, or pyvista is missing.

@@ -55,7 +55,7 @@ class View(Answer):
         return [Path(name) for name in self.content["files"]]
 
     @door
-    def save(self, folder: Annotated[str | Path, PATH], pictures: bool = True) -> list[Path]:
+    def save(self, folder: Annotated[str | Path, PATH], pictures: bool | str = True) -> list[Path]:
         """Write all pictures into a folder, and nothing else.
 
         Raises

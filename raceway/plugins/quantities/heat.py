@@ -106,8 +106,11 @@ class Temperatures:
         )
         rows.append(("inner, outer ring", f"{rings} °C", f"balls, oil {others} °C"))
         for node, celsius in levels.items():
-            ends = band.get("temperatures_k", {}).get(node)
-            rows.append((node, number(celsius, "°C", 4), _within(ends, ZERO_C, "°C")))
+            within = _within(band.get("temperatures_k", {}).get(node), ZERO_C, "°C")
+            if node in ("shaft", "housing"):
+                rows.append((node, number(celsius, "°C", 4), within))
+            elif within:
+                rows.append((f"{node} within", *within.partition(": ")[::2]))
         ways = ", ".join(f"{number(value, 'W', 3)} by the {way}" for way, value in table["flows_w"].items())
         within = "; ".join(filter(None, (_within(band.get("heat_w"), 0.0, "W"), ways)))
         rows.append(("heat", number(table["heat_w"], "W", 4), within))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from raceway.framework.shown import Fact
     from raceway.storage.tables import ReadTables, Tables
 
-#: Traction coefficient that keeps the balls of most bearings from sliding: Jones 1959.
+#: Traction coefficient of balls where no oil is given, below the 0.08 that conventional lubricants reach.
 _SUFFICIENT = 0.06
 
 
@@ -33,8 +33,8 @@ class Sliding:
 
     References
     ----------
-    Jones, J. Basic Eng. 81 (1959) 1, as cited by Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapter 2: 0.06 to
-    0.07 keep balls of most bearings from sliding.  Hirano, ASLE Trans. 8 (1965) 425: little slip above an axial force of 10 Z F_c.
+    A Brief Examination of Factors Affecting Tractive Friction Coefficients of Spheres Rolling on Flat Plates, ASLE Annual Meeting, Buffalo,
+    April 1959 (abstract): up to 0.08.  Hirano, ASLE Trans. 8 (1965) 425: little slip above an axial force of 10 Z F_c.
     """
 
     name: ClassVar[str] = "sliding"
@@ -110,4 +110,4 @@ def _offered(problem: Problem) -> tuple[float, str]:
         return float(problem.contact.friction), "contact.friction"
     if problem.lubricant is not None:
         return float(problem.lubricant.traction_limit), "lubricant.traction_limit"
-    return _SUFFICIENT, "Jones 1959, no oil or friction is given"
+    return _SUFFICIENT, "steel balls in oil (up to 0.08: ASLE 1959), no oil or friction is given"

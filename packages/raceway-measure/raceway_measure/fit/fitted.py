@@ -221,6 +221,5 @@ def interval(name: str, value: float, half: float, unit: str, remark: str = "") 
 def refuse_few(data: int, free: int, source: str) -> None:
     """``SceneError`` for fewer data than free numbers."""
     if data < free:
-        numbers = "1 measured number" if data == 1 else f"{data} measured numbers"
-        message = f"{numbers} for {free} free ones: free fewer keys, or measure at more loads or speeds"
-        raise SceneError.at(source, None, message)
+        few = f"{data} measured number{'s do' if data > 1 else ' does'} not determine {free} free numbers"
+        raise SceneError.at(source, None, f"{few}: free fewer keys, or measure at more loads or speeds")

@@ -138,50 +138,48 @@ class Identified(Answer):
         component, with_mark, state = self.component, self.component.marked, self.state
         time = self.rotation.recording.time
         speeds = {"mean": component.speed, "lowest": component.lowest, "highest": component.highest}
-        return without_nan(
-            {
-                "signals": {
-                    "samples": len(time),
-                    "duration_s": float(time[-1] - time[0]),
-                    "turns": component.turns,
-                    "speed_rpm": {name: value * 30.0 / pi for name, value in speeds.items()},
-                    "angle_from": "marks of key" if with_mark else "integrated speed, no mark: the phase is unknown",
+        return without_nan({
+            "signals": {
+                "samples": len(time),
+                "duration_s": float(time[-1] - time[0]),
+                "turns": component.turns,
+                "speed_rpm": {name: value * 30.0 / pi for name, value in speeds.items()},
+                "angle_from": "marks of key" if with_mark else "integrated speed, no mark: the phase is unknown",
+            },
+            "line": {
+                "forward_m": abs(component.forward),
+                "angle_deg": float(np.degrees(np.angle(component.forward))) if with_mark else None,
+                "backward_m": component.backward,
+                "error_m": component.error,
+                "residual": component.residual,
+                "fourier_m": abs(component.fourier),
+            },
+            "run_out": {
+                "amplitude_m": abs(self.run_out.vector),
+                "angle_deg": float(np.degrees(np.angle(self.run_out.vector))),
+                "error_m": self.run_out.error,
+                "how": self.run_out.how,
+            },
+            "bearing": {
+                "force_n": abs(state.force),
+                "moment_nm": abs(state.moment),
+                "deflection_m": abs(state.deflection),
+                "slope_rad": abs(state.slope),
+                "sensor_m": abs(state.sensor),
+                "runs": state.runs,
+            },
+            "identification": self._identification(),
+            "uncertainty": {
+                "how": "half-widths at 95 %: spread of the blocks of turns, slow roll, marks between samples, least squares against "
+                "whole-turn Fourier, the assumed tilt stiffness; parameters of the rig taken as known are in `sensitivities`",
+                "parts": {
+                    name: {"stiffness": part[0], "damping": part[1] if with_mark else None}
+                    for name, part in self.parts.items()
                 },
-                "line": {
-                    "forward_m": abs(component.forward),
-                    "angle_deg": float(np.degrees(np.angle(component.forward))) if with_mark else None,
-                    "backward_m": component.backward,
-                    "error_m": component.error,
-                    "residual": component.residual,
-                    "fourier_m": abs(component.fourier),
-                },
-                "run_out": {
-                    "amplitude_m": abs(self.run_out.vector),
-                    "angle_deg": float(np.degrees(np.angle(self.run_out.vector))),
-                    "error_m": self.run_out.error,
-                    "how": self.run_out.how,
-                },
-                "bearing": {
-                    "force_n": abs(state.force),
-                    "moment_nm": abs(state.moment),
-                    "deflection_m": abs(state.deflection),
-                    "slope_rad": abs(state.slope),
-                    "sensor_m": abs(state.sensor),
-                    "runs": state.runs,
-                },
-                "identification": self._identification(),
-                "uncertainty": {
-                    "how": "half-widths at 95 %: spread of the blocks of turns, slow roll, marks between samples, least squares against "
-                    "whole-turn Fourier, the assumed tilt stiffness; parameters of the rig taken as known are in `sensitivities`",
-                    "parts": {
-                        name: {"stiffness": part[0], "damping": part[1] if with_mark else None}
-                        for name, part in self.parts.items()
-                    },
-                },
-                "sensitivities": self.changes,
-                "warnings": self.warnings,
-            }
-        )
+            },
+            "sensitivities": self.changes,
+            "warnings": self.warnings,
+        })  # fmt: skip
 
     def _identification(self) -> Tables:
         """K and C with the rig's tilt, then with it locked; what needs a phase is None without pulses."""

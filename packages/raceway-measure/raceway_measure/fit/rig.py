@@ -75,13 +75,11 @@ def with_tilt_of(shaft: Rotor, state: State, sensor: complex, stiffer: float = 1
     stiffer : factor on the moment over tilt; 0 for a bearing that resists no tilt
     """
     # Unknown F, M and slope: sensor, slope of the shaft, and M * slope_0 = stiffer * M_0 * slope.
-    matrix = np.array(
-        [
-            [shaft.sensor[1], shaft.sensor[2], 0.0],
-            [shaft.ring[1, 1], shaft.ring[1, 2], -1.0],
-            [0.0, state.slope, -stiffer * state.moment],
-        ]
-    )
+    matrix = np.array([
+        [shaft.sensor[1], shaft.sensor[2], 0.0],
+        [shaft.ring[1, 1], shaft.ring[1, 2], -1.0],
+        [0.0, state.slope, -stiffer * state.moment],
+    ])  # fmt: skip
     scale = np.array([1.0, abs(state.moment / state.force), abs(state.slope / state.force)])
     rows = np.array([abs(shaft.sensor[1]), scale[2], abs(state.slope) * scale[1]])
     right = np.array([sensor - shaft.sensor[0] * shaft.unbalance_force, -shaft.ring[1, 0] * shaft.unbalance_force, 0.0])

@@ -140,16 +140,14 @@ class _RigStudy(Answer):
 
     def to_dict(self) -> Tables:
         """Everything but the signals, as plain tables for JSON."""
-        return without_nan(
-            {
-                "title": self.title,
-                "scene": self.scene.to_dict(),
-                "rig": {**attrs.asdict(self.rig), "mass_kg": self.rig.mass, "disc_mass_kg": self.rig.disc_mass},
-                "critical_speed_rpm": self.critical,
-                "rows": [point.to_dict() for point in self.points],
-                **{name: getattr(self, name) for name in ("failed", "worst", "worst_by_cause")},
-            }
-        )
+        return without_nan({
+            "title": self.title,
+            "scene": self.scene.to_dict(),
+            "rig": {**attrs.asdict(self.rig), "mass_kg": self.rig.mass, "disc_mass_kg": self.rig.disc_mass},
+            "critical_speed_rpm": self.critical,
+            "rows": [point.to_dict() for point in self.points],
+            **{name: getattr(self, name) for name in ("failed", "worst", "worst_by_cause")},
+        })  # fmt: skip
 
     @property
     def worst_by_cause(self) -> list[Tables]:
@@ -168,7 +166,7 @@ class _RigStudy(Answer):
         noisy = max(abs(point.identified.state.stiffness / point.state.stiffness - 1.0) for point in self.points)
         return {"clean": clean, "disturbed": noisy}
 
-    def save(self, folder: str | Path, pictures: bool = False) -> list[Path]:
+    def save(self, folder: str | Path, pictures: bool | str = False) -> list[Path]:
         """Write rig.json, the page with its figures where ``pictures`` asks for them, and the records as CSV files.
 
         RacewayError: a folder that cannot be written, or matplotlib is missing.
