@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import attrs
 import numpy as np
 
-from raceway.extend import Line, Plot, Status, Tables, label_axes, name_ends, new_figure
+from raceway.extend import Line, Plot, Status, Tables, label_axes, name_ends, new_figure, wrapped
 from raceway_article.design import (
     AMPLITUDES, CLAIMED, DIRECTIONS, FRICTION_WORDS, ROTATING, STIFFNESSES, TILT_WORDS, TILTS, Curve, Curves, Setting, hardening,
 )  # fmt: skip
@@ -23,17 +23,17 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _Colour: TypeAlias = str | tuple[float, float, float, float]
-_WIDTH, _HEIGHT = 4.7, 3.8
+_WIDTH, _HEIGHT, _NARROW = 4.7, 3.4, 3.2
 _REFERENCE, _LIGHT = "#8794a0", "weightless balls"
 _STAR, _SPEED, _LOAD, _STIFFNESS = "k* = K / K(w_min) [-]", "w* [-]", "axial load [N]", "K [10⁶ N/m]"
 #: Direction and amplitude law -> colour, style, width [pt] and name of a line.
 _PAIRS = {
-    (DIRECTIONS[1], AMPLITUDES[1]): ("#c8501e", "-", 2.4, "rotating, m e w²"),
-    (DIRECTIONS[0], AMPLITUDES[0]): ("#0b5fa5", "-", 2.4, "unidirectional, constant"),
-    (DIRECTIONS[1], AMPLITUDES[0]): ("#c8501e", ":", 1.6, "rotating, constant"),
-    (DIRECTIONS[0], AMPLITUDES[1]): ("#0b5fa5", ":", 1.6, "unidirectional, m e w²"),
+    (DIRECTIONS[1], AMPLITUDES[1]): ("#e0803c", "-", 2.4, "rotating, m e w²"),
+    (DIRECTIONS[0], AMPLITUDES[0]): ("#0b4f8a", "-", 2.4, "unidirectional, constant"),
+    (DIRECTIONS[1], AMPLITUDES[0]): ("#e0803c", ":", 1.6, "rotating, constant"),
+    (DIRECTIONS[0], AMPLITUDES[1]): ("#0b4f8a", ":", 1.6, "unidirectional, m e w²"),
 }
-_FRICTION_COLOURS = dict(zip(FRICTION_WORDS, ("#55636f", "#c8501e", "#0b5fa5"), strict=True))
+_FRICTION_COLOURS = dict(zip(FRICTION_WORDS, ("#8d99a6", "#e0803c", "#0b4f8a"), strict=True))
 
 
 @attrs.frozen
@@ -62,7 +62,7 @@ class Picture:
     def figure(self) -> Figure:
         rows = -(-len(self.panels) // 3)
         columns = min(3, len(self.panels))
-        figure, handles = new_figure(_WIDTH * columns, _HEIGHT * rows + 0.4), dict[str, Any]()
+        figure, handles = new_figure(_NARROW * columns if columns > 1 else _WIDTH, _HEIGHT * rows + 0.8), dict[str, Any]()
         for number, panel in enumerate(self.panels, start=1):
             panel.draw(axes := figure.add_subplot(rows, columns, number, projection="3d" if panel.solid else None))
             if legend := axes.get_legend():
@@ -70,13 +70,9 @@ class Picture:
                 legend.remove()
         if handles:  # once for all panels
             figure.legend(
-                handles.values(),
-                handles.keys(),
-                loc="outside lower center",
-                ncols=min(len(handles), 2 * columns),
-                frameon=False,
+                handles.values(), handles.keys(), loc="outside lower center", ncols=min(len(handles), 3), frameon=False
             )
-        figure.suptitle(self.title, fontsize=13)
+        figure.suptitle(wrapped(self.title, int(8.2 * figure.get_figwidth())), fontsize=12)
         return figure
 
 
