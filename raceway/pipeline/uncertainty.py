@@ -29,7 +29,7 @@ from raceway.bodies.rigid_bearing import build, with_hertz
 from raceway.core.ring.ring import TOLERANCE
 from raceway.errors import RacewayError
 from raceway.framework.estimate import Estimate, Note
-from raceway.framework.shown import Fact, interval_percents, number_within, percents
+from raceway.framework.shown import Fact, interval_percents, number_within
 from raceway.pipeline.equilibrium import pressures, solve_equilibrium
 from raceway.pipeline.error import Errors
 from raceway.pipeline.plausible import Spread
