@@ -1,5 +1,7 @@
 """``raceway plan``."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from math import pi

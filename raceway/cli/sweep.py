@@ -1,5 +1,7 @@
 """``raceway sweep``: a sweep kept in a store with its files, and pictures of a store."""
 
+from __future__ import annotations
+
 import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
-import numpy as np
 
 from raceway.contact_laws.hertz import three_halves
-from raceway.core.contact.film import REGIMES
-from raceway.core.jit import Kernel
-from raceway.framework.contracts import ContactPairs, LawReport
+from raceway.framework.contracts import LawReport
 from raceway.framework.options import between, one_of, option, positive
 from raceway.scene.lubricant import Oil
-from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from raceway.core.jit import Kernel
+    from raceway.framework.contracts import ContactPairs
+    from raceway.storage.tables import Tables
+
 
 #: Lambda below which surfaces carry through asperities.
 _MIXED, _BOUNDARY = 3.0, 1.0
@@ -71,6 +75,8 @@ class Film(Oil):
         return thickness.central, -1.5 * thickness.by_load
 
     def build(self, pairs: ContactPairs) -> np.ndarray:
+        import numpy as np
+
         if pairs.entraining_speed is None or pairs.load is None:
             return pairs.hertz_factor[:, np.newaxis]
         thick, slope = self._slope(pairs)
@@ -86,6 +92,10 @@ class Film(Oil):
 
     def report(self, pairs: ContactPairs) -> LawReport:
         """Thickness, Lambda and regime of every contact, and what makes them doubtful."""
+        import numpy as np
+
+        from raceway.core.contact.film import REGIMES
+
         films, reduction = self.thickness(pairs), self._reduction(pairs)
         lambdas = films.minimum / self.roughness if self.roughness is not None else np.full_like(films.minimum, np.nan)
         columns = {

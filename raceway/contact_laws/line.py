@@ -1,15 +1,19 @@
 """Line contacts of rollers: the constants of ISO/TS 16281 and of Palmgren."""
 
-from typing import ClassVar
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.core.deferred import deferred
-from raceway.core.jit import Kernel
 from raceway.errors import PluginError
-from raceway.framework.contracts import ContactPairs
 from raceway.framework.options import option, positive, word_or
+
+if TYPE_CHECKING:
+    from raceway.core.jit import Kernel
+    from raceway.framework.contracts import ContactPairs
 
 #: c of delta = c Q^0.9 / L^0.8 of one contact [m^1.8 / N^0.9], for steel: half of what c_L = 35948 L^(8/9) of both races leaves
 #: (ISO/TS 16281), and 3.84e-5 mm^1.8 / N^0.9 (Palmgren).
@@ -55,7 +59,7 @@ class Line:
     length: float | None = option(None, unit="m", help="L; default: that of the rollers", rule=positive())
 
     @classmethod
-    def examples(cls) -> "list[Line]":
+    def examples(cls) -> list[Line]:
         """Instances for the conformance suite, whose contacts are ellipses."""
         return [cls(length=9e-3, constant=_COEFFICIENTS["iso_16281"]), cls(length=0.03, constant=_COEFFICIENTS["palmgren"])]
 

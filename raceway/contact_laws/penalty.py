@@ -1,15 +1,19 @@
 """The penalty of general finite-element programs, at surface points or integrated over the overlap ellipse of a contact."""
 
-from typing import ClassVar
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.contact_laws.hertz import point_stiffness
 from raceway.core.deferred import deferred
-from raceway.core.jit import Kernel
-from raceway.framework.contracts import ContactPairs
 from raceway.framework.options import option, positive
+
+if TYPE_CHECKING:
+    from raceway.core.jit import Kernel
+    from raceway.framework.contracts import ContactPairs
 
 
 @deferred("LAW")
@@ -68,7 +72,7 @@ class Penalty:
     )
 
     @classmethod
-    def examples(cls) -> "list[Penalty]":
+    def examples(cls) -> list[Penalty]:
         """Instances for the conformance suite."""
         return [cls(), cls(stiffness=1e15), cls(calibrate_at=150.0)]
 

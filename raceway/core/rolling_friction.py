@@ -26,8 +26,6 @@ References
 Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapters 2 and 5 (spin, race control, R = 2 f D / (2 f + 1)).
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import attrs

@@ -4,8 +4,6 @@ A hook of classes may also return a mapping of their names to "module:Class": a 
 names it, or when somebody asks for all of its kind.
 """
 
-from __future__ import annotations
-
 from typing import Any, Protocol
 
 import click

@@ -8,8 +8,6 @@ from importlib.resources import files
 from importlib.util import find_spec
 from typing import Any
 
-from raceway.errors import extra
-
 
 @cache
 def packages() -> dict[str, dict[str, Any]]:
@@ -35,6 +33,8 @@ def available(package: str) -> bool:
 
 def missing_package(word: str, part: str) -> str:
     """Which of the packages has a word in a part, and how to get it; "" where none has."""
+    from raceway.errors import extra
+
     package = next((package for package, has in packages().items() if word in has[part]), "")
     if package and find_spec(package.replace("-", "_")):
         return f"in {package}, which RACEWAY_DISABLE leaves out"

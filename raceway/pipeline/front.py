@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import attrs
 
@@ -14,11 +14,11 @@ from raceway.errors import RacewayError
 from raceway.framework.doors import DURATION, PATH, PATHS, TEXTS, door
 from raceway.framework.registry import default_registry, registry_with
 from raceway.pipeline import PATIENCE
-from raceway.pipeline.result import Result, chosen_reports
-from raceway.pipeline.uncertainty import stated
-from raceway.planning.plan import make_plan
-from raceway.scene.scene import SceneSource, as_scene, plain_tables
 from raceway.storage.files import writable
+
+if TYPE_CHECKING:
+    from raceway.pipeline.result import Result
+    from raceway.scene.scene import SceneSource
 
 #: Time that a note is worth [s].
 _NOTE_S = 10.0
@@ -69,7 +69,9 @@ def run(
     >>> round(float(result.displacement[0]) * 1e6, 1)  # of the inner ring along the axis [um]
     29.9
     """
+    from raceway.pipeline.result import chosen_reports
     from raceway.pipeline.run import run as compute
+    from raceway.scene.scene import as_scene
 
     read, writers = as_scene(scene, plugins=plugins), chosen_reports(reports, registry_with(plugins))
     folder = None if out is None else writable(Path(out))
@@ -82,6 +84,10 @@ def run(
 
 def radial_note(scene: SceneSource) -> list[str]:
     """For who reads coefficients of a scene: the interval of its radial stiffness at rest; empty where an equilibrium takes long."""
+    from raceway.pipeline.uncertainty import stated
+    from raceway.planning.plan import make_plan
+    from raceway.scene.scene import as_scene, plain_tables
+
     try:
         still = as_scene({**plain_tables(scene, registry=default_registry()), "identifier": {"kind": "tangent"}})
         if make_plan(still).predicted_wall_s > _NOTE_S:

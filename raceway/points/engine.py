@@ -3,6 +3,8 @@
 A study says what one item is and what is done with it; what is finished outlives Ctrl-C, a kill and a full disk.
 """
 
+from __future__ import annotations
+
 import json
 import os
 import platform
@@ -12,18 +14,21 @@ from contextlib import closing
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 
 from raceway import __version__
 from raceway.errors import PluginError, RacewayError
-from raceway.framework.contracts import Answer, Batch, Executor, Lost, Refused
+from raceway.framework.contracts import Answer, Batch, Lost, Refused
 from raceway.framework.registry import Registry
-from raceway.pipeline.simulate import OnProgress
 from raceway.points.store import Row, Store, program_key
 from raceway.scene.scene import Scene
 from raceway.storage.tables import ReadTables, Tables
+
+if TYPE_CHECKING:
+    from raceway.framework.contracts import Executor
+    from raceway.pipeline.simulate import OnProgress
 
 
 def plugins_of(scene: Scene) -> list[tuple[str, str]]:

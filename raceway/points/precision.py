@@ -21,7 +21,6 @@ from raceway.framework.doors import DURATION, KEY_VALUES, PATH, PATHS, door, mem
 from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import Fact
-from raceway.pipeline.simulate import OnProgress
 from raceway.planning.resolve import resolve
 from raceway.plugins.formats import labelled_dataset
 from raceway.points.axes import Vary, shown
@@ -52,6 +51,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from xarray import Dataset
+
+    from raceway.pipeline.simulate import OnProgress
 
 
 #: Of a row in precision.json, in its order.

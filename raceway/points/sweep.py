@@ -24,7 +24,6 @@ from raceway.framework.doors import PATH, PATHS, TEXTS, Reader, door, member, re
 from raceway.framework.options import at_least
 from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import duration
-from raceway.pipeline.run import run
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
 from raceway.points.column_quantities import MOVING, QUANTITIES, Columns, stated_columns
@@ -64,6 +63,8 @@ class Point:
     further: tuple[str, ...] = ()
 
     def __call__(self, task: tuple[int, Tables], registry: Registry) -> Row:
+        from raceway.pipeline.run import run
+
         number, point = task
         wall, cpu = time.perf_counter(), time.process_time()
         state, reason, content, cost = "failed", "", Tables(), Tables()

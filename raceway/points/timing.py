@@ -7,11 +7,9 @@ from pathlib import Path
 from typing import NotRequired, TypedDict, cast
 
 from raceway.answers.quantities import AXIAL_DISPLACEMENT, P0, PEAK_BALL_LOAD, Z_IMAG, Z_REAL, K, named
-from raceway.core.jit import working_process_time
 from raceway.errors import RacewayError
 from raceway.framework.registry import Registry
 from raceway.pipeline.content import Content, ErrorTable
-from raceway.pipeline.run import run
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import Store, row_key
 from raceway.scene.scene import Scene
@@ -77,6 +75,8 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Measured:
     or with several threads the wall time.
     The peak of memory is the process's, counted anew for each setting where the system lets a process do so.
     """
+    from raceway.pipeline.run import run
+
     start, compiling = time.perf_counter(), 0.0
     runs: list[dict[str, float]] = []
     own_peak, cold = _reset_peak(), True
@@ -128,6 +128,8 @@ class Clocks:
     """Readings of the clocks as a run starts, and the peak of memory counted anew where the system does so."""
 
     def __init__(self) -> None:
+        from raceway.core.jit import working_process_time
+
         self._counted_anew, self._clock = _reset_peak(), working_process_time
         self._cpu, self._wall = self._clock(), time.perf_counter()
 

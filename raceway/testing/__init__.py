@@ -16,10 +16,14 @@ Subclass a suite in a test file, and pytest collects its checks::
 or run all checks at once with ``check(entry)``, as ``raceway dev check-plugin [KIND:]NAME`` does.
 """
 
-from importlib import import_module
+from __future__ import annotations
 
-from raceway.framework.registry import Entry, Registry
-from raceway.testing.suite import Conformity, Suite
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from raceway.framework.registry import Entry, Registry
+    from raceway.testing.suite import Conformity, Suite
 
 #: kind -> (module, class) of its suite
 SUITES: dict[str, tuple[str, str]] = {

@@ -3,18 +3,22 @@
 Units that options declare are read, so that a law can be tried in other units of length, force and time.
 """
 
+from __future__ import annotations
+
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
-from raceway.core.jit import Kernel
-from raceway.core.signatures import LAW
-from raceway.framework.contracts import ContactLaw, ContactPairs, said
+from raceway.framework.contracts import ContactPairs, said
 from raceway.framework.duties import is_hertzian, law_report, reach_of
 from raceway.testing.suite import ConformityError, Suite, check_class, check_kernel, check_shape, duty, require
-from raceway.testing.systems import along_path, repeat_law, require_no_allocation
+
+if TYPE_CHECKING:
+    from raceway.core.jit import Kernel
+    from raceway.framework.contracts import ContactLaw
+
 
 #: Exponents of length, force and time.
 _UNITS: dict[str, tuple[float, float, float]] = {
@@ -124,6 +128,8 @@ def drive(law: ContactLaw, n: int, nodal: bool = False, pairs: ContactPairs | No
 
 def _along(kernel_run: _Driven, gaps: np.ndarray, rates: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
     """Forces (steps, n) along paths, from memory at rest, and the memory (n, m) at their end."""
+    from raceway.testing.systems import along_path
+
     state, forces = kernel_run.rest(), np.zeros_like(gaps)
     paths = (np.ascontiguousarray(gaps), np.ascontiguousarray(rates))
     along_path(kernel_run.kernel, *paths, kernel_run.params, dt, state, state.copy(), np.zeros((2, kernel_run.n)), forces)
@@ -196,6 +202,8 @@ class ContactLawSuite(Suite):
 
     @duty("kernel() is compiled with @jit(LAW)")
     def test_signature(self, law: ContactLaw) -> None:
+        from raceway.core.signatures import LAW
+
         check_kernel(law.kernel(), LAW, "LAW")
 
     @duty("zero force and derivatives for gap > 0, zero force at gap = 0")
@@ -331,6 +339,8 @@ class ContactLawSuite(Suite):
 
     @duty("the kernel allocates no memory")
     def test_no_allocation(self, law: ContactLaw) -> None:
+        from raceway.testing.systems import repeat_law, require_no_allocation
+
         kernel_run = drive(law, 256)
         state = kernel_run.rest()
         arrays = (np.linspace(-self.depth, 0.1 * self.depth, 256), np.zeros(256), kernel_run.params, state, state.copy())

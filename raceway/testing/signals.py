@@ -4,24 +4,27 @@ Identifiers get records of a mass on a spring and a dashpot, Z = K - m w^2 + j w
 records are spoilt by; K, m and C must come back.
 """
 
+from __future__ import annotations
+
 from math import radians
 from types import SimpleNamespace
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import attrs
 import numpy as np
 
 from raceway.answers.quantities import C, K
-from raceway.bodies.model import Equilibrium, Model
 from raceway.core.columns import with_values
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.signals import Identification
-from raceway.framework.contracts import Excitation, Identifier
 from raceway.framework.duties import force_params, is_elementwise_force, is_synchronous
-from raceway.plugins.excitations.harmonic import harmonic
 from raceway.storage.tables import Tables
 from raceway.testing.suite import Suite, check_class, check_kernel, duty, require
-from raceway.testing.systems import linear_system, require_no_allocation, sample_force
+
+if TYPE_CHECKING:
+    from raceway.bodies.model import Equilibrium, Model
+    from raceway.framework.contracts import Excitation, Identifier
+
 
 #: Samples of a period, and what sampling may change of an amplitude: a force that is sampled 360 times a turn and joined by
 #: straight lines loses 2.5e-5 of its line.
@@ -30,6 +33,8 @@ _SAMPLES, _SAMPLED = 4096, 1e-4
 
 def samples(excitation: Excitation, times: np.ndarray, repeats: int = 1) -> np.ndarray:
     """(n, 5) the force at times (n,), into an array that is full of NaN before."""
+    from raceway.testing.systems import sample_force
+
     out = np.full((len(times), 5), np.nan)
     params = np.ascontiguousarray(excitation.parameters(), dtype=float)
     sample_force(repeats, excitation.kernel(), params, np.ascontiguousarray(times, dtype=float), out)
@@ -106,6 +111,8 @@ class ExcitationSuite(Suite):
 
     @duty("the kernel allocates no memory")
     def test_no_allocation(self, excitation: Excitation) -> None:
+        from raceway.testing.systems import require_no_allocation, sample_force
+
         time, out = np.full(1, 0.1), np.zeros((1, 5))
         params, kernel = np.ascontiguousarray(excitation.parameters(), dtype=float), excitation.kernel()
         require_no_allocation(lambda count: sample_force(count, kernel, params, time, out))
@@ -204,6 +211,9 @@ def _synthetic_record(
 
 def _model_of(sense: int = 1, direction: float = 0.0) -> Model:
     """A model as identifiers see it, for the same spring, mass and dashpot."""
+    from raceway.plugins.excitations.harmonic import harmonic
+    from raceway.testing.systems import linear_system
+
     radial = np.diag([0.0, 1.0, 1.0, 0.0, 0.0])
     system = linear_system(damped=False)
     system.mass, system.damping, system.stiffness = MASS * np.eye(5), DAMPING * radial, STIFFNESS * radial

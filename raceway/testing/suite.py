@@ -34,19 +34,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import attrs
-import numpy as np
 
-from raceway.bodies.model import Equilibrium, Model
-from raceway.core.jit import Kernel
-from raceway.core.signatures import signature_words
-from raceway.framework.contracts import broken_duties
-from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from numba.core.typing.templates import Signature
     from numpy.typing import ArrayLike
+
+    from raceway.bodies.model import Equilibrium, Model
+    from raceway.core.jit import Kernel
+    from raceway.scene.scene import Scene
 
 
 def b7206c(**tables: object) -> Tables:
@@ -70,6 +67,8 @@ def model_of(scene: Scene | Tables) -> Model:
 
 def settled(scene: Scene | Tables) -> tuple[Model, Equilibrium]:
     """Model and static equilibrium of a scene, or of its tables."""
+    from raceway.pipeline.equilibrium import solve_equilibrium
+
     model = model_of(scene)
     return model, solve_equilibrium(model)
 
@@ -281,6 +280,8 @@ class Suite:
 
 def check_class(kind: str, plugin: attrs.AttrsInstance) -> None:
     """The duties that every kind shares: attributes that exist, a frozen attrs class, options that declare themselves."""
+    from raceway.framework.contracts import broken_duties
+
     cls = type(plugin)
     faults = broken_duties(kind, cls)
     require(not faults, f"`{cls.__qualname__}` " + ", ".join(faults))
@@ -299,6 +300,8 @@ def check_class(kind: str, plugin: attrs.AttrsInstance) -> None:
 
 def check_kernel(kernel: Kernel, signature: Signature, word: str) -> None:
     """A dispatcher compiled for exactly the contract's signature."""
+    from raceway.core.signatures import signature_words
+
     signatures = getattr(kernel, "nopython_signatures", None)  # compiles it
     if signatures is None:
         raise ConformityError(f"kernel() returns {kernel!r}, which is not compiled: decorate it with @jit({word})")
@@ -309,6 +312,8 @@ def check_kernel(kernel: Kernel, signature: Signature, word: str) -> None:
 
 def check_shape(word: str, values: ArrayLike, shape: tuple[int, ...]) -> None:
     """An array of the contract's shape."""
+    import numpy as np
+
     require(np.shape(values) == shape, f"{word} has the shape {np.shape(values)}, not {shape}")
 
 

@@ -15,12 +15,10 @@ import attrs
 import numpy as np
 
 from raceway import MeshError
-from raceway.extend import ReadTables, memory_for, size_of, size_words
+from raceway.extend import HexMesh, ReadTables, memory_for, size_of, size_words
 
 if TYPE_CHECKING:
     from meshio import Mesh
-
-    from raceway.extend import HexMesh
 
 
 #: Bytes of the largest mesh file.

@@ -5,24 +5,22 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
 from raceway.extend import (
-    BelowContact, axis_shear, axis_stresses, below_contacts, cells_near, centre_stress, figure_png, largest_shear,
-    new_figure, pressures, von_mises,
+    BelowContact, ElasticBodies, ElasticPoints, axis_shear, axis_stresses, below_contacts, cells_near, centre_stress,
+    figure_png, largest_shear, new_figure, pressures, von_mises,
 )  # fmt: skip
 from raceway_view.pictures import INK, Grid, Plotter, look_from, pyvista_of, quietly, rendered
-from types import ModuleType
+from raceway import Result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-    from raceway import Result
-    from raceway.extend import ElasticBodies, ElasticPoints
 
 
 _HEXAHEDRON = 12  # VTK's number of the cell

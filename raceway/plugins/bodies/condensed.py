@@ -1,24 +1,28 @@
 """The kind of bodies whose finite elements are reduced to what their contacts feel: resultants, or pressures at surface points."""
 
+from __future__ import annotations
+
 from math import ceil, log, pi
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.bodies.basis import make_basis
-from raceway.bodies.columns import ColumnBearing, ball_columns
-from raceway.bodies.model import BuiltBearing
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.duties import is_hertzian, is_swept
 from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S, Times, compiled_motion, runs
 from raceway.planning.parts import BETWEEN_BALLS, Balls, Decisions, PlannedMotion
-from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.plugins.bodies.mesh import unrefined
 from raceway.scene.tables import SceneTables
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.bodies.columns import ColumnBearing
+    from raceway.bodies.model import BuiltBearing
+    from raceway.planning.plan import ScenePlan
+
 
 #: Bytes and seconds of processor time for both rings, by nodes of a section, measured on one core of a small server: the
 #: factor of a harmonic, and some seventy of those; balls and a coarser mesh for the error included.
@@ -248,6 +252,7 @@ class Condensed:
 
     def same_bodies(self, problem: Problem, changed: Problem) -> bool:
         """Whether sections, contacts and materials, which compliances are computed from, are the same."""
+        from raceway.bodies.basis import make_basis
         from raceway.plugins.bodies.condensed_bearing import sections
 
         if (problem.bearing, problem.supports, problem.mesh) == (changed.bearing, changed.supports, changed.mesh):
@@ -282,6 +287,7 @@ class Condensed:
 
     def columns(self, problem: Problem, plan: ScenePlan) -> ColumnBearing:
         """See ``raceway.bodies.columns``."""
+        from raceway.bodies.columns import ball_columns
         from raceway.plugins.bodies.condensed_bearing import elastic_parts
 
         return ball_columns(problem, plan, elastic_parts)

@@ -1,25 +1,28 @@
 """The kind of bodies of cylindrical roller bearings: what it takes, what it refuses, what a run will cost."""
 
+from __future__ import annotations
+
 from math import pi, sqrt
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.bodies.columns import ColumnBearing
-from raceway.bodies.model import BuiltBearing
 from raceway.core.ratings import STRIBECK
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.duties import line_contact
 from raceway.framework.options import at_least, option, positive
 from raceway.planning.cost import START_S, Times, compiled_motion
-from raceway.planning.parts import Balls, Decisions, PlannedMotion
-from raceway.planning.plan import ScenePlan
-from raceway.planning.resolve import Problem
-from raceway.plugins.bodies.roller_bearing import build, roller_columns
-from raceway.scene.bearing import Bearing
-from raceway.scene.tables import SceneTables
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.bodies.columns import ColumnBearing
+    from raceway.bodies.model import BuiltBearing
+    from raceway.planning.parts import Balls, Decisions, PlannedMotion
+    from raceway.planning.plan import ScenePlan
+    from raceway.planning.resolve import Problem
+    from raceway.scene.bearing import Bearing
+    from raceway.scene.tables import SceneTables
 
 #: Seconds of a step with 12 rollers, of a sample, and of a search over that of rigid balls.
 _TIMES = Times({"weightless": 1.0e-4, "inertial": 1.2e-4}, sample=1.2e-4, search=1.0)
@@ -46,7 +49,7 @@ class CylindricalRollers:
     laminae: int = option(30, help="slices of each line contact", rule=at_least(1))
 
     @classmethod
-    def examples(cls) -> "list[CylindricalRollers]":
+    def examples(cls) -> list[CylindricalRollers]:
         """For the conformance suite."""
         return [cls(roller_length=9e-3)]
 
@@ -138,8 +141,12 @@ class CylindricalRollers:
 
     def build(self, problem: Problem, plan: ScenePlan) -> BuiltBearing:
         """See ``raceway.plugins.bodies.roller_bearing``."""
+        from raceway.plugins.bodies.roller_bearing import build
+
         return build(problem, plan, self)
 
     def columns(self, problem: Problem, plan: ScenePlan) -> ColumnBearing:
         """See ``raceway.plugins.bodies.roller_bearing``."""
+        from raceway.plugins.bodies.roller_bearing import roller_columns
+
         return roller_columns(problem, plan)

@@ -1,17 +1,21 @@
 """A measured force, read from a CSV file."""
 
+from __future__ import annotations
+
 import math
 from functools import lru_cache
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.core.deferred import deferred
-from raceway.core.jit import Kernel
 from raceway.framework.options import inside, option
 from raceway.storage.number_table import read_numbers
+
+if TYPE_CHECKING:
+    from raceway.core.jit import Kernel
 
 #: Samples at least, and samples that are fitted at once.
 _LEAST, _AT_ONCE = 8, 2**16
@@ -71,7 +75,7 @@ class Measured:
         _read(self.file)
 
     @classmethod
-    def examples(cls) -> "list[Measured]":
+    def examples(cls) -> list[Measured]:
         """Instances for the conformance suite: one turn of a force with a third harmonic."""
         from raceway import data
 

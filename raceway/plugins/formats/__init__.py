@@ -3,15 +3,19 @@
 pictures   orbit, spectrum, ball loads
 """
 
-from typing import Any, Protocol
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
 
 from raceway.answers import quantities
 from raceway.answers.quantities import Quantity
-from raceway.bodies.model import Equilibrium, Model
-from raceway.core.record import Record
-from raceway.core.signals import Identification
 from raceway.errors import RacewayError, extra
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.bodies.model import Equilibrium, Model
+    from raceway.core.record import Record
+    from raceway.core.signals import Identification
 
 
 class RecordedMotion(Protocol):

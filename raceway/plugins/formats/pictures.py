@@ -7,16 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import attrs
-import numpy as np
 
 from raceway.answers.picture import COLOURS, MARKERS, given_axes, label_axes, new_figure, save_figure, wrapped
 from raceway.errors import RacewayError, extra
 from raceway.framework.options import between, nearest, option
-from raceway.plugins.formats import RunResult
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from raceway.plugins.formats import RunResult
 
 
 _USED, _STATIC = COLOURS[:2]
@@ -133,6 +133,7 @@ def _draw_orbit(axes: Axes, result: RunResult) -> None:
     if shortened:
         label = f"all {_turns(record.schedule.turns)}"
         axes.plot(*(_MICRO * record.displacement[:, 1:3].T), color=_OTHER, linewidth=0.8, label=label)
+    import numpy as np
 
     label, path = f"last {_turns(turns)}, used" if shortened else _turns(turns), used.displacement[:, 1:3]
     if motion.model.problem.integrator.method.steady and not shortened:  # closed
@@ -146,6 +147,8 @@ def _draw_orbit(axes: Axes, result: RunResult) -> None:
 
 def _draw_spectrum(axes: Axes, result: RunResult) -> None:
     """Amplitude of the displacement against multiples of the excitation's frequency."""
+    import numpy as np
+
     assert result.simulation is not None
     record, z = result.simulation.record, result.identification
     frequency = result.model.excitation.frequency_hz if z is None else z.frequency_hz
@@ -176,6 +179,8 @@ def _draw_spectrum(axes: Axes, result: RunResult) -> None:
 
 def _draw_ball_loads(axes: Any, result: RunResult) -> None:
     """Inner contact load of each ball on polar axes: static, and its range over the recorded turns."""
+    import numpy as np
+
     azimuth, row = result.model.azimuth, result.model.basis.row
     count, z = result.model.geometry.ball_count, len(azimuth)
     static = result.equilibrium.contact_force[:z]

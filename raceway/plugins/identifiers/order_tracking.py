@@ -1,16 +1,21 @@
 """Dynamic stiffness along a changing speed, by order tracking."""
 
-from typing import ClassVar
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
-import numpy as np
 
-from raceway.core.record import Record
-from raceway.core.ring.ring import Ring
-from raceway.core.signals import Identification, identification, steady_stiffness
 from raceway.errors import ConvergenceError
-from raceway.framework.contracts import Equilibrium, Model
 from raceway.framework.options import between, option
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from raceway.core.record import Record
+    from raceway.core.ring.ring import Ring
+    from raceway.core.signals import Identification
+    from raceway.framework.contracts import Equilibrium, Model
 
 
 @attrs.frozen
@@ -36,6 +41,10 @@ class OrderTracking:
     window_turns: float = option(6.0, help="turns in a window", rule=between(2.0, 1000.0))
 
     def identify(self, records: list[Record], equilibrium: Equilibrium, model: Model) -> Identification:
+        import numpy as np
+
+        from raceway.core.signals import identification
+
         record = records[0]
         phase = model.excitation.phase(record.time)
         signals = np.hstack([record.force, record.displacement])
@@ -75,6 +84,8 @@ class _Window:
 
 
 def _window(model: Model, time: np.ndarray, phase: np.ndarray, signals: np.ndarray) -> _Window:
+    import numpy as np
+
     t = time - time.mean()
     span = t[-1] - t[0]
     u = t / span
@@ -106,6 +117,10 @@ def _steady(
 
     system : None where nothing has inertia;  speeds : w [rad/s] and w' [rad/s2]
     """
+    import numpy as np
+
+    from raceway.core.signals import steady_stiffness
+
     if system is None:
         return steady_stiffness(line[:5], line[5:], np.zeros(5, dtype=complex)), 0.0
     w, faster = speeds

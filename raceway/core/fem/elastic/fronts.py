@@ -11,8 +11,6 @@ Duff, Reid: The multifrontal solution of indefinite sparse symmetric linear syst
 Software 9 (1983) 302;  Przemieniecki: Matrix structural analysis of substructures, AIAA Journal 1 (1963) 138.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 import attrs
@@ -185,7 +183,7 @@ class Fronts:
         self.fronts, self.kept, self.schur = fronts, outer, schur
 
     @classmethod
-    def of_arrays(cls, arrays: Mapping[str, np.ndarray]) -> Fronts:
+    def of_arrays(cls, arrays: Mapping[str, np.ndarray]) -> "Fronts":
         """The way back from ``arrays``; they are not copied."""
         unknowns, values, fronts, at, begin = arrays["unknowns"], arrays["factors"], [], 0, 0
         for s, b in arrays["sizes"].tolist():

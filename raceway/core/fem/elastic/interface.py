@@ -1,7 +1,5 @@
 """The superelements of a bearing: what is equal is factored once, with the nodes that its contacts may touch."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -278,7 +276,7 @@ class Motions:
     balls: np.ndarray
     frame: np.ndarray
 
-    def plus(self, part: float, change: Motions) -> Motions:
+    def plus(self, part: float, change: "Motions") -> "Motions":
         """Self + part * other."""
         return Motions(self.nodes + part * change.nodes, self.balls + part * change.balls, self.frame + part * change.frame)
 
