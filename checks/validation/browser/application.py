@@ -29,7 +29,7 @@ field.value = value;
 for (const name of events) field.dispatchEvent(new Event(name));
 """
 _LATENCY = """
-const [selector, value, done] = arguments, field = document.querySelector(selector), app = document.querySelector(".app");
+const [selector, value, mark, done] = arguments, field = document.querySelector(selector), app = document.querySelector(".app");
 const before = app.dataset.number, begun = performance.now();
 field.value = value;
 field.dispatchEvent(new Event("input"));
@@ -40,7 +40,7 @@ const painted = () => requestAnimationFrame(() => {  // a message is read after 
   channel.port2.postMessage(0);
 });
 const seen = new MutationObserver(() => {
-  if (app.dataset.number !== before && app.dataset.done === app.dataset.number) { seen.disconnect(); painted(); }
+  if (app.dataset.number !== before && app.dataset[mark] === app.dataset.number) { seen.disconnect(); painted(); }
 });
 seen.observe(app, { attributes: true });
 """
@@ -189,9 +189,9 @@ class Tab:
         """Of scenes that are shown."""
         return int(self.browser.run("return document.querySelectorAll('.bodies > article').length"))
 
-    def drag(self, key: str, value: object) -> float:
-        """Move a slider; the time until the picture of it is painted [ms]."""
-        return float(self.driver.execute_async_script(_LATENCY, f'[data-slider="{key}"]', str(value)))
+    def drag(self, key: str, value: object, mark: str = "shown") -> float:
+        """Move a slider; the time until K and the curves are painted, or ("done") all numbers of the run [ms]."""
+        return float(self.driver.execute_async_script(_LATENCY, f'[data-slider="{key}"]', str(value), mark))
 
     def press_any(self, words: str) -> bool:
         """Press a button unless it is disabled; whether it was pressed."""

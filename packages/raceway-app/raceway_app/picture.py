@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
+from typing import TypeAlias
 
 import attrs
 import numpy as np
@@ -13,10 +15,12 @@ from raceway_view.page import BALL_COLUMNS, ball_cells, rings_data, state_data
 from raceway_view.view import at_rest as at_rest
 
 from raceway import Function, PointStatus, Quantity, RacewayError, Result, Scene, SceneError, function, run, sweep
-from raceway.extend import KNOWN, C, K, Tables, as_given, continuous_keys, default_registry, named, plugin_quantities, screen
+from raceway.extend import (
+    KNOWN, C, K, Tables, as_given, continuous_keys, default_registry, leaves, named, plugin_quantities, screen,
+)  # fmt: skip
 
-#: Relative tolerance of the orbits of curves, far below what is seen.
-_TOLERANCE = 1e-6
+#: Relative tolerance of the orbits of curves, and of curves at few points, far below what is seen; points that are computed at once.
+_TOLERANCE, _ROUGH, _AT_ONCE = 1e-6, 1e-4, 24
 _MULTIPLIER = Quantity("largest_multiplier", "1", "of the orbit: above 1 it is unstable", label="Floquet multiplier")
 #: Panels over speed and over load: title, and names of the curves in it, those of a motion first.
 _PANELS = {
@@ -34,9 +38,8 @@ _OF_MOTIONS = (K.name, C.name, "largest_multiplier", "peak_ball_load")
 #: Panels of which all curves are drawn; of others the first that the scene has.
 _TOGETHER = ("temperature",)
 _OVER_LOAD = ("stiffness", "ball load", "pressure p0", "reference life L10r")
-_ORBIT_POINTS = 181
-#: Few, so that browsers without a graphics card draw them in a tenth of a second.
-_FACETS = 60
+#: Facets are few, so that browsers without a graphics card draw them in a tenth of a second.
+_ORBIT_POINTS, _FACETS = 181, 60
 
 
 @attrs.frozen
@@ -79,9 +82,7 @@ def axes_of(scene: Scene, ranges: Mapping[str, tuple[float, float]]) -> dict[str
 def result_picture(result: Result, state: Snapshot) -> Tables:
     """The screen of a run, ball by ball, and the orbit; ``state``: of the bearing at rest.
 
-    Returns
-    -------
-    dict : title, bearing, warnings, rows (quantity, value, remark), left_out, columns and balls (of the inner and the outer race), polar
+    Dict of title, bearing, warnings, rows (quantity, value, remark), left_out, columns and balls (of the inner and the outer race), polar
         (azimuth [deg], load inner, load outer [N]), orbit ((n, 2) [um], or None), intervals (of quantities: value, low, high, relative)
     """
     content = result.content
@@ -107,60 +108,101 @@ def _orbit(result: Result) -> list[list[float]] | None:
 
 
 def bodies_picture(result: Result, state: Snapshot, rings: bool) -> Tables:
-    """The bearing in three dimensions, as ``view.js`` draws it; ``rings``: with the shapes that loads do not change.
-
-    Raises
-    ------
-    SceneError
-        Rows of different bearings.
-    """
+    """The bearing as ``view.js`` draws it, ``rings``: with the shapes that loads do not change; SceneError: rows of different bearings."""
     bearing = BearingSolids.of(result)
     return {**(rings_data(bearing, _FACETS) if rings else {}), **state_data(bearing, state)}
 
 
-def curves(result: Result, axes: Mapping[str, Axis], wait: Callable[[str], None] = lambda _name: None) -> list[Tables]:
-    """Curves of the scene of a result, of its steady orbits over speed and load, by the compiled loop.
+Titles: TypeAlias = dict[str, list[str]]
+Form: TypeAlias = tuple[tuple[tuple[str, str | None], ...], dict[str, float]]
+Parts: TypeAlias = tuple["Scene", Form, Titles, dict[str, Axis]]
 
-    Parameters
-    ----------
-    wait : called with the name of an axis before it is computed; an exception stops
 
-    Returns
-    -------
-    list of dict : panel, axis, label, x, unit, lines (name, label, y with None where the loop has no answer), present (x, or None),
-        missing (x without answer), why (no curves at all), key
-    """
-    steady = result.model.scene.to_dict() | {"integrator": {"kind": "periodic"}}
-    scene, panels = (
-        as_given(steady).scene(default_registry()) if result.model.scene.excitation else result.model.scene,
-        list[Tables](),
-    )
-    plugin_values = {name: quantity for name, (_, quantity) in plugin_quantities(default_registry()).items()}
-    quantities = KNOWN | named(_MULTIPLIER) | plugin_values
-    for name, axis in axes.items():
-        wait(name)
-        titles = {
-            title: [curve for curve in names if _has(result, curve)][: None if title in _TOGETHER else 1]
-            for title, names in _PANELS.items()
-            if name == "speed" or title in _OVER_LOAD
-        }
+def form(scene: Scene) -> Form:
+    """What scenes share that differ by numbers alone, and these numbers."""
+    keys = [(key, value) for key, value in leaves(scene.to_dict()) if key != "title"]
+    numbers = {key: value for key, value in keys if isinstance(value, float)}
+    return tuple((key, None if key in numbers else repr(value)) for key, value in keys), numbers
+
+
+def titles_of(result: Result) -> Titles:
+    """Panels of curves that a scene has: title, and names of the curves in it."""
+    known = {title: [name for name in names if _has(result, name)] for title, names in _PANELS.items()}
+    return {title: names if title in _TOGETHER else names[:1] for title, names in known.items() if names}
+
+
+class Curves:
+    """Curves of scenes that differ by numbers: of steady orbits over speed and load, by the compiled loop; what numbers leave as it is, is built once."""
+
+    def __init__(self) -> None:
+        self._built: dict[bool, tuple[object, dict[str, float], Function]] = {}  # of few points: what it holds for, numbers
+        self._lost: dict[
+            str, tuple[np.ndarray, np.ndarray]
+        ] = {}  # axis -> points of the curves before, which have no answer
+
+    def _function(self, scene: Scene, of: Form, keys: list[str], outputs: list[str], few: bool) -> Function:
+        """Over ``keys`` and the numbers that have changed since it was built."""
+        kind, numbers = (of[0], keys, outputs), of[1]
+        before, old, compiled = self._built.get(few, (None, {}, None))
+        moved = [key for key, value in numbers.items() if before == kind and value != old[key] and key not in keys]
+        if compiled is None or before != kind or not set(moved) <= set(compiled.inputs):
+            tables = scene.to_dict() | ({"integrator": {"kind": "periodic"}} if scene.excitation else {})
+            steady, tolerance, compiled = as_given(tables).scene(default_registry()), _ROUGH if few else _TOLERANCE, None
+            with suppress(SceneError):
+                compiled = function(steady, [*keys, *moved], outputs, tolerance=tolerance)
+            if compiled is None or compiled.why_slow:
+                compiled = function(steady, keys, outputs, tolerance=tolerance)
+            self._built[few] = kind, numbers, compiled
+        return compiled
+
+    def draw(self, parts: Parts, go_on: Callable[[], None], few: bool = False) -> list[Tables]:
+        """Dicts of panel, axis, label, x, unit, lines (name, label, y, None without answer), present, missing (x), why (no curves), key.
+
+        parts : scene, its ``form``, ``titles_of`` a result like it, axes;  go_on : called between blocks of points; may raise
+        few : a quarter of the points, without those that lay in gaps of the curves before
+        """
+        scene, of, titles, axes = parts
+        if not axes:
+            return []
+        axes = {name: attrs.evolve(axis, count=axis.count // (4 if few else 1)) for name, axis in axes.items()}
+        of_plugins = {name: quantity for name, (_, quantity) in plugin_quantities(default_registry()).items()}
+        quantities = KNOWN | named(_MULTIPLIER) | of_plugins
+        outputs = [curve for names in titles.values() for curve in names]
+        outputs += ["contact_angle"] if "ball_load" in outputs else []
+        x = {name: axis.numbers() for name, axis in axes.items()}
+        places = dict(
+            zip(x, np.split(np.arange(sum(map(len, x.values()))), np.cumsum([len(own) for own in x.values()])), strict=False)
+        )
+        lost = np.zeros(sum(map(len, x.values())), bool)
+        for name, (before, gaps) in self._lost.items() if few and x.keys() == self._lost.keys() else ():
+            lost[places[name]] = gaps[np.abs(x[name][:, None] - before).argmin(axis=1)]
+        lost &= not lost.all()
         try:
-            outputs = [curve for names in titles.values() for curve in names]
-            outputs += ["contact_angle"] if "ball_load" in outputs else []
-            compiled: Function = function(scene, [axis.key], outputs, tolerance=_TOLERANCE)
+            compiled = self._function(scene, of, [axis.key for axis in axes.values()], outputs, few)
             if compiled.why_slow:
                 raise RacewayError(f"no curves: {compiled.why_slow}; `raceway sweep` computes them point by point")
-            points = {axis.key: axis.numbers()}
-            columns = compiled.looped(points)
-            reasons = compiled.with_reasons(points, columns)["reason"]
-            answer: Tables = {**columns, "points": axis.numbers(), "reason": reasons, "rows": len(scene.bearing.rows)}
-        except RacewayError as why:
-            if str(why) not in [panel["why"] for panel in panels]:
-                nothing = {"panel": "", "why": str(why), "missing": [], "lines": []}
-                panels.append({"axis": name, "label": axis.label, "key": axis.key, **nothing})
-            continue
-        panels += [_panel(name, axis, t, names, answer, quantities) for t, names in titles.items() if names]
-    return panels
+            points = {key: np.full(len(lost), of[1][key]) for key in compiled.inputs}
+            for name, axis in axes.items():
+                points[axis.key][places[name]] = x[name]
+            answer: Tables = {}
+            for rows in np.array_split(np.flatnonzero(~lost), -(-int((~lost).sum()) // _AT_ONCE)):
+                go_on()
+                block = {key: column[rows] for key, column in points.items()}
+                for name, column in compiled.with_reasons(block, compiled.looped(block)).items():
+                    fill = {"status": PointStatus.FAILED, "reason": ""}.get(name, np.nan)
+                    answer.setdefault(name, np.full((len(lost), *column.shape[1:]), fill, dtype=column.dtype))[rows] = column
+        except RacewayError as refused:
+            nothing = {"panel": "", "why": str(refused), "missing": [], "lines": []}
+            return [{"axis": name, "label": axis.label, "key": axis.key, **nothing} for name, axis in [*axes.items()][:1]]
+        panels: list[Tables] = []
+        self._lost.clear()
+        for name, axis in axes.items():
+            part: Tables = {key: column[places[name]] for key, column in answer.items()}
+            part |= {"points": x[name], "rows": len(scene.bearing.rows)}
+            self._lost[name] = x[name], part["status"] != PointStatus.COMPUTED
+            of_axis = {title: names for title, names in titles.items() if name == "speed" or title in _OVER_LOAD}
+            panels += [_panel(name, axis, title, names, part, quantities) for title, names in of_axis.items()]
+        return panels
 
 
 def _has(result: Result, name: str) -> bool:
@@ -205,17 +247,7 @@ def _curve_columns(
 
 
 def write_file(kind: str, scene: Scene, path: Path, progress: Callable[[str, int, int], None]) -> list[str]:
-    """Pictures of the run ("png") or the coefficients over speed for ROSS ("ross").
-
-    Returns
-    -------
-    list of str : the files
-
-    Raises
-    ------
-    RacewayError
-        What the run, or the sweep over speed, raises; a folder that cannot be written.
-    """
+    """Pictures of the run ("png") or the coefficients over speed for ROSS ("ross"): the files; RacewayError: theirs, or of the folder."""
     if kind == "png":
         return [str(picture) for picture in run(scene, progress=progress).picture(path)]
     axis = axes_of(scene, {}).get("speed")

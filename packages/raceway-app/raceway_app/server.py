@@ -43,10 +43,7 @@ Handler = Callable[["Request"], Awaitable["StreamResponse"]]
 
 
 def guard(token: str) -> Callable[[Request, Handler], Awaitable[StreamResponse]]:
-    """Middleware of aiohttp that refuses (403) other hosts, pages of other origins, and what has neither the token nor its cookie.
-
-    The first request carries ``?token=``; the cookie that it is answered with does for all that follow.
-    """
+    """Middleware of aiohttp that refuses (403) other hosts, pages of other origins, and what has neither ``?token=`` nor its answer's cookie."""
     from aiohttp.web import Response, middleware
 
     @middleware
@@ -76,17 +73,15 @@ _EXAMPLE: Tables = {
     "contact": {"kind": "hertz", "damping": 0.001},
 }  # fmt: skip
 _NAMES = ("A", "B")
-#: What the worker reports within so long [s] is shown at once.
-_TOGETHER_S = 1e-3
 
 
 class Page:
     """State of the page, and what its buttons do; the state is shared by all tabs."""
 
-    def __init__(self, session: Session, plugins: Iterable[Path]) -> None:
+    def __init__(self, session: Session, worker: Worker) -> None:
         from trame_server import Server
 
-        self.session = session
+        self.session, self.worker = session, worker
         self.ranges: dict[str, tuple[float, float]] = {}
         self.server = Server("raceway", client_type="vue3")
         self.state: Any = self.server.state
@@ -94,14 +89,19 @@ class Page:
         self._job = -1  # the last that computes pictures
         self._numbers: dict[int, int] = {}  # panel -> number of the change that its picture belongs to
         self._reports: deque[News] = deque()
-        self.worker = Worker(list(plugins), self._from_worker)
         self.state.update({f"{name}_{k}": None for k in (0, 1) for name in ("screen", "rings", "bodies", "curves")})
-        self.state.update({"forms": [], "note": "", "ranges": {}, "folder": str(session.folder), "done": -1, "busy": {}})
+        self.state.update({"forms": [], "note": "", "ranges": {}, "done": -1, "shown": -1, "busy": {}})
         self.state.designations = [[entry.name, entry.title.partition(": ")[2]] for entry in found_by("*")]
-        self.state.trame__title = "Raceway"
+        self.state.update({"trame__title": "Raceway", "folder": str(session.folder)})
         self._show([0, 1])
-        for name in ("change", "compare", "undo", "redo", "range", "stop", "write"):
-            self.server.controller.trigger(name)(getattr(self, f"on_{name}"))
+        triggers = {
+            "range": self.on_range, "write": self.on_write, "stop": worker.stop,
+            "change": lambda panels, *change: self._after(session.change, [int(k) for k in panels], *change),
+            "compare": lambda on: self._after(session.compare, bool(on)),
+            "undo": lambda: self._after(session.undo), "redo": lambda: self._after(session.undo, False),
+        }  # fmt: skip
+        for name, act in triggers.items():
+            self.server.controller.trigger(name)(act)
         data, view = (Path(str(files(name).joinpath("data"))) for name in ("raceway_app", "raceway_view"))
         self.server.enable_module(
             {
@@ -111,22 +111,6 @@ class Page:
         )  # fmt: skip
         self.state.trame__template_main = (data / "app.html").read_text(encoding="utf-8")
 
-    def on_change(self, panels: list[int], key: str, text: str, merge: bool = False) -> None:
-        """A field was changed; ``merge``: by the same slider as before, which is undone at once."""
-        self._after(lambda: self.session.change([int(k) for k in panels], str(key), str(text), bool(merge)))
-
-    def on_compare(self, on: bool) -> None:
-        """A second scene is put beside the first, or taken away."""
-        self._after(lambda: self.session.compare(bool(on)))
-
-    def on_undo(self) -> None:
-        """Back by one change."""
-        self._after(lambda: self.session.undo())
-
-    def on_redo(self) -> None:
-        """Forward again."""
-        self._after(lambda: self.session.undo(back=False))
-
     def on_range(self, axis: str, low: float, high: float) -> None:
         """The ends of an axis of the curves."""
         if isinstance(low, int | float) and isinstance(high, int | float) and 0.0 <= low < high < 1e9:
@@ -135,10 +119,6 @@ class Page:
             self._show(list(range(len(self.session.scenes))))
         else:
             self.state.note = f"an axis goes from 0 or more up to a larger number below 1e9, not from {low} to {high}"
-
-    def on_stop(self) -> None:
-        """What runs is not wanted."""
-        self.worker.stop()
 
     def on_write(self, kind: str, panel: int) -> None:
         """A file: of the scene ("scene"), the curves ("csv"), pictures ("png"), coefficients ("ross")."""
@@ -159,12 +139,12 @@ class Page:
         except RacewayError as error:
             self.state.note = str(error)
 
-    def _after(self, act: Callable[[], list[int]]) -> None:
+    def _after(self, act: Callable[..., list[int]], *words: Any) -> None:
         """Do something to the session, then show what has changed."""
         self.state.note = ""
         try:
-            self._show(act())
-        except (SceneError, TypeError, ValueError) as error:
+            self._show(act(*words))
+        except (SceneError, TypeError, ValueError, AttributeError) as error:
             self.state.note = str(error)
 
     def _show(self, changed: list[int]) -> None:
@@ -200,17 +180,17 @@ class Page:
             self._job = session.number
             self.worker.submit(Job(session.number, scenes, dict(self.ranges)))
         elif not busy:
-            self.state.done = session.number
+            self.state.update({"shown": session.number, "done": session.number})
 
     def _forget(self, panel: int) -> None:
         """A scene that is refused, or is no more, has no numbers."""
         self.state.update({f"{name}_{panel}": None for name in ("screen", "bodies", "curves")})
 
-    def _from_worker(self, news: News) -> None:
-        """In the worker's thread: a picture and the end of its job go to the page together, which is drawn once."""
+    def hear(self, news: News) -> None:
+        """In the worker's thread: what is reported within 1 ms goes to the page together, which is drawn once."""
         self._reports.append(news)
         if self._loop is not None:
-            self._loop.call_soon_threadsafe(self._loop.call_later, _TOGETHER_S, self._take)
+            self._loop.call_soon_threadsafe(self._loop.call_later, 1e-3, self._take)
 
     def _take(self) -> None:
         with self.state:
@@ -224,9 +204,10 @@ class Page:
             state.note = f"written: {', '.join(news.content)}"
         elif news.kind == "failed file":
             state.note = f"not written: {'; '.join(sentence for _, sentence in news.content)}"
-        elif news.kind == "done":
+        elif news.kind in ("drawn", "done"):
             if news.number == self._job:
-                state.update({"busy": {}, "done": self.session.number})
+                now = self.session.number
+                state.update({"shown": now} if news.kind == "drawn" else {"shown": now, "busy": {}, "done": now})
         elif self._numbers.get(panel) != news.number:
             return
         elif news.kind == "progress":
@@ -278,7 +259,6 @@ class Page:
             )
         finally:
             sys.argv = arguments
-            self.worker.close()
 
 
 def _curve_rows(curves: Iterable[list[Tables] | None]) -> Iterable[Tables]:
@@ -325,12 +305,18 @@ def app(
     http://127.0.0.1:
     """
     paths = [Path(path) for path in plugins]
-    registry_with(paths)
-    tables = as_given(_EXAMPLE if scene is None else scene)
-    session = Session((tables,), writable(Path(out) if out is not None else Path("raceway-out") / "app"))
-    if scene is None:
-        session.compare(True)
-    Page(session, paths).serve(port, secrets.token_urlsafe(24), ready)
+    worker = Worker(paths, lambda news: page.hear(news))  # begins beside what follows
+    try:
+        registry_with(paths)
+        tables = as_given(_EXAMPLE if scene is None else scene)
+        session = Session((tables,), writable(Path(out) if out is not None else Path("raceway-out") / "app"))
+        if scene is None:
+            session.compare(True)
+            session = Session(session.scenes, session.folder)  # nothing was changed that could be undone
+        page = Page(session, worker)
+        page.serve(port, secrets.token_urlsafe(24), ready)
+    finally:
+        worker.close()
 
 
 @click.command("app", short_help="A page to look at a scene and change it, on this machine.")
@@ -360,8 +346,7 @@ def app_command(
       raceway app examples/b7206.toml
       raceway app examples/duplex_db.toml --out spindle --no-browser
     """
-    registry_with(plugins)
-    opened = as_scene(scene, *changes) if scene is not None and changes else scene
+    opened = as_scene(scene, *changes, plugins=plugins) if scene is not None and changes else scene
 
     def ready(address: str) -> None:
         if as_json:

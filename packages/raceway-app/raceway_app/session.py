@@ -26,12 +26,7 @@ def _schema() -> Tables:
 
 
 def groups(source: Given) -> list[Tables]:
-    """Tables of a scene with the fields that its kinds have.
-
-    Returns
-    -------
-    list of dict : name, and fields (path, unit, help, choices (words, or None), default (text))
-    """
+    """Tables of a scene, name and fields (path, unit, help, choices (words, or None), default (text)) that its kinds have."""
     tables, content = source.merged(), []
     for name, schema in _schema()["properties"].items():
         if name not in _WITHOUT:
@@ -73,6 +68,13 @@ def texts(source: Given, scene: Scene | None) -> tuple[dict[str, str], dict[str,
     return input_texts, {} if scene is None else {path: told(value) for path, value in leaves(scene.to_dict())}
 
 
+def mistakes_of(error: RacewayError) -> list[tuple[str, str]]:
+    """Path and sentence of each mistake of a scene; of another failure no path."""
+    return (
+        [(mistake.path, str(mistake)) for mistake in error.mistakes] if isinstance(error, SceneError) else [("", str(error))]
+    )
+
+
 #: Changes that can be undone.
 _HISTORY = 200
 #: The excitation that a comparison begins with.
@@ -97,16 +99,9 @@ class Session:
     _future: list[tuple[Given, ...]] = attrs.field(factory=list)
 
     def change(self, panels: Sequence[int], key: str, text: str, merge: bool = False) -> list[int]:
-        """Set a key of some panels; an empty text takes it out; ``merge``: undone together with the change before.
+        """Set a key of some panels, and return those that have changed; an empty text takes it out; ``merge``: undone with the change before.
 
-        Returns
-        -------
-        list of int : panels that have changed
-
-        Raises
-        ------
-        SceneError
-            A key that no scene can have.
+        SceneError: a key that no scene can have.
         """
         value = parse_value(text.strip()) if text.strip() else None
         new_scenes = {panel: self.scenes[panel].changed({key: value}) for panel in panels if 0 <= panel < len(self.scenes)}
@@ -128,12 +123,7 @@ class Session:
         return [1] if on else []
 
     def undo(self, back: bool = True) -> list[int]:
-        """To the scenes before the last change, or forward again.
-
-        Returns
-        -------
-        list of int : panels that have changed
-        """
+        """To the scenes before the last change, or forward again; returns the panels that have changed."""
         old, new = (self._past, self._future) if back else (self._future, self._past)
         if not old:
             return []
@@ -159,10 +149,8 @@ class Session:
         """The scene, or its mistakes: path and sentence."""
         try:
             return self.scenes[panel].scene(default_registry()), []
-        except SceneError as error:
-            return None, [(mistake.path, str(mistake)) for mistake in error.mistakes]
         except RacewayError as error:
-            return None, [("", str(error))]
+            return None, mistakes_of(error)
 
     def command(self, panel: int) -> str:
         """The command line that computes the scene; empty where --set cannot say it: no file, a key taken out, tables in a list."""
@@ -179,25 +167,13 @@ class Session:
         return f"import raceway as rw\n\nresult = rw.run({self.scenes[panel].plain(default_registry())!r})\nprint(result)"
 
     def file(self, stem: str, suffix: str, panel: int | None = None) -> Path:
-        """A path in the folder that is not there yet, with the name of one of two scenes.
-
-        Raises
-        ------
-        RacewayError
-            A folder that cannot be written.
-        """
+        """A path in the folder that is not there yet, with the name of one of two scenes; RacewayError: it cannot be written."""
         name = stem if panel is None or len(self.scenes) == 1 else f"{stem}-{'AB'[panel]}"
         paths = (writable(self.folder) / f"{name}{count}{suffix}" for count in ("", *(f"-{k}" for k in range(2, 1000))))
         return next(path for path in paths if not path.exists())
 
     def save(self, panel: int) -> Path:
-        """Write the scene as a TOML file into the folder.
-
-        Raises
-        ------
-        RacewayError
-            A folder that cannot be written.
-        """
+        """Write the scene as a TOML file into the folder; RacewayError: it cannot be written."""
         import tomli_w
 
         tables = self.scenes[panel].plain(default_registry())

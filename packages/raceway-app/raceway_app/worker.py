@@ -5,41 +5,33 @@ from __future__ import annotations
 import contextlib
 import gc
 import json
+import signal
 import threading
 import time
 import traceback
 from collections.abc import Callable, Sequence
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
-from multiprocessing.synchronize import Event
 from pathlib import Path
 from typing import Any
 
 import attrs
 
-from raceway import RacewayError, SceneError
+from raceway import RacewayError, Scene
 from raceway.extend import Given, Tables
+from raceway_app.session import mistakes_of
 
-#: A run that does not end at a chunk of steps after so long [s] is ended with its process.
-_GRACE_S = 2.0
-#: Pictures that are computed for so long [s] are stopped by others.
-_HURRY_S = 0.5
-#: Numbers that take longer [s] are shown before the curves.
-_SOON_S = 0.2
-#: Without a change for so long [s] curves get all their points; until then they have a quarter of them.
-_REST_S = 0.15
+#: A run that does not end when it is stopped for so long [s] is ended with its process; pictures that take so long are stopped by others;
+#: progress is told so often; without a change for so long scenes are run, then their curves, drawn at a quarter of the points, get all.
+_GRACE_S, _HURRY_S, _SOON_S, _REST_S = 2.0, 0.5, 0.2, 0.06
 
 
 @attrs.frozen
 class Job:
     """Scenes to compute, or a file to write of one.
 
-    Attributes
-    ----------
-    number : of the change that asks for it
-    scenes : panel -> number of its last change, and scene
-    ranges : axis of the curves -> its ends, where these are not the scene's own
-    file : "png" or "ross", to be written at ``path``; empty: a picture
+    number : of the change that asks for it;  scenes : panel -> number of its last change, and scene
+    ranges : axis of the curves -> its ends, where these are not the scene's own;  file : "png" or "ross", written at ``path``; empty: a picture
     """
 
     number: int
@@ -51,7 +43,7 @@ class Job:
 
 @attrs.frozen
 class News:
-    """What the process reports: ``kind`` is "progress", "picture" (screen, bodies and rings as JSON, curves), "refused", "stopped", "file", "failed file" or "done"."""
+    """What the process reports: ``kind`` is "progress", "picture" (screen, bodies and rings as JSON, curves), "drawn" (curves of all scenes), "refused", "stopped", "file", "failed file" or "done"."""
 
     number: int
     panel: int
@@ -59,7 +51,7 @@ class News:
     content: Any = None
 
 
-class Stopped(Exception):
+class Stopped(KeyboardInterrupt):
     """The page does not want the rest."""
 
 
@@ -70,6 +62,7 @@ class Worker:
         self._plugins, self._tell = list(plugins), on_news
         self._lock = threading.Lock()
         self._running: Job | None = None
+        self._drawn = self._stopped = False  # whether its curves are shown, so that the rest can be stopped; whether it is
         self._closed = False
         self._waiting: list[Job] = []
         self._start()
@@ -88,7 +81,7 @@ class Worker:
                 if self._running is not None and not self._running.file:
                     # Scenes of it that have not changed since are computed again.
                     before.insert(0, self._running)
-                    threading.Timer(_HURRY_S, self._interrupt, (self._running,)).start()
+                    threading.Timer(0.0 if self._drawn else _HURRY_S, self._interrupt, (self._running,)).start()
                 for late in reversed(before):
                     job = attrs.evolve(job, scenes={**late.scenes, **job.scenes})
             self._waiting.append(job)
@@ -110,29 +103,35 @@ class Worker:
             self._process.terminate()
             self._process.join(5.0)
             self._connection.close()
+            self._stops.close()
 
     def _start(self) -> None:
         context = get_context("spawn")
         self._connection, far_end = context.Pipe()
-        self._event = context.Event()
-        self._process = context.Process(target=serve, args=(far_end, self._event, self._plugins), daemon=True)
+        stops, self._stops = context.Pipe(duplex=False)  # an event would lie locked where a process is killed
+        self._count = 0  # of jobs sent
+        self._process = context.Process(target=serve, args=(far_end, stops, self._plugins), daemon=True)
         self._process.start()
         far_end.close()
+        stops.close()
         threading.Thread(target=self._listen, args=(self._connection,), daemon=True).start()
 
     def _send(self) -> None:
         """The next job."""
         self._running = self._waiting.pop(0) if self._waiting else None
+        self._drawn = self._stopped = False
         if self._running is not None:
-            self._event.clear()
+            self._count += 1
             with contextlib.suppress(OSError):  # of a process that has ended, which is told where it is listened to
                 self._connection.send(self._running)
 
     def _interrupt(self, job: Job) -> None:
         """A job that still runs is not wanted."""
         with self._lock:
-            if self._running is job and not self._event.is_set():
-                self._event.set()
+            if self._running is job and not self._stopped:
+                self._stopped = True
+                with contextlib.suppress(OSError):
+                    self._stops.send(self._count)
                 timer = threading.Timer(_GRACE_S, self._end, (job,))
                 timer.daemon = True
                 timer.start()
@@ -154,27 +153,30 @@ class Worker:
                 obsolete = news.kind == "stopped" and any(news.panel in job.scenes for job in self._waiting)
             if not obsolete:
                 self._tell(attrs.evolve(news, kind="refused") if news.kind == "stopped" else news)
-            if news.kind == "done":
-                self._next()
+            if news.kind == "drawn":
+                self._drawn = True
+                if self._waiting and self._running is not None:
+                    self._interrupt(self._running)
+            elif news.kind == "done":
+                with self._lock:
+                    self._send()
         with self._lock:
             if self._closed:
                 return
             last_job, self._running = self._running, None
-            message = "stopped" if self._event.is_set() else "the process that computes has ended: was there memory enough?"
+            message = "stopped" if self._stopped else "the process that computes has ended: was there memory enough?"
             connection.close()
+            self._stops.close()
             self._start()
         if last_job is not None:
             for panel, (number, _) in last_job.scenes.items():
                 self._tell(News(number, panel, "failed file" if last_job.file else "refused", [("", message)]))
             self._tell(News(last_job.number, -1, "done"))
-        self._next()
-
-    def _next(self) -> None:
         with self._lock:
             self._send()
 
 
-def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
+def serve(connection: Connection, stops: Connection, plugins: Sequence[Path]) -> None:
     """Jobs from a connection until it closes: what the process runs."""
     from raceway.extend import registry_with
 
@@ -182,9 +184,12 @@ def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
         registry_with(plugins)
         from raceway_app import picture  # noqa: F401  while nobody waits
 
-        pictures, garbage_free = _Pictures(connection, stop), False
+        pictures, garbage_free = _Pictures(connection), False
+        signal.signal(signal.SIGINT, pictures.interrupt)
+        threading.Thread(target=pictures.listen, args=(stops,), daemon=True).start()
         while True:
             job: Job = connection.recv()
+            pictures.sketch(job)
             for panel, (number, scene_input) in job.scenes.items():
                 pictures.answer(job, panel, number, scene_input)
             connection.send(News(job.number, -1, "done"))
@@ -198,26 +203,80 @@ def serve(connection: Connection, stop: Event, plugins: Sequence[Path]) -> None:
 class _Pictures:
     """Answers to jobs."""
 
-    def __init__(self, connection: Connection, stop: Event) -> None:
-        self._connection, self._stop = connection, stop
+    def __init__(self, connection: Connection) -> None:
+        from raceway_app.picture import Curves
+
+        self._connection, self._stop, self._runs = connection, threading.Event(), False
+        self._count = self._last = 0  # of jobs begun, and of the last that is to be stopped
         self._shapes: dict[int, object] = {}
-        self._coarse: dict[int, tuple[int, Any, Any]] = {}  # panel -> number, result and axes of curves at few points
+        self._curves = Curves(), Curves()
+        self._kinds: dict[int, tuple[object, Any]] = {}  # panel -> form of what was run before, titles of its curves
+        self._answered: dict[int, int] = {}  # panel -> number
+        self._coarse: dict[int, tuple[int, Any]] = {}  # panel -> number, and what curves at few points are drawn of
+
+    def listen(self, stops: Connection) -> None:
+        """Pass the wish to stop on, as the signal that ends a command between two steps of Python."""
+        with contextlib.suppress(EOFError, OSError):
+            while True:
+                self._last = stops.recv()
+                if self._last >= self._count:
+                    self._stop.set()
+                    signal.raise_signal(signal.SIGINT)
+
+    def sketch(self, job: Job) -> None:
+        """Curves at few points of scenes that differ by numbers alone from those before; their runs begin when no change comes."""
+        from raceway.extend import default_registry
+        from raceway_app import picture
+
+        self._count += 1
+        self._stop.clear()
+        if self._last >= self._count:
+            self._stop.set()
+        drawn, news = dict[int, tuple[int, Any]](), list[News]()
+        try:
+            for panel, (number, scene_input) in job.scenes.items() if not job.file else ():
+                if number in (self._answered.get(panel), self._coarse.get(panel, (-1,))[0]):
+                    continue
+                scene = scene_input.scene(default_registry())
+                kind, titles = self._kinds.get(panel, (None, {}))
+                if kind != (of := picture.form(scene))[0]:
+                    return
+                parts = scene, of, titles, picture.axes_of(scene, job.ranges)
+                curves = self._curves[panel].draw(parts, self._go_on, few=True)
+                news.append(News(number, panel, "picture", {"curves": curves}))
+                drawn[panel] = number, parts
+        except (Exception, Stopped):  # the run tells it
+            return
+        if news:
+            for one in [*news, News(job.number, -1, "drawn")]:
+                self._connection.send(one)
+            self._coarse |= drawn
+            self._stop.wait(_REST_S)
+
+    def interrupt(self, *_: object) -> None:
+        """A run, and nothing else: its signal comes at any time."""
+        if self._runs:
+            self._runs = False
+            raise Stopped
+
+    def _go_on(self) -> None:
+        if self._stop.is_set() or self._connection.poll():
+            raise Stopped
 
     def refine(self) -> None:
         """Curves at all their points, until another job comes."""
-        from raceway_app import picture
-
-        def wait(_name: str) -> None:
-            if self._connection.poll():
-                raise Stopped
-
         with contextlib.suppress(Stopped):
-            for panel, (number, result, axes) in list(self._coarse.items()):
-                self._connection.send(News(number, panel, "picture", {"curves": picture.curves(result, axes, wait)}))
+            for panel, (number, parts) in list(self._coarse.items()):
+                if self._answered.get(panel) == number:
+                    curves = self._curves[panel].draw(parts, self._go_on)
+                    self._connection.send(News(number, panel, "picture", {"curves": curves}))
                 del self._coarse[panel]
 
     def answer(self, job: Job, panel: int, number: int, scene_input: Given) -> None:
         """One scene; a mistake or a failure is reported, never raised."""
+        from raceway.extend import default_registry
+        from raceway_app import picture
+
         last_report, refusal = time.monotonic(), "failed file" if job.file else "refused"
 
         def tell(kind: str, content: Any = None) -> None:
@@ -225,42 +284,39 @@ class _Pictures:
 
         def progress(part: str, steps: int = 0, total: int = 0) -> None:
             nonlocal last_report
-            if self._stop.is_set():
-                raise Stopped
+            self._go_on()
             if time.monotonic() - last_report > _SOON_S:
                 last_report = time.monotonic()
                 tell("progress", (part, steps, total))
 
         try:
             if job.file:
-                from raceway.extend import default_registry
-                from raceway_app import picture
-
                 tell("file", picture.write_file(job.file, scene_input.scene(default_registry()), job.path, progress))
-            else:
-                self._draw(job, panel, scene_input, tell, progress)
+            elif self._answered.get(panel) != number:
+                self._go_on()
+                self._draw(job, panel, scene_input.scene(default_registry()), tell, progress)
+                self._answered[panel] = number
         except Stopped:
             tell(refusal if job.file else "stopped", [("", "stopped")])
-        except SceneError as error:
-            tell(refusal, [(mistake.path, str(mistake)) for mistake in error.mistakes])
         except RacewayError as error:
-            tell(refusal, [("", str(error))])
+            tell(refusal, mistakes_of(error))
         except Exception as error:  # a third party's own code: the page goes on
             tell(refusal, [("", f"{type(error).__name__}: {error}"), ("", traceback.format_exc(limit=-2))])
 
-    def _draw(
-        self, job: Job, panel: int, scene_input: Given, tell: Callable[..., None], progress: Callable[..., None]
-    ) -> None:
+    def _draw(self, job: Job, panel: int, scene: Scene, tell: Callable[..., None], progress: Callable[..., None]) -> None:
         import raceway
-        from raceway.extend import default_registry, duration
+        from raceway.extend import duration
         from raceway_app import picture
 
-        scene, start = scene_input.scene(default_registry()), time.monotonic()
         if (prediction := raceway.plan(scene).predicted_wall_s) > _SOON_S:
             tell("progress", (f"planned: {duration(prediction)}", 0, 0))
-        result = raceway.run(scene, progress=progress)
-        state = picture.at_rest(result)
-        content: Tables = {"screen": picture.result_picture(result, state)}
+        try:
+            self._runs = True
+            result = raceway.run(scene, progress=progress)
+            state = picture.at_rest(result)
+            content: Tables = {"screen": picture.result_picture(result, state)}
+        finally:
+            self._runs = False
         shape = (scene.bearing, scene.bodies)
         try:
             bodies = picture.bodies_picture(result, state, self._shapes.get(panel) != shape)
@@ -269,9 +325,9 @@ class _Pictures:
             self._shapes[panel] = shape
         except RacewayError as error:
             content |= {"bodies": "", "why": str(error)}
-        if time.monotonic() - start > _SOON_S:  # else one picture with its curves: a page draws itself anew for each
-            tell("picture", content)
-            content = {}
-        self._coarse[panel] = job.scenes[panel][0], result, (axes := picture.axes_of(scene, job.ranges))
-        axes = {name: attrs.evolve(axis, count=axis.count // 4) for name, axis in axes.items()}
-        tell("picture", content | {"curves": picture.curves(result, axes, lambda name: progress(f"curves over {name}"))})
+        number, titles, of = job.scenes[panel][0], picture.titles_of(result), picture.form(scene)
+        parts = scene, of, titles, picture.axes_of(scene, job.ranges)
+        if self._coarse.get(panel, (-1,))[0] != number:
+            content["curves"] = self._curves[panel].draw(parts, self._go_on, few=True)
+        self._kinds[panel], self._coarse[panel] = (of[0], titles), (number, parts)
+        tell("picture", content)

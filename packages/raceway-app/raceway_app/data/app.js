@@ -18,10 +18,33 @@ window.raceway_app = (function () {
     return parts.length > 2 ? words(parts.at(-2)) + ": " + words(parts.at(-1)) : words(parts.at(-1));
   }
   const signed = (v, digits = 3) => v === null || v === undefined ? "-" : (v > 0 ? "+" : "") + number(v, digits);
-  const percent = ([low, high]) => signed(100 * low, 2) + " to " + signed(100 * high, 2) + " %";
+  const percent = ([low, high]) => Math.max(-low, high) < 5e-6 ? "0.0005 %" : signed(100 * low, 2) + " to " + signed(100 * high, 2) + " %";
   // Quantities whose interval is that of another, relative.
   const INTERVALS = { l10r_hours: "l10r_million_revolutions" };
   const interval = (screen, name) => screen?.intervals[INTERVALS[name] ?? name]?.relative ?? null;
+  // Keys by which the scenes differ, and whether they are of one bearing.
+  function differing(panels) {
+    const [a, b] = panels.map((p) => p.said);
+    return [...new Set([...Object.keys(a), ...Object.keys(b)])].filter((key) => key !== "title" && a[key] !== b[key]);
+  }
+  const ofMounting = /^bearing\.(arrangement|preload|preload_kind|preload_of|second_preload|row_distance)$/;
+  const sameBearing = (panels) => differing(panels).every((key) => !key.startsWith("bearing.") || ofMounting.test(key));
+  // Interval of the ratio of a quantity of two scenes, relative: numerical errors of both add as squares, as data of two bearings do;
+  // of other causes the difference counts, since what changes both by the same factor leaves the ratio.
+  function apart(screens, name, same) {
+    const [a, b] = screens.map((screen) => screen?.intervals[INTERVALS[name] ?? name]?.parts);
+    if (!a || !b) return null;
+    const known = [], signed = [0, 0];
+    for (const [cause, first] of Object.entries(a)) {
+      const second = b[cause], ends = (part) => [Math.min(0, part.low), Math.max(0, part.high)];
+      if (!second || first.low === null || second.low === null) continue;
+      const [p, q] = [ends(first), ends(second)], alone = cause === "numerical" || (cause === "data" && !same);
+      const two = alone ? [-Math.hypot(q[0], p[1]), Math.hypot(q[1], p[0])] : [q[0] - p[0], q[1] - p[1]];
+      const [low, high] = [Math.min(0, ...two), Math.max(0, ...two)];
+      if (["hypotheses", "contact", "bodies"].includes(cause)) { signed[0] += low; signed[1] += high; } else known.push([low, high]);
+    }
+    return [0, 1].map((side) => (side ? 1 : -1) * Math.hypot(...[signed, ...known].map((ends) => ends[side])));
+  }
   const number = (v, digits = 4) => v === null || v === undefined ? "-" : String(Number(v.toPrecision(digits)));
 
   // 1, 2 or 5 times a power of ten, some `count` of them from low to high.
@@ -39,9 +62,18 @@ window.raceway_app = (function () {
     return k === 0 || y0 === null ? null : y0 + (y1 - y0) * (x - x0) / (x1 - x0);
   }
 
+  // K of the present point of curves, in the unit that it is read in.
+  function ofCurves(curves) {
+    for (const p of curves ?? []) {
+      const line = p.lines.find((l) => l.name === "equivalent_stiffness"), k = line ? p.x.indexOf(p.present) : -1;
+      if (k >= 0) return line.y[k];
+    }
+    return null;
+  }
+
   const LEFT = 48, RIGHT = 300, WIDTH = 320;
   const Chart = {
-    props: ["chart", "names", "screens"],
+    props: ["chart", "names", "screens", "same"],
     data: () => ({ at: null }),
     computed: {
       // Curves of the second scene less those of the first: in per cent, temperatures in degrees.
@@ -67,7 +99,7 @@ window.raceway_app = (function () {
         if (!two && y0 > 0 && y0 < 0.6 * y1) y0 = 0;
         if (y1 - y0 < 1e-3 * Math.abs(y1) || y1 === y0) { const pad = 0.02 * Math.abs(y1) || 1; y0 -= pad; y1 += pad; }
         y1 += 0.06 * (y1 - y0);
-        const ds = this.differences.flatMap((d) => d.y).filter((y) => y !== null);
+        const ds = this.edges.flat().flat().map((p) => p[1]).concat(this.differences.flatMap((d) => d.y).filter((y) => y !== null));
         let [d0, d1] = [Math.min(0, ...ds), Math.max(0, ...ds)];
         if (d1 - d0 < 1e-4) { d0 -= 0.01; d1 += 0.01; }
         const pad = 0.12 * (d1 - d0), bottom = two ? 128 : 150;
@@ -82,10 +114,18 @@ window.raceway_app = (function () {
         const edge = (part, factor) => part.map(([x, y]) => f.x(x).toFixed(1) + " " + f.y(y * factor).toFixed(1)).join("L");
         return points.length ? "M" + edge(points, 1 + this.interval[0]) + "L" + edge([...points].reverse(), 1 + this.interval[1]) + "Z" : "";
       },
-      shade() {  // the interval of the first scene, as far as the panel of differences reaches
-        if (!this.interval || !this.relative) return null;
-        const f = this.frame, top = f.d(Math.min(f.d1, 100 * this.interval[1])), bottom = f.d(Math.max(f.d0, 100 * this.interval[0]));
-        return { y: top, height: Math.max(0, bottom - top) };
+      own() { return this.relative && this.differences.length ? apart(this.screens, this.chart.series[0].name, this.same) : null; },
+      // Both edges of the difference's interval, between gaps: lists of points.
+      edges() {
+        return !this.own ? [] : this.own.map((end) => {
+          const pieces = [[]], d = this.differences[0];
+          d.x.forEach((x, i) => d.y[i] === null ? pieces.push([]) : pieces.at(-1).push([x, d.y[i] + end * (100 + d.y[i])]));
+          return pieces.filter((piece) => piece.length);
+        });
+      },
+      shade() {
+        const f = this.frame, words = (piece) => piece.map(([x, y]) => f.x(x).toFixed(1) + " " + f.d(y).toFixed(1)).join("L");
+        return this.edges.length ? this.edges[0].map((piece, k) => "M" + words(piece) + "L" + words([...this.edges[1][k]].reverse()) + "Z").join("") : "";
       },
       lines() {
         const f = this.frame, seen = {};
@@ -136,7 +176,7 @@ window.raceway_app = (function () {
       <figcaption><b>{{ title }}</b><br><span v-for="r in reading" class="reading" :style="{ color: r.colour }">{{ r.text }}</span>
         <span class="difference" v-if="difference">{{ difference }}</span><span v-if="at !== null"> at {{ number(at, 4) }}</span></figcaption>
       <svg ref="svg" :viewBox="'0 0 320 ' + (frame.end + 36)" role="img" :aria-label="label" @pointermove="move" @pointerleave="at = null">
-        <path v-if="band" class="band" :d="area"/><rect v-if="frame.two && shade" class="band" x="48" width="252" :y="shade.y" :height="shade.height"/>
+        <path v-if="band" class="band" :d="area"/><path v-if="frame.two && shade" class="band edged" :d="shade"/>
         <path v-for="x in xs" class="rule" :d="'M' + frame.x(x) + ' 8V' + frame.bottom + (frame.two ? 'M' + frame.x(x) + ' 150V212' : '')"/>
         <path v-for="y in ys" class="rule" :d="'M48 ' + frame.y(y) + 'H300'"/>
         <text v-for="x in xs" :x="frame.x(x)" :y="frame.end + 14" text-anchor="middle">{{ number(x) }}</text>
@@ -145,7 +185,7 @@ window.raceway_app = (function () {
         <path v-if="at !== null" class="rule" :d="'M' + frame.x(at) + ' 8V' + frame.end"/>
         <g v-for="l in lines"><path class="line" :d="l.path" :stroke="l.colour" :stroke-dasharray="l.dash"/>
           <circle v-if="l.dot" :cx="l.dot.x" :cy="l.dot.y" r="4.5" :fill="l.colour"/></g>
-        <g v-if="frame.two"><text x="48" y="145">B - A [{{ relative ? '%' : '°C' }}]{{ shade ? ', shaded: interval of A, ' + percent(interval) : '' }}</text>
+        <g v-if="frame.two"><text x="48" y="145">B - A [{{ relative ? '%' : '°C' }}]{{ shade ? ', known within ' + percent(own) : '' }}</text>
           <path v-for="d in ds" class="rule" :d="'M48 ' + frame.d(d) + 'H300'"/><text v-for="d in ds" x="44" :y="frame.d(d) + 4" text-anchor="end">{{ number(d) }}</text>
           <path v-for="d in differences" class="line inner" :d="path(d, frame.d)"/></g>
       </svg></figure>`,
@@ -153,7 +193,7 @@ window.raceway_app = (function () {
 
   // One line of curves, which the reader chooses; a cookie remembers them, since each start has a port, and so a storage, of its own.
   const Curves = {
-    props: ["curves", "screens", "busy"], emits: ["range", "set"],
+    props: ["curves", "screens", "busy", "same"], emits: ["range", "set"],
     data: () => ({ chosen: (/(?:^|; )raceway_curves=([^;]*)/.exec(document.cookie)?.[1] ?? "speed.stiffness,speed.ball load,load.stiffness").split(",").map(decodeURIComponent) }),
     computed: {
       names() { return this.curves.map((_, k) => "AB"[k]); },
@@ -204,10 +244,10 @@ window.raceway_app = (function () {
         this.$emit("range", axis.name, ends.low, ends.high);
       },
     },
-    template: `<div class="chips" v-for="a in axes" :key="a.name"><h2>Over {{ bare(a.label) }}</h2>
-        <button type="button" v-for="c in full.filter((c) => c.axis === a.name)" :key="c.panel" :aria-pressed="chosen.includes(id(c))" :data-curve="id(c)" @click="choose(c)">{{ c.panel }}</button></div>
+    template: `<div class="choice"><div class="chips" v-for="a in axes" :key="a.name"><h2>Over {{ bare(a.label) }}</h2>
+        <button type="button" v-for="c in full.filter((c) => c.axis === a.name)" :key="c.panel" :aria-pressed="chosen.includes(id(c))" :data-curve="id(c)" @click="choose(c)">{{ c.panel }}</button></div></div>
       <p class="small" v-if="!charts.length && !Object.keys(busy).length">no curves: the scene has neither a speed nor an axial load, or is refused</p>
-      <div class="grid"><raceway-chart v-for="c in shown" :key="id(c)" :chart="c" :names="names" :screens="screens"></raceway-chart></div>
+      <div class="grid"><raceway-chart v-for="c in shown" :key="id(c)" :chart="c" :names="names" :screens="screens" :same="same"></raceway-chart></div>
       <p class="small" v-for="n in notes">{{ n.words }} <button type="button" v-if="n.missing.length" @click="$emit('set', [n.panel], n.key, String(n.missing[0]))">Run {{ number(n.missing[0], 5) }} {{ unit(n.label) }} to see why</button></p>
       <p class="small ranges"><span v-for="a in axes" :key="a.name">{{ bare(a.label) }} from <input type="number" :aria-label="a.label + ', from'" :value="a.low" @change="send(a, $event.target, 'low')"> to
         <input type="number" :aria-label="a.label + ', to'" :value="a.high" @change="send(a, $event.target, 'high')"> {{ unit(a.label) }}&emsp;</span></p>`,
@@ -215,25 +255,26 @@ window.raceway_app = (function () {
 
   // The first number of a screen, with its interval and the point that it holds at.
   const Answer = {
-    props: ["screen", "name"],
+    props: ["screen", "curves", "fresh", "name"],
     computed: {
       row() { return this.screen?.rows.find((r) => r[1]); },
+      value() {  // of the curves until the scene is run
+        const [, digits, unit] = /^([\d.]+) (\D+)$/.exec(this.row[1]) ?? [], now = this.fresh && this.row[0].startsWith("equivalent stiffness") ? ofCurves(this.curves) : null;
+        return now === null || !unit ? this.row[1] : number(now, digits.replace(/^0?\.0*|\./, "").length) + " " + unit;
+      },
       range() { const i = this.screen.intervals.equivalent_stiffness ?? this.screen.intervals.kyy; return i?.relative && this.row[0].includes("stiffness") ? [i.low, i.high].map((v) => number(v * 1e-6, 3)).join(" to ") : ""; },
       where() { return this.screen?.rows.find((r) => !r[1] && !r[2])?.[0].replace(/^Answer /, "") ?? ""; },
     },
-    template: `<div class="answer" v-if="row" :data-test="'answer-' + name"><strong>{{ row[1] }}</strong>{{ range }} <span v-if="row[2]">({{ row[2] }})</span>
+    template: `<div class="answer" v-if="row" :data-test="'answer-' + name"><strong>{{ value }}</strong>{{ range }} <span v-if="row[2]">({{ row[2] }})</span>
       <span class="small">{{ row[0] }} {{ where }}</span><details class="warning" v-if="screen.warnings.length"><summary>{{ screen.warnings.length }} {{ screen.warnings.length > 1 ? 'warnings' : 'warning' }}: {{ screen.warnings[0] }}</summary>
       <p class="small" v-for="w in screen.warnings.slice(1)">{{ w }}</p></details></div>`,
   };
 
   // The second scene against the first, in a sentence.
   const Verdict = {
-    props: ["panels", "screens"],
+    props: ["panels", "screens", "curves", "fresh"],
     computed: {
-      keys() {
-        const [a, b] = this.panels.map((p) => p.said);
-        return [...new Set([...Object.keys(a), ...Object.keys(b)])].filter((key) => key !== "title" && a[key] !== b[key]);
-      },
+      keys() { return differing(this.panels); },
       words() {
         const said = (p, key) => p.said[key] ?? p.holds[key] ?? "default";
         if (!this.keys.length) return "B is A: change a key of one of them";
@@ -241,10 +282,11 @@ window.raceway_app = (function () {
         const names = differs ? this.panels.toReversed().map((p) => said(p, this.keys[0])).join(" against ") : "B against A (" + this.keys.map((key) => noun(key) + " " + said(this.panels[1], key) + " for " + said(this.panels[0], key)).join(", ") + ")";
         const [a, b] = this.screens.map((s) => s?.intervals.equivalent_stiffness ?? s?.intervals.kyy);
         if (!a?.relative || !b?.relative) return names;
-        const change = b.value / a.value - 1, inside = [a.low <= b.value && b.value <= a.high, b.low <= a.value && a.value <= b.high];
+        const now = this.fresh ? this.curves.map(ofCurves) : [null, null], change = now[0] && now[1] ? now[1] / now[0] - 1 : b.value / a.value - 1;
+        const inside = [a.relative[0] <= change && change <= a.relative[1], b.relative[0] <= -change / (1 + change) && -change / (1 + change) <= b.relative[1]];
         const both = inside[0] === inside[1] ? (inside[0] ? "within the interval of both" : "outside the interval of both") : "within the interval of " + "AB"[inside[0] ? 0 : 1] + " alone";
-        const shared = this.keys.every((key) => key.startsWith("excitation."));
-        return names + ": K " + signed(100 * change) + " %, " + both + " (A: " + percent(a.relative) + ")" + (shared && inside[0] ? "; what both share, as the bearing's data, cancels in the difference" : "");
+        const own = apart(this.screens, a === this.screens[0].intervals.equivalent_stiffness ? "equivalent_stiffness" : "kyy", sameBearing(this.panels));
+        return names + ": K " + signed(100 * change) + " %, " + both + " (A: " + percent(a.relative) + "); the difference itself is known within " + percent(own) + ", since what both share cancels";
       },
     },
     template: `<p class="verdict" data-test="verdict">{{ words }}</p>`,
@@ -351,7 +393,7 @@ window.raceway_app = (function () {
   };
 
   const Form = {
-    props: ["panels", "forms", "busy", "designations"], emits: ["set"],
+    props: ["panels", "forms", "waiting", "designations"], emits: ["set"],
     data: () => ({ search: "", target: "both", open: {} }),
     computed: {
       two() { return this.panels.length > 1; },
@@ -387,7 +429,7 @@ window.raceway_app = (function () {
         this.next = [field.path, text];
         if (this.timer) return;
         const send = () => {
-          const waits = Object.keys(this.busy).length && performance.now() - this.sent < 400;
+          const waits = this.waiting && performance.now() - this.sent < 400;
           if (!this.next) { this.timer = null; return; }
           if (!waits) {
             const [path, value] = this.next;
@@ -454,6 +496,7 @@ window.raceway_app = (function () {
     install(app) {
       document.querySelector("meta[name=viewport]")?.setAttribute("content", "width=device-width, initial-scale=1");  // trame's forbids to zoom
       const parts = { chart: Chart, polar: Polar, orbit: Orbit, bearing: Bearing, numbers: Numbers, curves: Curves, answer: Answer, verdict: Verdict, designation: Designation, form: Form, copy: Copy, keys: Keys };
+      app.config.globalProperties.same_bearing = sameBearing;
       for (const [name, part] of Object.entries(parts)) app.component("raceway-" + name, part);
     },
   };
