@@ -18,7 +18,7 @@ from raceway.planning.cost import START_S
 from raceway.planning.parts import Balls, Decisions, PlannedMotion
 from raceway.planning.resolve import Problem
 from raceway.plugins.bodies.condensed import section_cost
-from raceway.plugins.bodies.mesh import mesh_faults, predicted_mesh, refined, unrefined
+from raceway.plugins.bodies.mesh import least_step, mesh_faults, predicted_mesh, refined, unrefined
 from raceway.storage.files import allowed_bytes
 from raceway.storage.tables import Tables
 
@@ -171,11 +171,6 @@ def _single_steps(problem: Problem) -> tuple[float, float]:
     if problem.contact.discretisation == "resultant":  # on discs of many cells: far softer than elements
         return _THINNEST * width / wave, inf
     return _THINNEST * width / wave, 2.0 * (steel.density * _DEPTH * fine / (4.8 * penalty)) ** 0.5
-
-
-def least_step(problem: Problem) -> float:
-    """Step that elements have to allow by added mass [s]; 0: none is added."""
-    return float(getattr(problem.integrator.method, "least_step", None) or 0.0)
 
 
 _OTHER = "or use bodies.kind = 'condensed'"

@@ -21,10 +21,9 @@ from raceway.framework.duties import is_hertzian, law_params
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
-from raceway.plugins.bodies.elastic import least_step
 from raceway.plugins.bodies.elastic_contacts import ElasticBodies, ElasticResultants
 from raceway.plugins.bodies.elastic_stress import ElasticPoints
-from raceway.plugins.bodies.mesh import check_sets, mesh_bodies, mesher_of
+from raceway.plugins.bodies.mesh import check_sets, least_step, mesh_bodies, mesher_of
 
 #: Loads of a ball over the mean one under which a law has to keep some compliance of its own.
 _ENOUGH = 5.0

@@ -239,3 +239,8 @@ def _prediction(problem: Problem) -> Prediction | None:
         )
     refuse_memory(prediction, "mesh.kind", mesher.name, "take larger elements")
     return prediction
+
+
+def least_step(problem: Problem) -> float:
+    """Step that elements have to allow by added mass [s]; 0: none is added."""
+    return float(getattr(problem.integrator.method, "least_step", None) or 0.0)

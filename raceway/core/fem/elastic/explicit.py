@@ -9,8 +9,9 @@ ideal cage pushes a ball with a field of rigid accelerations, m (t + w x r), whi
 
 from __future__ import annotations
 
+from collections import namedtuple
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any
 
 import numpy as np
 from numba import boolean, float64, int64, uint32, uint64, void
@@ -35,9 +36,6 @@ from raceway.core.recorder import BOUND, Recorder
 from raceway.core.signatures import CUBE, LAW_POINTER, MATRIX, VECTOR, record
 from raceway.core.time.stepped import CLOSED, compare
 
-if TYPE_CHECKING:
-    from raceway.core.fem.elastic.bearing import ElasticSystem
-
 #: Gap up to which points are evaluated [m]: surfaces take thousands of steps to travel that far.
 _MARGIN = 1e-6
 #: Nodes that are summed and moved together, so that their forces stay in the first cache.
@@ -46,99 +44,28 @@ _CHUNK = 512
 _CALL = 5_000_000
 
 
-class _Bodies(NamedTuple):
-    """All bodies as one mesh: see ``raceway.core.fem.hexahedron.stiffness.Mesh``; moduli (ranges, 3); work; parts, the forces by range."""
-
-    ranges: np.ndarray
-    cells: np.ndarray
-    x: np.ndarray
-    moduli: np.ndarray
-    work: np.ndarray
-    parts: np.ndarray
-
-
-class _Nodes(NamedTuple):
-    """Displacement, velocity half a step earlier, acceleration, constant load, 1/m, 0 of what is held or tied, each (3 n,); masses (n,)."""
-
-    u: np.ndarray
-    half: np.ndarray
-    a: np.ndarray
-    load: np.ndarray
-    inverse: np.ndarray
-    mass: np.ndarray
-
-
-class _Cage(NamedTuple):
-    """First node and the one behind the last (balls, 2); t and w of the rows' fields (balls, rows, 6); their springs (balls, rows);
-    centres (balls, 3); out: t and w of the force on a unit of mass (balls, 6).
-    """
-
-    spans: np.ndarray
-    fields: np.ndarray
-    stiffness: np.ndarray
-    centre: np.ndarray
-    field: np.ndarray
-
-
-class _Frame(NamedTuple):
-    """Motion, velocity half a step earlier and acceleration (m,); outer forces by step (steps + 1, m); stiffness, damping, inverse of the
-    mass with half a step of damping (m, m); tied entries (t,) and their motion with the frame (t, m); where their forces stand among
-    the parts, and which of them each is (p,); what accelerates the frame (m,).
-    """
-
-    q: np.ndarray
-    half: np.ndarray
-    a: np.ndarray
-    push: np.ndarray
-    stiffness: np.ndarray
-    damping: np.ndarray
-    inverse: np.ndarray
-    tied: np.ndarray
-    tie: np.ndarray
-    places: np.ndarray
-    rows: np.ndarray
-    left: np.ndarray
-
-
-class _Points(NamedTuple):
-    """Surface points that may touch (k,), each field as ``Contact`` and ``CoulombFriction`` name it; ``parts``: where the forces of their
-    nodes (k, 8) stand; ``far``: how far a point may move before its place is looked up anew; ``surface``: entries of all surfaces' nodes.
-    """
-
-    nodes: np.ndarray
-    parts: np.ndarray
-    weights: np.ndarray
-    x: np.ndarray
-    pair: np.ndarray
-    surfaces: np.ndarray
-    area: np.ndarray
-    params: np.ndarray
-    memory: np.ndarray
-    memory_trial: np.ndarray
-    stick: np.ndarray
-    committed: np.ndarray
-    place: np.ndarray
-    dissipated: np.ndarray
-    projected: np.ndarray
-    far: np.ndarray
-    stiffest: np.ndarray
-    displacement: np.ndarray
-    shift: np.ndarray
-    where: np.ndarray
-    velocity: np.ndarray
-    normal: np.ndarray
-    force: np.ndarray
-    trial: np.ndarray
-    direction: np.ndarray
-    factors: np.ndarray
-    bend: np.ndarray
-    stiffness: np.ndarray
-    tangent: np.ndarray
-    scalar: np.ndarray
-    resultant: np.ndarray
-    surface: np.ndarray
-
-
+#: All bodies as one mesh: see ``raceway.core.fem.hexahedron.stiffness.Mesh``; moduli (ranges, 3); work; parts, the forces
+#: by range.
+_Bodies = namedtuple("_Bodies", "ranges cells x moduli work parts")
+#: Displacement, velocity half a step earlier, acceleration, constant load, 1/m, 0 of what is held or tied, each (3 n,);
+#: masses (n,).
+_Nodes = namedtuple("_Nodes", "u half a load inverse mass")
+#: First node and the one behind the last (balls, 2); t and w of the rows' fields (balls, rows, 6); their springs (balls,
+#: rows); centres (balls, 3); out: t and w of the force on a unit of mass (balls, 6).
+_Cage = namedtuple("_Cage", "spans fields stiffness centre field")
+#: Motion, velocity half a step earlier and acceleration (m,); outer forces by step (steps + 1, m); stiffness, damping,
+#: inverse of the mass with half a step of damping (m, m); tied entries (t,) and their motion with the frame (t, m); where
+#: their forces stand among the parts, and which of them each is (p,); what accelerates the frame (m,).
+_Frame = namedtuple("_Frame", "q half a push stiffness damping inverse tied tie places rows left")
+#: Surface points that may touch (k,), each field as ``Contact`` and ``CoulombFriction`` name it; ``parts``: where the
+#: forces of their nodes (k, 8) stand; ``far``: how far a point may move before its place is looked up anew; ``surface``:
+#: entries of all surfaces' nodes.
+_Points = namedtuple(
+    "_Points",
+    "nodes parts weights x pair surfaces area params memory memory_trial stick committed place dissipated projected "
+    "far stiffest displacement shift where velocity normal force trial direction factors bend stiffness tangent "
+    "scalar resultant surface",
+)
 _INTEGERS, _TABLE = int64[::1], int64[:, ::1]
 _BODIES = record(_Bodies, _TABLE, uint32[:, ::1], VECTOR, MATRIX, VECTOR, VECTOR)
 _NODES = record(_Nodes, *[VECTOR] * 6)
@@ -351,7 +278,7 @@ def advance(first, count, numbers, law, bodies, nodes, cage, frame, points):  # 
     return step
 
 
-def served(system: ElasticSystem) -> bool:
+def served(system: Any) -> bool:
     """Whether all of a system is in these loops."""
     a = system.assembly
     plain = all(body.operator.formulation == "one_point" for body in a.bodies) and not a.foundations
@@ -364,7 +291,7 @@ class ExplicitSteps:
     system : ElasticSystem, see ``served``;  dt : step [s]
     """
 
-    def __init__(self, system: ElasticSystem, dt: float) -> None:
+    def __init__(self, system: Any, dt: float) -> None:
         a = system.assembly
         assert isinstance(system.contact, NodalContact)
         self._system, self._contact, self._dt = system, system.contact, dt
