@@ -208,7 +208,7 @@ def _load_answers(
     clamp = np.ones(3 * assembly.nodes, dtype=bool)
     clamp[assembly.free] = False
     stiffness = assembly.stiffness()[rows][:, rows]
-    mass = body.operator.lumped_mass() if floating else None
+    mass = assembly.own_mass[rows.start // 3 : rows.stop // 3] if floating else None
     return LoadedBody(body.points, body.operator.cells, stiffness, clamp[rows].reshape(-1, 3), mass, material)
 
 
