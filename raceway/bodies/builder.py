@@ -1,7 +1,5 @@
 """What builds bearings at columns of a scene's keys, and builds once what these leave as it is."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cached_property
 

@@ -3,8 +3,6 @@
 methods  Newmark's method, generalised-alpha, central differences, series of equilibria, steady orbits
 """
 
-from __future__ import annotations
-
 from raceway.framework.hookspecs import hookimpl
 
 

@@ -1,7 +1,5 @@
 """Tables of ``raceway run``, from the content of result.json: the answer first."""
 
-from __future__ import annotations
-
 from logging import INFO, getLogger
 from typing import NamedTuple
 

@@ -1,15 +1,13 @@
 """From a model and its equilibrium to motion: integrated from its start, or the steady motion, solved for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import ceil, pi
-from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
 from raceway.bodies.model import Equilibrium, Model, model_of
+from raceway.core.periodic.search import Recorded
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.system import compiled
@@ -21,9 +19,6 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import plan_of
 from raceway.planning.resolve import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from raceway.core.periodic.search import Recorded
 
 #: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
 OnProgress = Callable[[str, int, int], None]

@@ -1,7 +1,5 @@
 """What the application shows of a scene: the screen of its run, the bearing, curves over speed and load."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path

@@ -1,7 +1,5 @@
 """One or two scenes that are looked at: their changes, undone and redone, and what states them outside of the page."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from collections.abc import Sequence

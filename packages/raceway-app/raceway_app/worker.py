@@ -1,7 +1,5 @@
 """A process of its own that computes pictures of scenes, so that the page answers meanwhile and a long run can be stopped."""
 
-from __future__ import annotations
-
 import contextlib
 import gc
 import json

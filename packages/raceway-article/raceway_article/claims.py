@@ -18,8 +18,6 @@ References
 Seber, Wild, Nonlinear Regression (1989), section 5.4 (intervals from the sum of squares).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Runs of the study, made from one scene: every setting at every axial load over all speeds; K and |Z| of them by setting."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence

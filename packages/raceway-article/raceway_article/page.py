@@ -1,7 +1,5 @@
 """The study on page, screen and disk: verdicts first, then figures, causes, and everything that they were checked with."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Outcome of a claim's rule, and the verdict that follows."""
 
-from __future__ import annotations
-
 import attrs
 
 from raceway.extend import ReadTables, Tables

@@ -5,8 +5,6 @@ radial load towards ball 0, balls fixed, no inertia of the ring; the article's b
 is run for.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence

@@ -1,7 +1,5 @@
 """Arrays of four points' samples, which their steady orbits are solved in: rows, the first samples' constants, samples between."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

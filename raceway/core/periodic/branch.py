@@ -14,8 +14,6 @@ Keller, in Rabinowitz (ed.), Applications of Bifurcation Theory (1977); Seydel, 
 Analysis, 3rd ed. (2010), chapter 4.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Motions on branches: on which the force grows from rest, or the speed or the load changes; where none is alone or found directly."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from functools import partial

@@ -1,7 +1,5 @@
 """The periodic boundary-value problem on one mesh, and Newton's iteration for all its unknowns at once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 

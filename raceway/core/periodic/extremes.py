@@ -6,8 +6,6 @@ The force of a contact over a turn is the trigonometric polynomial through its s
 there then.  Newton's method leads from the largest sample to the largest value; forces do not pull.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import float64, int64, void
 

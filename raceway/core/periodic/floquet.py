@@ -13,8 +13,6 @@ Nayfeh, Balachandran, Applied Nonlinear Dynamics (1995), chapter 3; Seydel, Prac
 3rd ed. (2010), chapter 7.
 """
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 

@@ -1,7 +1,5 @@
 """A motion by its samples over a span, compiled: derivatives, frames that turn, synchronous components, the linear response."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -18,8 +18,6 @@ Trefethen, Spectral Methods in MATLAB (2000), chapter 3 (differentiation matrice
 Krack, Gross, Harmonic Balance for Nonlinear Vibration Problems (2019), chapters 2 and 4.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import boolean, float64, int64, types, void
 

@@ -1,7 +1,5 @@
 """Newton's iteration for the unknowns of a path, compiled: sweeps over its intervals, corrections that are cut where balls fail."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ Samples are doubled until the 1x line changes by less than the tolerance: that c
 estimate of the error of the last ones.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

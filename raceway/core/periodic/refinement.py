@@ -10,8 +10,6 @@ leaves its race the force has a jump in its second derivative, neither part fall
 intervals are divided again and again.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import ceil
 

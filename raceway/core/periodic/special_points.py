@@ -1,7 +1,5 @@
 """Special points of a branch: folds, branch points, period doublings and pairs of multipliers that leave the unit circle."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import attrs

@@ -1,7 +1,5 @@
 """From a system and an equilibrium to the record of its periodic motion: found directly, from a neighbour, or along branches."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import attrs

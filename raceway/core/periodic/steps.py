@@ -9,8 +9,6 @@ References
 Eisenstat, Elman, Schultz, SIAM J. Numer. Anal. 20 (1983) 345.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import boolean, float64, int64, void
 

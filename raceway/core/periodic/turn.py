@@ -1,7 +1,5 @@
 """The mesh of a turn: the rule of Gauss collocation, and the symmetry of equal balls about the axis."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import attrs

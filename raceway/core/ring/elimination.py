@@ -1,7 +1,5 @@
 """Small dense systems in kernels: elimination with pivots, Cholesky's factors, copies."""
 
-from __future__ import annotations
-
 from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit

@@ -1,7 +1,5 @@
 """Energy of a recorded motion and how well it balances with the work of the excitation."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import attrs

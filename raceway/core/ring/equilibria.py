@@ -1,7 +1,5 @@
 """Equilibria of many operating points in one compiled loop: the numbers of each point are a row of the columns."""
 
-from __future__ import annotations
-
 import numpy as np
 from numba import float64, void
 

@@ -8,8 +8,6 @@ convex in all unknowns together, so that what balances is the one equilibrium; m
 There is no safeguard: a point that does not balance within some steps, or is held loosely, is left to the trust region.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import boolean, int64, types, void
 

@@ -12,8 +12,6 @@ Trefethen, Spectral Methods in MATLAB (2000), chapter 3; Krack, Gross, Harmonic 
 (2019), chapter 2.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import attrs

@@ -1,22 +1,18 @@
 """A ring of five coordinates on its balls, however their forces are computed."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from typing import Any, Self, TypeVar
 
 import attrs
 import numpy as np
 
 from raceway.core.contact.geometry import Growth
 from raceway.core.jit import Kernel
+from raceway.core.record import SteppedSystem
 from raceway.core.ring.kernels import layout
 from raceway.core.ring.kernels.layout import place, stop
 from raceway.core.signatures import Constants
-
-if TYPE_CHECKING:
-    from raceway.core.record import SteppedSystem
 
 
 @attrs.frozen(eq=False)

@@ -1,7 +1,5 @@
 """Records of many operating points for compiled loops: numbers in, states out."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

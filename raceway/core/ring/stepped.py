@@ -1,7 +1,5 @@
 """A ring in steps of time whose forces are not compiled: what elastic bodies and pressures at surface points share."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from raceway.core.record import Motion, Observation, State, check_start

@@ -14,8 +14,6 @@ Nakatsukasa, Sete, Trefethen, The AAA algorithm for rational approximation, SIAM
 (weights from the null space of the Loewner matrix).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Steps of a compiled ring, in chunks, and what a run that ends early leaves."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

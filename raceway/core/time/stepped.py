@@ -1,7 +1,5 @@
 """The loop for systems that are stepped from Python; equations in ``raceway.core.time``."""
 
-from __future__ import annotations
-
 from collections import deque
 
 import numpy as np

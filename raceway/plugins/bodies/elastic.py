@@ -1,12 +1,11 @@
 """The kind of bodies of which every node moves."""
 
-from __future__ import annotations
-
 from math import ceil, inf, pi
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import attrs
 
+from raceway.bodies.model import BuiltBearing
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
 from raceway.errors import Mistake
@@ -16,16 +15,12 @@ from raceway.framework.options import one_of, option, positive
 from raceway.framework.rules import Rule, mistakes
 from raceway.planning.cost import START_S
 from raceway.planning.parts import Balls, Decisions, PlannedMotion
+from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.plugins.bodies.condensed import section_cost
 from raceway.plugins.bodies.mesh import least_step, mesh_faults, predicted_mesh, refined, unrefined
 from raceway.storage.files import allowed_bytes
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from raceway.bodies.model import BuiltBearing
-    from raceway.planning.plan import ScenePlan
-
 
 #: Contact resultants: bytes of a program without bodies, and of a cell while factors or multigrid are kept (resident memory
 #: measured at 4500 and 17 000 cells with factors, at 60 000 with multigrid).

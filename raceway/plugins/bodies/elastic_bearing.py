@@ -1,7 +1,5 @@
 """Elastic rings and balls whose every node is a degree of freedom: pressures at points, or a calibrated force a contact."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 

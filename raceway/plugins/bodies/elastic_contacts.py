@@ -1,21 +1,19 @@
 """What a result tells of elastic bodies, whatever their contacts: reactions, energies, mesh, and the balance of forces."""
 
-from __future__ import annotations
-
 import itertools
 from abc import abstractmethod
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
 from raceway.bodies.contacts import rigid_rings
-from raceway.bodies.model import BuiltBearing, Told, calibration_error, untold
+from raceway.bodies.model import BuiltBearing, Equilibrium, Model, Told, calibration_error, untold
 from raceway.core.fem.elastic import ring as start
 from raceway.core.fem.elastic.bearing import ElasticBearing
 from raceway.core.fem.elastic.resultant import ResultantContact
 from raceway.core.fem.elastic.ring import ElasticRing
+from raceway.core.fem.structural import ElasticBodies as Compliances
 from raceway.core.record import Motion
 from raceway.core.ring.orbit import Orbit
 from raceway.core.ring.ring import Ring
@@ -23,10 +21,6 @@ from raceway.core.ring.system import System, surrogate
 from raceway.framework.estimate import Estimate
 from raceway.plugins.bodies.mesh import locking
 from raceway.storage.tables import Tables
-
-if TYPE_CHECKING:
-    from raceway.bodies.model import Equilibrium, Model
-    from raceway.core.fem.structural import ElasticBodies as Compliances
 
 
 @attrs.frozen(eq=False)

@@ -14,15 +14,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import attrs
 
 from raceway.answers.quantities import Quantity
-from raceway.framework.shown import number
+from raceway.framework.contracts import Problem, SolvedPoints
+from raceway.framework.shown import Fact, number
+from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     import numpy as np
 
     from raceway.core.thermal import Network
-    from raceway.framework.contracts import Problem, SolvedPoints
-    from raceway.framework.shown import Fact
-    from raceway.storage.tables import ReadTables, Tables
 
 #: 0 degrees Celsius [K].
 ZERO_C = 273.15

@@ -1,21 +1,16 @@
 """Whether the balls of a bearing roll: the traction that they need, beside what the contacts offer."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import attrs
 import numpy as np
 
 from raceway.answers.quantities import Quantity
-from raceway.framework.shown import number
+from raceway.framework.contracts import Problem, SolvedPoints
+from raceway.framework.shown import Fact, number
 from raceway.plugins.quantities.friction import ball_contacts
-
-if TYPE_CHECKING:
-    from raceway.framework.contracts import Problem, SolvedPoints
-    from raceway.framework.shown import Fact
-    from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import ReadTables, Tables
 
 #: Traction coefficient of balls where no oil is given, below the 0.08 that conventional lubricants reach.
 _SUFFICIENT = 0.06

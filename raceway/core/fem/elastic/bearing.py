@@ -1,7 +1,5 @@
 """The bodies of a ball bearing, made into an elastic system: supports, contacts, cage, and what a record looks at."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 

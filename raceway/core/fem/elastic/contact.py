@@ -13,13 +13,11 @@ from raceway.core.contact.damping import add_damping, stored_energy
 from raceway.core.fem.elastic.friction import CoulombFriction
 from raceway.core.fem.elastic.surface import Facets, SurfacePoints
 from raceway.core.fem.elastic.unknowns import of_nodes
-from raceway.core.jit import jit
+from raceway.core.jit import Kernel, jit
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
-
-    from raceway.core.jit import Kernel
 
 
 @attrs.frozen(eq=False)

@@ -7,8 +7,6 @@ no more than the surfaces travel, and what they have travelled since all gaps we
 ideal cage pushes a ball with a field of rigid accelerations, m (t + w x r), which is made from six sums over the ball's nodes.
 """
 
-from __future__ import annotations
-
 from collections import namedtuple
 from functools import partial
 from typing import Any

@@ -18,8 +18,6 @@ Simo, Laursen: An augmented Lagrangian treatment of contact problems involving f
 Wriggers: Computational Contact Mechanics (2006), section 5.2.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Shape functions of the trilinear hexahedron in VTK's order of nodes, and what follows from them by numpy."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -7,8 +7,6 @@ the contact far away and a linear stiffness the same system is a linear oscillat
 (a bearing has two races), so the second one is there and stays open.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from raceway.core.excitations import no_force

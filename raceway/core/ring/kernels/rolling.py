@@ -1,7 +1,5 @@
 """Balls that roll: gyroscopic moments, traction at the contacts, Coulomb friction, and the linear balance of a ball with its contacts."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from numba import float64, int64, types

@@ -1,7 +1,5 @@
 """Pairs and two by two matrices in kernels."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from numba import float64, int64, types, void
