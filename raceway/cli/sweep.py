@@ -234,7 +234,7 @@ def sweep(
     y : second axis; in curves what the colours stand for
     at : choose a value of an axis
     kind : of the picture; None: map where both axes have more than 8 values, else curves
-    picture : a .png, .svg or .pdf of K, or of --plot; None: STORE/NAME-KIND.png
+    picture : a .png, .svg or .pdf of K or --plot; None: STORE/NAME-KIND.png
     plan : print how many points, how long, how much memory and disk, and stop
     """
     from raceway.points.sweep import executor_of, prepare, workload
