@@ -12,7 +12,9 @@ import threading
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
+from raceway_app import picture
 from raceway_app.session import Session, groups
 from raceway_app.worker import Job, News, Worker
 
@@ -29,6 +31,42 @@ SCENE = str(EXAMPLES / "b7206.toml")
 def application(tmp_path_factory):
     with Application(tmp_path_factory.mktemp("app") / "files", SCENE) as served:
         yield served
+
+
+def curves(scene, drawn=None, few=True):
+    """Of a scene by axis and panel, with the numbers of its run."""
+    result = rw.run(scene)
+    parts = scene, picture.form(scene), picture.titles_of(result), picture.axes_of(scene, {})
+    panels = (drawn or picture.Curves()).draw(parts, lambda: None, few=few)
+    return {(panel["axis"], panel["panel"]): panel for panel in panels}, result
+
+
+def test_condensed_bodies_have_all_curves_and_the_stiffness_of_their_run():
+    rigid, condensed = (curves(rw.load_scene(SCENE, [f"bodies.kind={kind}"])) for kind in ("rigid", "condensed"))
+    assert rigid[0].keys() - {("speed", "damping")} <= condensed[0].keys()  # their C is below its error
+    for panels, result in (rigid, condensed):
+        for axis in ("speed", "load"):
+            panel = panels[axis, "stiffness"]
+            now = panel["lines"][0]["y"][panel["x"].index(panel["present"])]
+            assert 1e6 * now == pytest.approx(result.equivalent_stiffness, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "change", ["load.axial=700", "excitation.unbalance=3e-4", "bearing.contact_angle_deg=18", "rotor.mass=3"]
+)
+def test_curves_after_a_change_are_those_of_the_changed_scene(change):
+    drawn, changed = picture.Curves(), rw.load_scene(SCENE, [change])
+    before = curves(rw.load_scene(SCENE), drawn, few=False)[0]
+    for _ in range(2):  # a function is built for the number that has changed, then used again
+        after, fresh = (curves(changed, one, few=False)[0] for one in (drawn, None))
+        for key, panel in fresh.items():
+            assert after[key]["x"] == panel["x"] and len(panel["missing"]) < 10
+            for line, other in zip(panel["lines"], after[key]["lines"], strict=True):
+                within = 2e-3 if key[1] == "damping" else 1e-5  # C w is 1e-4 of K at the least speed
+                np.testing.assert_allclose(np.array(other["y"], float), np.array(line["y"], float), rtol=within)
+    assert fresh["speed", "ball load"]["lines"][0]["y"][-1] != pytest.approx(
+        before["speed", "ball load"]["lines"][0]["y"][-1], rel=1e-3
+    )
 
 
 def status(application, path: str, host: str = "", **headers: str) -> int:

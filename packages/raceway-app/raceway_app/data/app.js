@@ -73,7 +73,7 @@ window.raceway_app = (function () {
 
   const LEFT = 48, RIGHT = 300, WIDTH = 320;
   const Chart = {
-    props: ["chart", "names", "screens", "same"],
+    props: ["chart", "names", "screens", "one"],
     data: () => ({ at: null }),
     computed: {
       // Curves of the second scene less those of the first: in per cent, temperatures in degrees.
@@ -114,7 +114,7 @@ window.raceway_app = (function () {
         const edge = (part, factor) => part.map(([x, y]) => f.x(x).toFixed(1) + " " + f.y(y * factor).toFixed(1)).join("L");
         return points.length ? "M" + edge(points, 1 + this.interval[0]) + "L" + edge([...points].reverse(), 1 + this.interval[1]) + "Z" : "";
       },
-      own() { return this.relative && this.differences.length ? apart(this.screens, this.chart.series[0].name, this.same) : null; },
+      own() { return this.relative && this.differences.length ? apart(this.screens, this.chart.series[0].name, this.one) : null; },
       // Both edges of the difference's interval, between gaps: lists of points.
       edges() {
         return !this.own ? [] : this.own.map((end) => {
@@ -193,7 +193,7 @@ window.raceway_app = (function () {
 
   // One line of curves, which the reader chooses; a cookie remembers them, since each start has a port, and so a storage, of its own.
   const Curves = {
-    props: ["curves", "screens", "busy", "same"], emits: ["range", "set"],
+    props: ["curves", "screens", "busy", "one"], emits: ["range", "set"],
     data: () => ({ chosen: (/(?:^|; )raceway_curves=([^;]*)/.exec(document.cookie)?.[1] ?? "speed.stiffness,speed.ball load,load.stiffness").split(",").map(decodeURIComponent) }),
     computed: {
       names() { return this.curves.map((_, k) => "AB"[k]); },
@@ -247,7 +247,7 @@ window.raceway_app = (function () {
     template: `<div class="choice"><div class="chips" v-for="a in axes" :key="a.name"><h2>Over {{ bare(a.label) }}</h2>
         <button type="button" v-for="c in full.filter((c) => c.axis === a.name)" :key="c.panel" :aria-pressed="chosen.includes(id(c))" :data-curve="id(c)" @click="choose(c)">{{ c.panel }}</button></div></div>
       <p class="small" v-if="!charts.length && !Object.keys(busy).length">no curves: the scene has neither a speed nor an axial load, or is refused</p>
-      <div class="grid"><raceway-chart v-for="c in shown" :key="id(c)" :chart="c" :names="names" :screens="screens" :same="same"></raceway-chart></div>
+      <div class="grid"><raceway-chart v-for="c in shown" :key="id(c)" :chart="c" :names="names" :screens="screens" :one="one"></raceway-chart></div>
       <p class="small" v-for="n in notes">{{ n.words }} <button type="button" v-if="n.missing.length" @click="$emit('set', [n.panel], n.key, String(n.missing[0]))">Run {{ number(n.missing[0], 5) }} {{ unit(n.label) }} to see why</button></p>
       <p class="small ranges"><span v-for="a in axes" :key="a.name">{{ bare(a.label) }} from <input type="number" :aria-label="a.label + ', from'" :value="a.low" @change="send(a, $event.target, 'low')"> to
         <input type="number" :aria-label="a.label + ', to'" :value="a.high" @change="send(a, $event.target, 'high')"> {{ unit(a.label) }}&emsp;</span></p>`,
