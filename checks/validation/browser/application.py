@@ -52,6 +52,9 @@ const edge = document.documentElement.clientWidth + 1;
 for (const e of document.querySelectorAll("body *")) {
   if (!e.closest(".scroll") && shown(e) && box(e).right > edge) faults.push("cut: " + e.textContent.trim().slice(0, 40));
 }
+for (const part of document.querySelectorAll(".scene")) {  // it scrolls down, not aside
+  if (part.scrollWidth > part.clientWidth) faults.push("cut: " + [...part.querySelectorAll("*")].find((e) => box(e).right > box(part).right)?.textContent.trim().slice(0, 40));
+}
 for (const picture of document.querySelectorAll(".chart svg, .stage, .pair svg")) {
   const frame = box(picture), words = [...picture.querySelectorAll("text, .label")].filter(shown);
   words.forEach((a, k) => {
