@@ -258,11 +258,12 @@ def test_speeds_without_a_steady_orbit_are_named_and_can_be_run(tab):
     first, last = re.search(r"B: speed \d+ to \d+ r/min: no steady orbit.*?(Run (\d+) r/min to see why)", note), tab.number
     assert first, note
     script = "[...document.querySelectorAll('.charts button')].find((b) => b.textContent === arguments[0]).click()"
+    unchanged = tab.scene(0)
     tab.browser.run(script, first[1])
     tab.wait(last)
     tab.settle()
     assert tab.scene(1)["excitation"]["speed_rpm"] == pytest.approx(float(first[2]), rel=1e-4)
-    assert tab.scene(0)["excitation"]["speed_rpm"] == 12000.0  # of A nothing changes
+    assert tab.scene(0) == unchanged
     if tab.values(1):  # the run finds a motion that the loop does not
         shown_is_run(tab, (1,))
     else:
