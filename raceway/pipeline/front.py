@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import attrs
 
@@ -14,9 +14,11 @@ from raceway.errors import RacewayError
 from raceway.framework.doors import DURATION, PATH, PATHS, TEXTS, door
 from raceway.framework.registry import default_registry, registry_with
 from raceway.pipeline import PATIENCE
-from raceway.pipeline.result import Result
-from raceway.scene.scene import SceneSource
 from raceway.storage.files import writable
+
+if TYPE_CHECKING:
+    from raceway.pipeline.result import Result
+    from raceway.scene.scene import SceneSource
 
 #: Time that a note is worth [s].
 _NOTE_S = 10.0
