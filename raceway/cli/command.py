@@ -117,8 +117,9 @@ class Command(NamedTuple):
         """The command, with the module of its front imported."""
         front = named(self.front) if isinstance(self.front, str) else self.front
         # Argument -> its words; several arguments of one line are parted by ``;  ``.
-        before, parameter_lines = _sections(front)
-        lines = re.sub(r"\n\s+", " ", parameter_lines)
+        # What stands before the parameters, and these, in numpydoc's form.
+        before, _, after = (inspect.getdoc(front) or "").partition("\nParameters\n----------\n")
+        lines = re.sub(r"\n\s+", " ", re.split(r"\n\n\w+\n-+\n", after)[0])
         entries = [entry for line in lines.splitlines() for entry in re.split(r";  (?=[\w, *]+ : )", line)]
         pairs = (entry.partition(" : ") for entry in entries)
         words = {name.strip(): words.strip() for names, _, words in pairs for name in names.split(",")}
@@ -276,12 +277,6 @@ def _by_flags(about: Command, error: RacewayError | None) -> RacewayError | None
         return error
     flags = {k: f"--{o.flag or k.replace('_', '-')}" for k, o in about.options.items() if o and not o.positional}
     return SceneError([attrs.evolve(m, path=flags.get(str(m.path), m.path)) for m in error.mistakes])
-
-
-def _sections(front: Callable[..., Value]) -> tuple[str, str]:
-    """What stands before the parameters, and these, of a docstring in numpydoc's form."""
-    before, _, after = (inspect.getdoc(front) or "").partition("\nParameters\n----------\n")
-    return before, re.split(r"\n\n\w+\n-+\n", after)[0]
 
 
 def _option_help(words: str) -> str:

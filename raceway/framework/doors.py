@@ -123,17 +123,16 @@ def _several(of: Reader) -> Reader:
     return Reader(f"{of.words}, or a list of these", read)
 
 
-def _table(value: object) -> object:
-    return value if isinstance(value, Mapping) else TEXTS.read(value)
-
-
 TEXT = reader("text", str)
 TEXTS = _several(TEXT)
 FINITE = _checked_number("a finite number", math.isfinite)
 DURATION = _checked_number("a number from 0, or inf", lambda v: v >= 0.0)
 PATH = reader("the path of a file or folder, text or pathlib.Path", lambda v: "\0" not in os.fspath(v), Path)
 PATHS = _several(PATH)
-KEY_VALUES = Reader("a mapping of keys to values, or texts KEY=VALUE", _table)
+KEY_VALUES = Reader(
+    "a mapping of keys to values, or texts KEY=VALUE",
+    lambda value: value if isinstance(value, Mapping) else TEXTS.read(value),
+)
 _TYPES = {
     "str": TEXT,
     "bool": reader("True or False", lambda v: type(v).__name__ in ("bool", "bool_"), bool),

@@ -3,8 +3,6 @@
 A busy machine ends no run: what is counted is processor time.
 """
 
-from __future__ import annotations
-
 import os
 import platform
 import resource
@@ -202,7 +200,7 @@ class _Answer:
 
 
 def _answer(
-    model: Model, equilibrium: Equilibrium, motions: list[Simulation], allowance: Allowance, doubts: list[str]
+    model: Model, equilibrium: Equilibrium, motions: list[Simulation], allowance: "Allowance", doubts: list[str]
 ) -> _Answer:
     """What the scene's identifier finds in the motions, and its error.
 
@@ -226,7 +224,7 @@ def _answer(
 
 
 def _motions(
-    model: Model, equilibrium: Equilibrium, progress: OnProgress, near: Result | None, stay: bool, allowance: Allowance,
+    model: Model, equilibrium: Equilibrium, progress: OnProgress, near: Result | None, stay: bool, allowance: "Allowance",
     registry: Registry,
 ) -> tuple[Model, list[Simulation], list[str]]:  # fmt: skip
     """The motions that the identifier needs, with their model and warnings; a similar scene's is followed by the same integrator.
@@ -369,7 +367,7 @@ class Allowance:
     held: float = attrs.field(factory=lambda: _resident_bytes())
 
     @classmethod
-    def of(cls, plan: ScenePlan, patience: float) -> Allowance:
+    def of(cls, plan: ScenePlan, patience: float) -> "Allowance":
         """Without an end where the plan knows no more than what a run takes at least."""
         seconds = max(plan.predicted_wall_s, _LEAST_S)
         return cls(seconds, inf) if plan.at_least or patience == inf else cls(seconds, patience, bytes=plan.predicted_bytes)

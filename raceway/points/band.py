@@ -305,19 +305,11 @@ def _summary(
         for row_of, k in enumerate(effective):
             first[names[k]], total[names[k]] = sobol.first[row_of].tolist(), sobol.total[row_of].tolist()
     return Band(
-        title,
-        tolerances,
-        {name: nominal[name] for name in names},
-        words,
-        dict(zip(names, low.tolist(), strict=True)),
-        dict(zip(names, high.tolist(), strict=True)),
-        first,
-        total,
+        title, tolerances, {name: nominal[name] for name in names}, words,
+        dict(zip(names, low.tolist(), strict=True)), dict(zip(names, high.tolist(), strict=True)), first, total,
         {name: (edges.tolist(), counts.tolist()) for name, (counts, edges) in zip(names, histograms, strict=True)},
-        len(rows),
-        len(reasons),
-        reasons[0] if reasons else "",
-    )
+        len(rows), len(reasons), reasons[0] if reasons else "",
+    )  # fmt: skip
 
 
 @door

@@ -59,6 +59,6 @@ def deep_groove_candidates(size: Printed) -> list[Candidate]:
                             float(weight[k]),
                             None,
                             float(factor),
-                        )
+                        )  # fmt: skip
                     )
     return candidates

@@ -242,7 +242,8 @@ def _cells_between_edges(gmsh: ModuleType, tag: int, volume: float) -> float:
     counts, lengths = [], 0.0
     for curve in curves:
         tags, nodes = gmsh.model.mesh.getElementsByType(1, curve)
-        at = {int(n): x for n, x in zip(*_nodes(gmsh, curve), strict=True)}
+        tags_of_nodes, places, _ = gmsh.model.mesh.getNodes(1, curve, includeBoundary=True)
+        at = {int(n): x for n, x in zip(tags_of_nodes, places.reshape(-1, 3), strict=True)}
         ends = [at[int(n)] for n in nodes]
         counts.append(len(tags))
         lengths += float(np.linalg.norm(np.subtract(ends[::2], ends[1::2]), axis=1).sum()) if len(tags) else 0.0
@@ -250,12 +251,6 @@ def _cells_between_edges(gmsh: ModuleType, tag: int, volume: float) -> float:
         return float(np.prod(np.array(counts, dtype=float)) ** 0.25)
     size = lengths / max(sum(counts), 1)
     return volume / size**3 if size else 0.0
-
-
-def _nodes(gmsh: ModuleType, curve: int) -> tuple[np.ndarray, np.ndarray]:
-    """Tags and places of the nodes of a curve, its ends too."""
-    tags, places, _ = gmsh.model.mesh.getNodes(1, curve, includeBoundary=True)
-    return tags, places.reshape(-1, 3)
 
 
 def _surfaces(gmsh: ModuleType) -> dict[str, list[int]]:

@@ -325,13 +325,10 @@ def doubled(branch: Branch, point: Point) -> tuple[Branch, Point]:
     problem, path = solution.problem, solution.path
     rotation, order = problem.symmetry.rotation, problem.symmetry.order
     both = Path(
-        np.append(path.nodes[:-1], problem.symmetry.span + path.nodes),
-        np.vstack([path.q[:-1], path.q @ rotation.T]),
-        np.vstack([path.v[:-1], path.v @ rotation.T]),
-        np.vstack([path.a, path.a @ rotation.T]),
-        np.concatenate([path.ball, path.ball[:, order]]),
-        np.concatenate([path.rate, path.rate[:, order]]),
-    )
+        np.append(path.nodes[:-1], problem.symmetry.span + path.nodes), np.vstack([path.q[:-1], path.q @ rotation.T]),
+        np.vstack([path.v[:-1], path.v @ rotation.T]), np.vstack([path.a, path.a @ rotation.T]),
+        np.concatenate([path.ball, path.ball[:, order]]), np.concatenate([path.rate, path.rate[:, order]]),
+    )  # fmt: skip
     values, vectors = np.linalg.eig(point.transfer)
     flip = vectors[:, np.argmin(np.abs(values + 1.0))].real
     at = branch.problem_at

@@ -221,10 +221,8 @@ def _solve_places(problem: Problem, path: Path, residual: np.ndarray) -> np.ndar
     # T (m s, Z, r, r) [s]: places by rates.
     columns: list[list[int]] = [[c] for c in problem.system.rated_columns]
     here, *others = _places(problem, path, [[], *columns])
-    lags, weights = (
-        np.stack([(balls - here) / _place_step(problem, path) for balls in others], axis=-1),
-        problem.speed * _weights(problem.rule, path.nodes),
-    )
+    lags = np.stack([(balls - here) / _place_step(problem, path) for balls in others], axis=-1)
+    weights = problem.speed * _weights(problem.rule, path.nodes)
     back = np.argsort(order)
     ball, sample = np.meshgrid(np.arange(z), np.arange(n), indexing="ij")
     at = sample[:, :, None] // s * s + np.arange(s + 4) - 2
@@ -315,10 +313,8 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
 
 def linearised(problem: Problem, path: Path) -> Eliminated:
     """About a path, whose arrays a step of Newton's method moves then."""
-    elimination, closure = (
-        problem.eliminated(path.nodes),
-        newton.Closure(problem.closing, problem.symmetry.order, np.empty(0, dtype=np.int64)),
-    )
+    elimination = problem.eliminated(path.nodes)
+    closure = newton.Closure(problem.closing, problem.symmetry.order, np.empty(0, dtype=np.int64))
     samples, once = path.samples(problem.push(path.nodes)), newton.Limits(0.0, 0.0, 1, 0)
     status = newton.newton(
         problem.equations, closure, problem.mesh(path.nodes), samples, once, elimination, np.zeros(newton.REPORT)

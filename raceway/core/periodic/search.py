@@ -1,7 +1,5 @@
 """The periodic motions of a system near a first guess: the linear response, or a neighbour."""
 
-from __future__ import annotations
-
 from math import ceil
 from typing import ClassVar
 
@@ -222,7 +220,7 @@ class PeriodicMotion:
     how: str
     floquet: Floquet
     fold: float | None = None
-    coexisting: tuple[PeriodicMotion, ...] = ()
+    coexisting: "tuple[PeriodicMotion, ...]" = ()
     _neighbour: list[Neighbour] = attrs.field(factory=list, init=False, repr=False)
 
     def neighbour(self, q: np.ndarray, tangent: np.ndarray) -> Neighbour:
@@ -232,7 +230,7 @@ class PeriodicMotion:
         return self._neighbour[0]
 
     @property
-    def all(self) -> tuple[PeriodicMotion, ...]:
+    def all(self) -> "tuple[PeriodicMotion, ...]":
         """This one first."""
         return (self, *self.coexisting)
 

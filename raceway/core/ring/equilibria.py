@@ -94,12 +94,8 @@ def equilibria(kernels, linear, points, states):
         in_lanes = width > 0 and states.status[p] == CONVERGED
         if in_lanes and not rates and points.scalars[p, DAMPING] == 0.0 and points.scalars[p, TIME_CONSTANT] == 0.0:
             continue
-        constants, params, K, q = (
-            Constants(points.scalars[p], points.table[p]),
-            points.params[p],
-            states.stiffness[p],
-            states.q[p],
-        )
+        constants = Constants(points.scalars[p], points.table[p])
+        params, K, q = points.params[p], states.stiffness[p], states.q[p]
         stiffness[3, 3] = points.shaft[p]
         stiffness[4, 4] = points.shaft[p]
         own = Linear(linear.mass, linear.damping, stiffness, linear.free, points.load[p])

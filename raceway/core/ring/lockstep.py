@@ -168,11 +168,9 @@ def _eliminated(k, live, rolls, rolling, work):
     scale = 1.0 / (j.aa * j.rr - j.ar * j.ra)
     inverse = Tensor(j.rr * scale, -j.ar * scale, -j.ra * scale, j.aa * scale)
     zero, p = Tensor(none.axial, none.axial, none.axial, none.axial), balance.p
-    step, follows, minus = (
-        less_column(none, inverse, Pair(ra, rr)),
-        less(zero, inverse, balance.x),
-        Tensor(-p.aa, -p.ar, -p.ra, -p.rr),
-    )
+    step = less_column(none, inverse, Pair(ra, rr))
+    follows = less(zero, inverse, balance.x)
+    minus = Tensor(-p.aa, -p.ar, -p.ra, -p.rr)
     put_pair(work, STEP, k, live, step.axial, step.radial)
     put_tensors(work, BY_CENTRE, k, live, follows)
     (gap_i, gap_o), lo = pair_of(work, rows.GAP, k, live), take(work, OFFSET, z + k, live)

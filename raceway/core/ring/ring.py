@@ -117,10 +117,8 @@ class ChangingSpeed:
         if system.scalars[layout.CAGE] != 0.0:
             ahead = float(self.cage_angle(system.scalars[layout.CAGE], now)[0]) - ring.scalars[layout.CAGE] * t
             c, s = np.cos(ahead), np.sin(ahead)
-            ring.table[:, layout.COSINE], ring.table[:, layout.SINE] = (
-                system.table[:, layout.COSINE] * c - system.table[:, layout.SINE] * s,
-                system.table[:, layout.SINE] * c + system.table[:, layout.COSINE] * s,
-            )
+            ring.table[:, layout.COSINE] = system.table[:, layout.COSINE] * c - system.table[:, layout.SINE] * s
+            ring.table[:, layout.SINE] = system.table[:, layout.SINE] * c + system.table[:, layout.COSINE] * s
         return ring
 
     def constants(self, system: R, speed: float) -> R:

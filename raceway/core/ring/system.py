@@ -1,7 +1,5 @@
 """A ring whose contact forces are compiled: kernels and their arrays, ready for compiled loops."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 
@@ -44,7 +42,7 @@ class System(Ring):
         """Whether the ball forces have a potential: neither friction nor gyroscopic moments."""
         return self.base_kernel is self.kernel
 
-    def of_balls(self, balls: np.ndarray, table: np.ndarray) -> System:
+    def of_balls(self, balls: np.ndarray, table: np.ndarray) -> "System":
         """With the law's parameters of their contacts."""
         ring, contacts = super().of_balls(balls, table), self.contacts_of(balls)
         ring.law_params = np.ascontiguousarray(self.law_params[contacts])
@@ -52,14 +50,14 @@ class System(Ring):
             ring.mounted_params, ring.reach = self.mounted_params[contacts].copy(), self.reach[contacts].copy()
         return ring
 
-    def running(self, law_params: np.ndarray, reach: np.ndarray) -> System:
+    def running(self, law_params: np.ndarray, reach: np.ndarray) -> "System":
         """A copy with the law's parameters (2 Z, k) and reach (2 Z,) [m] at a running speed."""
         table, before = self.table.copy(), 0.0 if self.reach is None else self.reach
         table[:, [layout.OWN_OFFSET_INNER, layout.OWN_OFFSET_OUTER]] -= (reach - before).reshape(2, -1).T
         rest_params = self.law_params if self.mounted_params is None else self.mounted_params
         return attrs.evolve(self, table=table, law_params=law_params, mounted_params=rest_params, reach=reach)
 
-    def standing(self, growth: Growth) -> System:
+    def standing(self, growth: Growth) -> "System":
         """At standstill, where laws have the parameters of standstill."""
         ring = super().standing(growth)
         if ring.mounted_params is None or ring.reach is None:

@@ -1,7 +1,5 @@
 """Elastic bodies with pressures at surface points, and stresses below the most loaded contact of each race, beside Hertz's."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 
@@ -79,7 +77,7 @@ class BelowContact:
         }
 
 
-def below_contacts(bodies: ElasticPoints, model: Model, equilibrium: Equilibrium) -> list[BelowContact]:
+def below_contacts(bodies: "ElasticPoints", model: Model, equilibrium: Equilibrium) -> list[BelowContact]:
     """Ball and ring below the most loaded contact of each race, at rest; none of a race that carries nothing."""
     system = model.system
     assert isinstance(system, ElasticRing)

@@ -314,7 +314,7 @@ def fit_table(measurements: _Measurements, scene: Scene, names: list[str]) -> Fi
             answers[name],
             noise * measurements.weights[name],
             band[k] * measurements.weights[name],
-        )
+        )  # fmt: skip
         for k, (name, numbers) in enumerate(measurements.values.items())
     )
     return Fitted(scene.title, measurements.source, "table", measurements.stated, answer, series, (), tuple(notes))

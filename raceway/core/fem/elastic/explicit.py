@@ -143,16 +143,9 @@ def press(again, numbers, law, nodes, points):  # type: ignore[no-untyped-def]
             p.velocity[i, 0] * p.normal[i, 0] + p.velocity[i, 1] * p.normal[i, 1] + p.velocity[i, 2] * p.normal[i, 2]
         )
     law(
-        scalar[_GAP],
-        scalar[_RATE],
-        p.params,
-        p.memory,
-        p.memory_trial,
-        dt,
-        scalar[_PRESSURE],
-        scalar[_D_GAP],
+        scalar[_GAP], scalar[_RATE], p.params, p.memory, p.memory_trial, dt, scalar[_PRESSURE], scalar[_D_GAP],
         scalar[_D_RATE],
-    )
+    )  # fmt: skip
     add_damping(numbers[_DAMPING], scalar[_GAP], scalar[_RATE], scalar[_PRESSURE], scalar[_D_GAP], scalar[_D_RATE])
     # The tangents by velocity are not needed: they go where those of friction go next.
     forces_and_tangents(
@@ -243,11 +236,9 @@ def carry(onward, numbers, nodes, frame, points):  # type: ignore[no-untyped-def
     for i in range(frame.tied.size):
         u, half, a = 0.0, 0.0, 0.0
         for c in range(m):
-            u, half, a = (
-                u + frame.tie[i, c] * frame.q[c],
-                half + frame.tie[i, c] * frame.half[c],
-                a + frame.tie[i, c] * frame.a[c],
-            )
+            u = u + frame.tie[i, c] * frame.q[c]
+            half = half + frame.tie[i, c] * frame.half[c]
+            a = a + frame.tie[i, c] * frame.a[c]
         nodes.u[frame.tied[i]], nodes.half[frame.tied[i]], nodes.a[frame.tied[i]] = u, half, a
     fastest = 0.0
     for i in range(points.surface.size):
@@ -357,29 +348,18 @@ class ExplicitSteps:
                 raise recorder.unbounded()
             # The last step once more, at all points: its beginning is their history still.
             shift, velocity = contact.move @ moved, np.zeros((len(contact.area), 3))
-            shift.reshape(-1, 3)[rows], velocity[rows], contact.memory[rows] = (
-                points.displacement,
-                points.velocity,
-                points.memory,
-            )
+            shift.reshape(-1, 3)[rows], velocity[rows] = points.displacement, points.velocity
+            contact.memory[rows] = points.memory
             if friction is not None:
                 friction.committed[rows], friction.place[rows], friction.dissipated[rows] = points[11:14]
             contact.respond(dt, shift, velocity.reshape(-1), 0.0)
             if contact.stiffened():
-                compare(
-                    system.stable_step(),
-                    system,
-                    recorder,
-                    f" at t = {recorder.time_of(recorder.done + done):.6g} s, {CLOSED}",
-                )
+                now = recorder.time_of(recorder.done + done)
+                compare(system.stable_step(), system, recorder, f" at t = {now:.6g} s, {CLOSED}")
             system.commit()
         v = nodes.half + 0.5 * dt * nodes.a
-        state = State(
-            *(
-                np.concatenate([x, y[a.free]])
-                for x, y in ((frame.q, nodes.u), (frame.half + 0.5 * dt * frame.a, v), (frame.a, nodes.a))
-            )
-        )
+        parts = (frame.q, nodes.u), (frame.half + 0.5 * dt * frame.a, v), (frame.a, nodes.a)
+        state = State(*(np.concatenate([of_frame, of_nodes[a.free]]) for of_frame, of_nodes in parts))
         work = numbers[_WORK] + system.load[m:] @ (state.u - before.u)[m:]
         return state, float(work), float(numbers[_PENETRATION]), float(numbers[_FORCE])
 

@@ -47,10 +47,8 @@ def _first_guess(k, rolls, q, scalars, table, ball, ball_history, work):
     for c in range(2):
         work[rows.HISTORY, k + c * z] = ball_history[k, c]
         if rolls:
-            work[at.COMMITTED, k + c * z], work[at.SLIP, k + c * z] = (
-                ball_history[k, ring.SLIPS + c],
-                ball[k, ring.SLIPS + c],
-            )
+            work[at.COMMITTED, k + c * z] = ball_history[k, ring.SLIPS + c]
+            work[at.SLIP, k + c * z] = ball[k, ring.SLIPS + c]
     _forget(k, z, work)
     if table[k, ring.CENTRIFUGAL] == 0.0 and length <= room:
         scale, angle = (lo + shift + 0.5 * (length - room)) / length, np.arctan2(ea, er)
@@ -223,10 +221,8 @@ def _keep_for_bodies(k, live, contacts, h, elastic, viscous, b, t, u, inverse, w
     put_pair(work, rows.BY_OWN, k, live, own_i, own_o)
     by_o, by_i = -gi.axial * ro.axial - gi.radial * ro.radial, -go.axial * ri.axial - go.radial * ri.radial
     put_pair(work, rows.BY_OTHER, k, live, by_o, by_i)
-    turn_i, turn_o = (
-        gi.axial * b.by_turn.axial + gi.radial * b.by_turn.radial,
-        go.axial * b.by_turn.axial + go.radial * b.by_turn.radial,
-    )
+    turn_i = gi.axial * b.by_turn.axial + gi.radial * b.by_turn.radial
+    turn_o = go.axial * b.by_turn.axial + go.radial * b.by_turn.radial
     put_pair(work, rows.BY_TURN, k, live, -turn_i, -turn_o)
     inner, outer = tensors.less_column(by_shift, t, ri), tensors.less_column(none, t, ro)
     put_pair(work, rows.AXIAL_BY_SHIFT, k, live, inner.axial, outer.axial)

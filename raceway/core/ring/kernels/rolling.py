@@ -171,10 +171,8 @@ def with_gyroscopic(k, live, contacts, rub, rolling, work):
     moment, by_i, by_o = gyroscopic_moment(Pair(inner.axial, inner.radial), Pair(outer.axial, outer.radial), ratio, scale)
     if any_of(limit > 0.0):
         # Dashpots carry no traction: it is limited by the elastic forces, and rates of gaps leave it alone.
-        (rate_i, rate_o), (by_rate_i, by_rate_o) = (
-            pair_of(work, rows.GAP_RATE, k, live),
-            pair_of(work, rows.FORCE_BY_RATE, k, live),
-        )
+        rate_i, rate_o = pair_of(work, rows.GAP_RATE, k, live)
+        by_rate_i, by_rate_o = pair_of(work, rows.FORCE_BY_RATE, k, live)
         by_gap_i, by_gap_o = pair_of(work, rows.FORCE_BY_GAP, k, live)
         at_i = traction_within(share_i * moment, larger(inner.force - by_rate_i * rate_i, 0.0), limit)
         at_o = traction_within(whole * moment - at_i.force, larger(outer.force - by_rate_o * rate_o, 0.0), limit)
@@ -190,25 +188,12 @@ def with_gyroscopic(k, live, contacts, rub, rolling, work):
         share_i, share_o, coupling = where(most, 0.0, share_i), where(most, whole, share_o), grows
         rest = share_o * moment - where(most, traction, 0.0)
     return Tangential(
-        rub.inner - traction,
-        rub.outer - rest,
-        rub.inner_by_length - grows,
-        rub.outer_by_length - own,
-        rub.inner_by_angle - share_i * by_i,
-        rub.outer_by_angle - share_o * by_o,
-        -share_i * by_o,
-        -share_o * by_i,
-        rub.inner_by_shift + grows,
-        rub.outer_by_shift + own,
-        rub.couple + groove * traction,
-        rub.couple_by_length + groove * grows,
-        rub.couple_by_inner + groove * share_i * by_i,
-        groove * share_i * by_o,
-        rub.couple_by_turn,
-        rub.inner_by_turn,
-        coupling,
-        rub.couple_by_shift - groove * grows,
-    )
+        rub.inner - traction, rub.outer - rest, rub.inner_by_length - grows, rub.outer_by_length - own,
+        rub.inner_by_angle - share_i * by_i, rub.outer_by_angle - share_o * by_o, -share_i * by_o, -share_o * by_i,
+        rub.inner_by_shift + grows, rub.outer_by_shift + own, rub.couple + groove * traction,
+        rub.couple_by_length + groove * grows, rub.couple_by_inner + groove * share_i * by_i, groove * share_i * by_o,
+        rub.couple_by_turn, rub.inner_by_turn, coupling, rub.couple_by_shift - groove * grows,
+    )  # fmt: skip
 
 
 class _Grip(NamedTuple):
@@ -256,25 +241,11 @@ def rub(k, live, contacts, scalars, work):
     gi, go = _grip(inner, lever, reach, at_i - slip_i, mu, stick), _grip(outer, lever_o, lo, at_o - slip_o, mu, stick)
     sticks = ~(gi.by_angle == 0.0)
     forces = Tangential(
-        gi.force,
-        go.force,
-        gi.by_length,
-        go.by_length,
-        gi.by_angle,
-        go.by_angle,
-        o,
-        o,
-        gi.by_shift,
-        go.by_shift,
-        -groove * stick * gi.stretch,
-        where(sticks, 0.0, -groove * (gi.by_length / lever + gi.force / reach)),
-        where(sticks, -groove * stick * reach, 0.0),
-        o,
-        where(sticks, groove * groove * stick, 0.0),
-        where(sticks, -stick * groove * lever, o),
-        o,
-        where(sticks, 0.0, -groove * gi.by_shift / lever),
-    )
+        gi.force, go.force, gi.by_length, go.by_length, gi.by_angle, go.by_angle, o, o, gi.by_shift, go.by_shift,
+        -groove * stick * gi.stretch, where(sticks, 0.0, -groove * (gi.by_length / lever + gi.force / reach)),
+        where(sticks, -groove * stick * reach, 0.0), o, where(sticks, groove * groove * stick, 0.0),
+        where(sticks, -stick * groove * lever, o), o, where(sticks, 0.0, -groove * gi.by_shift / lever),
+    )  # fmt: skip
     return forces, Pair(at_i - gi.stretch, at_o - go.stretch)
 
 
