@@ -26,7 +26,7 @@ ARTICLE = "examples/b7206_article_mesh.toml"
 #: Axial displacement that presses the balls [m], and the step [s], so small that the state hardly changes.
 _PRESSED, _STEP = 1e-5, 1e-12
 #: Elements times steps of the longer of two calls, whose difference is that of the steps alone; calls of which the quickest counts.
-_WORK, _CALLS = 400_000, 12
+_WORK, _CALLS = 4_000_000, 8
 #: How often one thread and all of them take turns.
 _ROUNDS = 3
 
