@@ -47,25 +47,6 @@ def test_the_readable_loop_gives_the_fast_kernels_force(mesh):
     assert np.abs(f - op.internal_force(u)).max() <= ROUNDING * np.abs(f).max()
 
 
-def test_steps_are_bit_equal_for_any_number_of_threads_and_equal_the_formula():
-    points, cells, _ = distorted((5, 6, 8), sides=(1e-3, 1e-3, 1e-3))
-    op = HexOperator(points, cells, *STEEL)
-    start = np.random.default_rng(3).standard_normal(points.shape) * 1e-9
-    load = np.random.default_rng(4).standard_normal(points.shape)
-    inverse, dt = 1.0 / op.lumped_mass(), 0.5 * op.stable_step()
-    u, v = start.copy(), np.zeros_like(start)
-    for _ in range(5):
-        v += dt * inverse[:, None] * (load - op.internal_force(u))
-        u += dt * v
-    results = []
-    for threads in (1, 2):
-        moved, speed = start.copy(), np.zeros_like(start)
-        op.advance(moved, speed, load, inverse, dt, steps=5, threads=threads)
-        assert np.abs(moved - u).max() <= ROUNDING * np.abs(u).max()
-        results.append(moved)
-    assert np.array_equal(*results)
-
-
 def test_bad_input_is_refused_in_words():
     points, cells = block((1.0, 1.0, 1.0), (2, 2, 2))
     turned = cells.copy()

@@ -44,7 +44,9 @@ def _growth(op: HexOperator, dt: float) -> float:
     mass = op.lumped_mass()
     u -= np.average(u, axis=0, weights=mass)
     v, first = np.zeros_like(u), float(np.abs(u).max())
-    op.advance(u, v, np.zeros_like(u), 1.0 / mass, dt, _STEPS)
+    for _ in range(_STEPS):
+        v -= dt * op.internal_force(u) / mass[:, None]
+        u += dt * v
     return float(np.abs(u).max() / first)
 
 

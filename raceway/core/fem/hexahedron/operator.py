@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from raceway.core.fem.hexahedron.rows import (
     add_parts,
-    add_parts_and_move,
     assemble,
     centre_stress,
     divide,
@@ -131,33 +130,6 @@ class HexOperator:
             pool.do(len(self.ranges), self.force_job(flat))
             pool.do_shares(len(self.points), lambda a, b: self.add_parts(a, b, f.reshape(-1)))
         return f
-
-    def advance(
-        self, u: Floats, v: Floats, load: ArrayLike, inverse_mass: Floats, dt: float, steps: int = 1, threads: int = 1
-    ) -> Floats:
-        """Explicit steps in place: v += dt (load - K u) / m, then u += dt v.
-
-        Parameters
-        ----------
-        u, v : (n, 3) C-contiguous, displacements [m], and velocities half a step earlier [m/s]
-        load : (n, 3) constant outer forces [N];  inverse_mass : (n,) [1/kg], 0 holds a node
-        dt : step [s], at most ``stable_step()``
-
-        Returns
-        -------
-        force : (n, 3) internal forces [N] at the start of the last step
-        """
-        flat_u, flat_v, outer, f = u.reshape(-1), v.reshape(-1), self._flat(load), np.zeros(self.points.size)
-        job = self.force_job(flat_u)
-
-        def move(first: int, last: int) -> None:
-            add_parts_and_move(first, last, self.ranges, self._parts, outer, inverse_mass, f, dt, flat_u, flat_v)
-
-        with ThreadPool(threads) as pool:
-            for _ in range(steps):
-                pool.do(len(self.ranges), job)
-                pool.do_shares(len(self.points), move)
-        return f.reshape(-1, 3)
 
     def stiffness(self) -> csr_matrix:
         """(3 n, 3 n) Assembled stiffness [N/m], scipy.sparse.csr_array."""

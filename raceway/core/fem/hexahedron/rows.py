@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
-from numba import float64, int32, int64, uint64, void
+from numba import int32, int64, uint64, void
 from numpy.typing import NDArray
 
 from raceway.core.fem.hexahedron.shape import (
@@ -108,26 +108,6 @@ def add_parts(first, last, ranges, parts, f):  # type: ignore[no-untyped-def]
         shift = uint64(3 * (ranges[r, 4] - ranges[r, 2]))
         for i in range(uint64(3 * begin), uint64(3 * max(begin, end))):
             f[i] += parts[i + shift]
-
-
-@jit(void(int64, int64, int64[:, ::1], VECTOR, VECTOR, VECTOR, VECTOR, float64, VECTOR, VECTOR), releases=True)
-def add_parts_and_move(first, last, ranges, parts, load, inverse_mass, f, dt, u, v):  # type: ignore[no-untyped-def]
-    """One central-difference update of the nodes ``first`` to ``last - 1``.
-
-    Parameters
-    ----------
-    load : (3 n,) outer forces [N];  inverse_mass : (n,) [1/kg], 0 holds a node
-    f : (3 n,) out: internal forces before the update [N]
-    u, v : (3 n,) displacements at the step [m] and velocities half a step earlier [m/s]; both move on by ``dt``
-    """
-    for begin in range(first, last, _CHUNK):
-        end = min(begin + _CHUNK, last)
-        add_parts(begin, end, ranges, parts, f)
-        for n in range(begin, end):
-            gain = dt * inverse_mass[n]
-            for i in range(3 * n, 3 * n + 3):
-                v[i] += gain * (load[i] - f[i])
-                u[i] += dt * v[i]
 
 
 def centre_stress(points: Floats, cells: NDArray[np.uint32], u: Floats, moduli: Floats, formulation: str) -> Floats:
