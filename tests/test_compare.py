@@ -338,10 +338,10 @@ def test_the_first_sentence_sets_the_difference_of_two_models_against_their_inte
     )
     found = _with_intervals(made, lambda _: {"numerical": (-numerical, numerical), "data": data})
     start = "bidirectional against unidirectional: K +0.25 to +1 % from 9000 to 15000, within the uncertainty of"
-    assert found.words[0] == f"{start} {said} where shared causes change both alike."
+    assert found.words[0] == f"{start} {said} by causes of one alone; of common ones (geometry, hypotheses) not estimated."
     title = found.draw().get_suptitle().replace("\n", " ")
     own, apart = said.partition(" (")[2].rstrip(".").split("); ")
-    assert f"shaded: {own}, {apart} where shared causes" in title
+    assert f"shaded: {own}, {apart} by causes of one alone; of common ones (geometry, hypotheses) not estimated" in title
 
 
 def test_a_cause_that_changes_both_alike_leaves_their_ratio_and_one_that_does_not_is_in_its_interval():

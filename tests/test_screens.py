@@ -350,3 +350,15 @@ def test_a_cost_says_whether_compiled_kernels_were_kept_and_the_processor_time()
 )
 def test_a_time_is_said_in_the_units_of_people(seconds, words):
     assert duration(seconds) == words
+
+
+def test_changes_of_a_scene_are_named_in_two_lines_at_most(caplog):
+    keys = ["rotor.mass", "excitation.speed_rpm", "excitation.load_share", "excitation.reference_speed_rpm", "load.axial"]
+    values = [2.0, 9000, 0.5, 10980, 1200]
+    changes = [f"{key}={value}" for key, value in zip(keys, values, strict=True)]
+    more = ["excitation.unbalance=6.39e-4", "supports.tilt=free", "contact.damping=1e-3", "integrator.kind=periodic"]
+    result = rw.run(rw.load_scene(EXAMPLES / "minimal.toml", [*changes, *more]))
+    short = lines(result.screen())
+    with caplog.at_level("INFO", "raceway"):
+        assert all(key in " ".join(lines(result.screen())) for key in keys)
+    assert short[1].endswith("…") and short[2].startswith("Answer at 9000 r/min")

@@ -275,7 +275,7 @@ def within(curves: Iterable[Line]) -> tuple[str, str]:
         apart += [] if curve.apart is None else [curve.apart.ravel()]
     each = [ends[np.isfinite(ends)] for ends in map(np.concatenate, (own, apart))]
     first, second = (f"within {interval_percents(ends)}" if ends.size else "" for ends in each)
-    return first, second and f"{second} where shared causes change both alike"
+    return first, second and f"{second} by causes of one alone; of common ones (geometry, hypotheses) not estimated"
 
 
 def signed(value: float) -> str:

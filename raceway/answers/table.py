@@ -126,7 +126,10 @@ def in_a_line(text: str, width: int) -> str:
         return text
     start = lines_of(text, width - 2)[0]
     end = max((mark.start() for mark in re.finditer(r"[.:;,] ", f"{start} ")), default=0)
-    return f"{start[:end] if end >= width // 2 else start} …"
+    start = start[:end] if end >= width // 2 else start
+    if start.count("(") > start.count(")"):
+        start = start[: start.rindex("(")].rstrip()
+    return f"{start} …"
 
 
 def micro(text: str) -> str:

@@ -253,7 +253,7 @@ def _motions(
     allowance.planned += plan.predicted_wall_s
     model = attrs.evolve(model, problem=plan.problem, plan=plan)
     model, motions, _ = _motions(model, equilibrium, progress, near, stay, allowance, registry)
-    return model, motions, [f"{why}: the motion is integrated over time instead"]
+    return model, motions, [f"the motion is integrated over time: {why}"]
 
 
 def _lines(model: Model, simulation: Simulation | None) -> list[Line]:

@@ -147,16 +147,22 @@ def report(result: Content) -> list[Part]:
     """Of a terminal: the answer, what makes it doubtful, and what was computed; as much as fits, unless progress is reported."""
     shown = screen(result)
     bearing, *model = shown.bearing.splitlines()
-    rows, warnings, last = shown.rows, shown.warnings, "; ".join([*model, shown.left_out])
+    rows, warnings, last, title = (
+        shown.rows,
+        shown.warnings,
+        "; ".join([*model, shown.left_out]),
+        "; ".join(shown.title.splitlines()),
+    )
     if not getLogger("raceway").isEnabledFor(INFO):
         cut = f"{last}; all rows and remedies: -v or result.json"
-        warnings, room = [in_a_line(text, WIDTH - len("warning: ")) for text in warnings], _LINES - 2 - len(warnings)
+        warnings, title = [in_a_line(text, WIDTH - len("warning: ")) for text in warnings], in_a_line(title, 2 * WIDTH)
+        room = _LINES - 1 - len(warnings) - len(lines_of(title, WIDTH))
         if height(rows) + len(lines_of(f"{bearing}\n{last}", WIDTH)) > room:
             rows = _rows_that_fit(result, rows, room - len(lines_of(f"{bearing}\n{cut}", WIDTH)))
         last = last if (rows, warnings) == (shown.rows, shown.warnings) else cut
     first = next(k for k, (name, value, _) in enumerate(rows) if k and name and not value)
     return [
-        Words("; ".join(shown.title.splitlines()), "bold"),
+        Words(title, "bold"),
         sections(rows[:first]),
         *(Words(f"warning: {text}", "yellow") for text in warnings),
         Words(bearing, "dim"),

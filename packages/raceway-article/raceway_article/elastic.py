@@ -3,13 +3,15 @@
 Runs go one at a time in this process: elastic bodies take gigabytes; each row is stored as soon as its run ends.
 """
 
+from __future__ import annotations
+
 import gc
 import math
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 from raceway_checks.verify.reference import reference_cases
@@ -21,8 +23,9 @@ from raceway.extend import (
 )  # fmt: skip
 from raceway_article.design import CLAIMED, RACES, excitation_of, friction_of
 from raceway_article.study import failure
-from raceway import Result
 
+if TYPE_CHECKING:
+    from raceway import Result
 
 SCENE = Path(__file__).resolve().parent / "data" / "article_elastic.toml"
 #: Condensed bodies come first: the others are compared with them, and they show in seconds whether the scene is what was meant.

@@ -1,5 +1,7 @@
 """The article's study by its bodies, and what makes its page again."""
 
+from __future__ import annotations
+
 import shlex
 from collections.abc import Callable, Iterable
 from functools import partial

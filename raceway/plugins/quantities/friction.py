@@ -215,8 +215,8 @@ def beyond_jets(points: SolvedPoints) -> list[str]:
     if low <= n_dm <= high:
         return []
     return [
-        f"the oil between the balls ('auto', Parker 1984) is of jets at n d_m = {1e-6 * low:g} to {1e-6 * high:g} million mm r/min, here "
-        f"{1e-6 * n_dm:.2g}: drag and heat are estimates. Give lubricant.oil_fraction where it is known"
+        f"drag and heat are estimates: n d_m = {1e-6 * n_dm:.2g} is outside {1e-6 * low:g} to {1e-6 * high:g} million mm r/min, the jets of "
+        "lubricant.oil_fraction 'auto' (Parker 1984). Give it where it is known"
     ]
 
 

@@ -185,7 +185,7 @@ window.raceway_app = (function () {
         <path v-if="at !== null" class="rule" :d="'M' + frame.x(at) + ' 8V' + frame.end"/>
         <g v-for="l in lines"><path class="line" :d="l.path" :stroke="l.colour" :stroke-dasharray="l.dash"/>
           <circle v-if="l.dot" :cx="l.dot.x" :cy="l.dot.y" r="4.5" :fill="l.colour"/></g>
-        <g v-if="frame.two"><text x="48" y="145">B - A [{{ relative ? '%' : '°C' }}]{{ shade ? ', known within ' + percent(own) : '' }}</text>
+        <g v-if="frame.two"><text x="48" y="145">B - A [{{ relative ? '%' : '°C' }}]{{ shade ? ', causes of one alone: ' + percent(own) : '' }}</text>
           <path v-for="d in ds" class="rule" :d="'M48 ' + frame.d(d) + 'H300'"/><text v-for="d in ds" x="44" :y="frame.d(d) + 4" text-anchor="end">{{ number(d) }}</text>
           <path v-for="d in differences" class="line inner" :d="path(d, frame.d)"/></g>
       </svg></figure>`,
@@ -286,7 +286,7 @@ window.raceway_app = (function () {
         const inside = [a.relative[0] <= change && change <= a.relative[1], b.relative[0] <= -change / (1 + change) && -change / (1 + change) <= b.relative[1]];
         const both = inside[0] === inside[1] ? (inside[0] ? "within the interval of both" : "outside the interval of both") : "within the interval of " + "AB"[inside[0] ? 0 : 1] + " alone";
         const own = apart(this.screens, a === this.screens[0].intervals.equivalent_stiffness ? "equivalent_stiffness" : "kyy", sameBearing(this.panels));
-        return names + ": K " + signed(100 * change) + " %, " + both + " (A: " + percent(a.relative) + "); the difference itself is known within " + percent(own) + ", since what both share cancels";
+        return names + ": K " + signed(100 * change) + " %, " + both + " (A: " + percent(a.relative) + "); difference within " + percent(own) + " by causes of one alone; of common ones (geometry, hypotheses) not estimated";
       },
     },
     template: `<p class="verdict" data-test="verdict">{{ words }}</p>`,

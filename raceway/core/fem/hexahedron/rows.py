@@ -70,8 +70,6 @@ def nodal_volumes(points: Floats, cells: NDArray[np.uint32]) -> Floats:
 
 #: Ranges of a mesh, and the most threads that can share it; fewer where elements would be less than this in each.
 RANGES, _FEWEST = 8, 4096
-#: Nodes that are summed and moved together, so that their forces stay in the first cache.
-_CHUNK = 512
 
 
 def divide(cells: NDArray[np.uint32]) -> NDArray[np.int64]:
