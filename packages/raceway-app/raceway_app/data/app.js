@@ -185,7 +185,7 @@ window.raceway_app = (function () {
         <path v-if="at !== null" class="rule" :d="'M' + frame.x(at) + ' 8V' + frame.end"/>
         <g v-for="l in lines"><path class="line" :d="l.path" :stroke="l.colour" :stroke-dasharray="l.dash"/>
           <circle v-if="l.dot" :cx="l.dot.x" :cy="l.dot.y" r="4.5" :fill="l.colour"/></g>
-        <g v-if="frame.two"><text x="48" y="145">B - A [{{ relative ? '%' : '°C' }}]{{ shade ? ', causes of one alone: ' + percent(own) : '' }}</text>
+        <g v-if="frame.two"><text x="48" y="145">B - A [{{ relative ? '%' : '°C' }}]{{ shade ? ', one alone: ' + percent(own) : '' }}</text>
           <path v-for="d in ds" class="rule" :d="'M48 ' + frame.d(d) + 'H300'"/><text v-for="d in ds" x="44" :y="frame.d(d) + 4" text-anchor="end">{{ number(d) }}</text>
           <path v-for="d in differences" class="line inner" :d="path(d, frame.d)"/></g>
       </svg></figure>`,
