@@ -362,7 +362,7 @@ class Function:
                     QUANTITIES[name](numbers) if name in QUANTITIES else numbers.of_plugin(self._of_plugins[name][0], name)
                 )
                 if len(rows) == n and fine.all():
-                    values[name] = np.ascontiguousarray(part)
+                    values[name] = part.copy()
                 else:
                     values.setdefault(name, np.full((n, *part.shape[1:]), np.nan))[rows[fine]] = part[fine]
         return {**values, "status": status, "reason": reason}
