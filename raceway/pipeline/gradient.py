@@ -249,7 +249,7 @@ class Gradients:
         """
         answers: dict[str, Gradient | NoDerivative] = dict(self._ends(keys))
         scene, problem = self.model.scene, self.model.problem
-        alone = self.model.traits.contacts_alone and not why_not(scene, False)
+        alone = self.model.traits.contacts_alone and not why_not(problem, False)
         if alone and not (self.orbit and scene.kinematics.orbiting):
             answers |= self._by_columns([k for k in keys if k.path not in answers and not why_no_column(problem, k.path)])
         for count, key in enumerate(keys):

@@ -27,12 +27,9 @@ def _answer_rows(result: Content) -> list[Row]:
     identification = result["identification"]
     if identification is None:
         spin = result["scene"]["kinematics"].get("spin_speed_rpm")
+        at = f"{spin:g} r/min" if spin else "rest"
         return [
-            (
-                f"Answer at {f'{spin:g} r/min' if spin else 'rest'}, {tilt_words(result['scene']['supports']['tilt'])}",
-                "",
-                "",
-            ),
+            (f"Answer at {at}, {tilt_words(result['scene']['supports']['tilt'])}", "", ""),
             *run_parts.interval_rows(result, q.KXX, q.KYY, q.KYY_TILTS_FOLLOW),
             *run_parts.held_rows(result),
             *run_parts.loaded_balls(result, ["most"]),
@@ -147,12 +144,8 @@ def report(result: Content) -> list[Part]:
     """Of a terminal: the answer, what makes it doubtful, and what was computed; as much as fits, unless progress is reported."""
     shown = screen(result)
     bearing, *model = shown.bearing.splitlines()
-    rows, warnings, last, title = (
-        shown.rows,
-        shown.warnings,
-        "; ".join([*model, shown.left_out]),
-        "; ".join(shown.title.splitlines()),
-    )
+    rows, warnings = shown.rows, shown.warnings
+    last, title = "; ".join([*model, shown.left_out]), "; ".join(shown.title.splitlines())
     if not getLogger("raceway").isEnabledFor(INFO):
         cut = f"{last}; all rows and remedies: -v or result.json"
         warnings, title = [in_a_line(text, WIDTH - len("warning: ")) for text in warnings], in_a_line(title, 2 * WIDTH)

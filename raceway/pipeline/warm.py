@@ -98,7 +98,7 @@ def warm(scene: Scene, columns: Mapping[str, np.ndarray], plan: ScenePlan, facto
         np.broadcast_to(columns.get(f"heat.{key}", getattr(scene.heat, key)), n) for key in ("oil_inlet_c", "ambient_c")
     )
     start, nodes = np.repeat(inlet[:, np.newaxis], len(_FELT), axis=1), np.full((n, len(NODES)), np.nan)
-    if why_not(scene, False):
+    if why_not(resolve(scene), False):
         solve: Solve = partial(_one_by_one, scene, plan)
     else:
         solve = partial(_in_columns, Builder(plan).mounted({**columns, **_at(keys, start)}))
@@ -248,7 +248,8 @@ def _one(scene: Scene) -> dict[str, np.ndarray]:
 
 def _simple(scene: Scene) -> Scene:
     """The scene whose loads decide its temperatures: with rigid bodies where its own are not computed as columns."""
-    if resolve(scene).traits.contacts_alone or not why_not(scene, False):
+    problem = resolve(scene)
+    if problem.traits.contacts_alone or not why_not(problem, False):
         return scene
     law, find = scene.contact.law, default_registry().find
     law = law if "resultant" in law.discretisations else find("contact_law", "hertz").plugin()

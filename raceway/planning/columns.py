@@ -10,7 +10,7 @@ import numpy as np
 from raceway.core.columns import with_values
 from raceway.framework.contracts import ContactLaw
 from raceway.framework.duties import finds_orbit, is_synchronous
-from raceway.planning.resolve import Problem, resolve
+from raceway.planning.resolve import Problem
 from raceway.scene.keys import with_columns
 from raceway.scene.lubricant import lubricated
 from raceway.scene.scene import Scene
@@ -30,14 +30,15 @@ _KEYS = frozenset([
 ])  # fmt: skip
 
 
-def why_not(scene: Scene, moving: bool) -> str:
+def why_not(problem: Problem, moving: bool) -> str:
     """Why the points of a scene are computed one by one; empty where the compiled loops do.
 
     Parameters
     ----------
     moving : whether their motions are asked for
     """
-    bearing, law, problem = scene.bearing, scene.contact.law, resolve(scene)
+    scene = problem.scene
+    bearing, law = scene.bearing, scene.contact.law
     if why := problem.body_kind.why_no_columns():
         return why
     reasons = {

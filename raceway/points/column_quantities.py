@@ -231,7 +231,7 @@ class SteadyLines:
 
     def line(self, scene: Scene, speed: float) -> np.ndarray | None:
         """(5,) complex line by the compiled loop, at the speed [rad/s] of the excitation; None where a run has to find it."""
-        if scene.heat is not None or why_not(scene, True):
+        if scene.heat is not None or why_not(resolve(scene), True):
             return None
         if speed not in self._bearings:
             self._bearings[speed] = Builder(make_plan(scene)).at({"load.axial": np.array([scene.load.axial])})

@@ -136,7 +136,7 @@ class Function:
         if is_foundation(self.scene.contact.law) and any(n.startswith("p0") or n in self._of_plugins for n in self.outputs):
             return "pressures are those of the contact law"
         whys = (why_no_column(self._problem, key) for key in self.inputs)
-        return next(filter(None, whys), "") or why_not(self.scene, self.moving)
+        return next(filter(None, whys), "") or why_not(self._problem, self.moving)
 
     def __call__(self, *columns: ArrayLike, **by_name: ArrayLike) -> Columns | xarray.Dataset:
         """The outputs at points.

@@ -340,7 +340,7 @@ def cage_stiffness(normal: float, diameter: float, friction: bool) -> np.ndarray
 
 
 def cage_fields(points: np.ndarray, mass: np.ndarray, along: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Centre of mass (3,) of a ball, and its rows as fields t + w x r about that (4, 6): see ``cage_rows``."""
+    """Centre of mass (3,) of a ball, and the rows of its cage, with ``along`` a unit vector of its orbit, as fields t + w x r about that (4, 6)."""
     total, axis, fields = mass.sum(), np.array([1.0, 0.0, 0.0]), np.zeros((4, 6))
     centre = (mass[:, None] * points).sum(axis=0) / total
     arm = points - centre
@@ -350,16 +350,14 @@ def cage_fields(points: np.ndarray, mass: np.ndarray, along: np.ndarray) -> tupl
     return centre, fields
 
 
-def cage_rows(points: np.ndarray, mass: np.ndarray, along: np.ndarray) -> np.ndarray:
-    """(4, 3 n) of one ball: mass means of the displacement along its orbit, a unit vector, of turns about orbit, radius and axis.
+def cage_rows(points: np.ndarray, mass: np.ndarray, centre: np.ndarray, fields: np.ndarray) -> np.ndarray:
+    """(4, 3 n) of one ball's ``cage_fields``: mass means of the displacement along its orbit, of turns about orbit, radius and axis.
 
     A rigid motion u = c + w x r about the centre of mass gives c . along and the parts of w; elastic motions that are orthogonal to
     the rigid ones give nothing.
     """
-    centre, fields = cage_fields(points, mass, along)
-    return np.asarray(
-        ((fields[:, None, :3] + np.cross(fields[:, None, 3:], points - centre)) * mass[:, None]).reshape(4, -1)
-    )
+    each = fields[:, None, :3] + np.cross(fields[:, None, 3:], points - centre)
+    return np.asarray((each * mass[:, None]).reshape(4, -1))
 
 
 def _ring_parts(assembly: Assembly, index: int, azimuth: np.ndarray) -> Copies:
@@ -517,8 +515,8 @@ class ElasticBearing:
             body = assembly.bodies[k + 2]
             mass = assembly.own_mass[assembly.starts[k + 2] : assembly.starts[k + 3]]
             along = np.array([0.0, -np.sin(s.azimuth[k]), np.cos(s.azimuth[k])])
-            means = cage_rows(body.points, mass, along)
             balls.append(cage_fields(body.points, mass, along))
+            means = cage_rows(body.points, mass, *balls[-1])
             data.append(means.ravel())
             rows.append(np.repeat(4 * k + np.arange(4), means.shape[1]))
             columns.append(np.tile(3 * assembly.starts[k + 2] + np.arange(means.shape[1]), 4))

@@ -83,6 +83,7 @@ _NUMBERS = 9
 _GAP, _RATE, _PRESSURE, _D_GAP, _D_RATE, _LOST, _SIZE = range(7)
 
 
+# numba types kernels by their signatures; no annotations stand beside these.
 @jit(void(int64, int64, _BODIES, VECTOR), releases=True)
 def elements(first, last, bodies, u):  # type: ignore[no-untyped-def]
     """Forces of the ranges ``first`` to ``last - 1`` into their parts."""
@@ -236,9 +237,9 @@ def carry(onward, numbers, nodes, frame, points):  # type: ignore[no-untyped-def
     for i in range(frame.tied.size):
         u, half, a = 0.0, 0.0, 0.0
         for c in range(m):
-            u = u + frame.tie[i, c] * frame.q[c]
-            half = half + frame.tie[i, c] * frame.half[c]
-            a = a + frame.tie[i, c] * frame.a[c]
+            u += frame.tie[i, c] * frame.q[c]
+            half += frame.tie[i, c] * frame.half[c]
+            a += frame.tie[i, c] * frame.a[c]
         nodes.u[frame.tied[i]], nodes.half[frame.tied[i]], nodes.a[frame.tied[i]] = u, half, a
     fastest = 0.0
     for i in range(points.surface.size):
@@ -351,7 +352,8 @@ class ExplicitSteps:
             shift.reshape(-1, 3)[rows], velocity[rows] = points.displacement, points.velocity
             contact.memory[rows] = points.memory
             if friction is not None:
-                friction.committed[rows], friction.place[rows], friction.dissipated[rows] = points[11:14]
+                friction.committed[rows], friction.place[rows] = points.committed, points.place
+                friction.dissipated[rows] = points.dissipated
             contact.respond(dt, shift, velocity.reshape(-1), 0.0)
             if contact.stiffened():
                 now = recorder.time_of(recorder.done + done)
