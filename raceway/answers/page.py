@@ -150,10 +150,7 @@ class Page:
     def write(self, path: Path) -> Path:
         """Write the page, whole or not at all.
 
-        Raises
-        ------
-        RacewayError
-            A folder or disk that cannot be written.
+        RacewayError: A folder or disk that cannot be written.
         """
         return write_whole(self.html().encode(), path)
 

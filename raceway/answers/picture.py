@@ -56,10 +56,7 @@ def dress(axes: Axes) -> None:
 def new_figure(width: float, height: float) -> Figure:
     """An empty figure [inch] that belongs to no window.
 
-    Raises
-    ------
-    RacewayError
-        Where matplotlib is not installed.
+    RacewayError: Where matplotlib is not installed.
     """
     try:
         from matplotlib.figure import Figure
@@ -77,10 +74,7 @@ _AXES = reader("axes of matplotlib", lambda v: hasattr(v, "plot") and hasattr(v,
 def given_axes(ax: Annotated[Axes | None, _AXES], width: float = 6.4, height: float = 4.8) -> Axes:
     """The axes that a caller gave, or new ones of a figure [inch] that notebooks and ``pyplot.show`` display.
 
-    Raises
-    ------
-    RacewayError
-        Where matplotlib is not installed, or of what are no axes.
+    RacewayError: Where matplotlib is not installed, or of what are no axes.
     """
     if ax is not None:
         return ax
@@ -124,10 +118,7 @@ def readable(figure: Figure) -> Figure:
 def save_figure(figure: Figure, path: Path, dots_per_inch: int = 300) -> Path:
     """Write a figure as PNG, SVG or PDF, by the ending, whole or not at all; the same figure gives the same file.
 
-    Raises
-    ------
-    RacewayError
-        Another ending, or a folder or disk that cannot be written.
+    RacewayError: Another ending, or a folder or disk that cannot be written.
     """
     if path.suffix.lower() not in FORMATS:
         raise RacewayError(

@@ -236,10 +236,7 @@ OF_ORBITS = ("largest_multiplier", "stiffness_change")
 def plugin_quantities(registry: Registry) -> dict[str, tuple[str, Quantity]]:
     """Name -> plug-in and quantity of every number that plug-ins of quantities state.
 
-    Raises
-    ------
-    PluginError
-        A name that is another quantity's.
+    PluginError: A name that is another quantity's.
     """
     numbers: dict[str, tuple[str, Quantity]] = {}
     for entry in registry.of_kind("quantity"):

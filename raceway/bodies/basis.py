@@ -154,8 +154,6 @@ def changing_speed(problem: Problem) -> ChangingSpeed | None:
 def gyroscopic(problem: Problem) -> np.ndarray:
     """(..., 5, 5) part of the damping that the spinning ring and rotor make [N m s/rad].
 
-    Notes
-    -----
     dH/dt: +I_p W tilt_z' about y, -I_p W tilt_y' about z.
     """
     moments = np.zeros((*problem.points, 5, 5))

@@ -66,10 +66,7 @@ def ellipse_ends(basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.n
 def refuse_impossible_ellipses(basis: Basis, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
     """Loads (2 Z,) [N] that no ball can carry: a contact ellipse longer than half its circumference.
 
-    Raises
-    ------
-    ConvergenceError
-        With ``state``, the solution that says so.
+    ConvergenceError: With ``state``, the solution that says so.
     """
     z, radius = len(force) // 2, basis.ball_radius
     for race, ellipse, load in (("inner", basis.inner, force[:z]), ("outer", basis.outer, force[z:])):
@@ -122,8 +119,6 @@ def contact_ellipse(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Peak pressure (n,) [Pa] and semi-axes a, b (n,) [m] of the contacts of a race at loads (n,) [N].
 
-    Notes
-    -----
     Of a foundation, whose pressure p(g) follows from the overlap g at each place, the force on the overlap ellipse
     A x^2 + B y^2 <= delta is F = pi / sqrt(A B) int_0^delta p dg.  So the peak pressure is p(delta) = sqrt(A B) / pi dF/ddelta,
     and the semi-axes are sqrt(delta / A), sqrt(delta / B).

@@ -129,10 +129,7 @@ class BuiltBearing(ABC):
     def refuse_impossible(self, model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
         """Loads (2 Z,) that no contact can carry.
 
-        Raises
-        ------
-        ConvergenceError
-            With ``state``, the solution that says so.
+        ConvergenceError: With ``state``, the solution that says so.
         """
         refuse_impossible_ellipses(self.basis, force, state)
 

@@ -162,8 +162,6 @@ def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, 
 def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:
     """``equilibrium.preload`` of result.json; None without preload.
 
-    Notes
-    -----
     Before mounting the rows of the first direction and of the other one (``second``) carry what the preload sets, under its
     difference as an axial load.  Mounted and running, both without loads, the rows of either direction carry the same.  ``rows_n``
     are the axial forces of the rows under the constant loads.  ``lift_off_axial_n`` are the loads [N] along +x and -x, of all
@@ -255,8 +253,6 @@ def _first_open(rows: Ring, start: float, furthest: float) -> tuple[float, int] 
 def lost_preload(model: Model) -> str:
     """What took all preload of a pair and the remedy; empty where some is left, or there was none.
 
-    Notes
-    -----
     Centrifugal forces of balls and growth of rings raise a pair's preload: a raceway that shrinks is what takes it.
     """
     bearing, kinematics = model.problem.bearing, model.problem.kinematics

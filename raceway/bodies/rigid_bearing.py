@@ -102,8 +102,6 @@ def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
 def probe(problem: Problem, basis: Basis, system: System) -> None:
     """Try the plug-ins' kernels as deep as the scene's own load presses, and well beyond.
 
-    Notes
-    -----
     Loads of single balls are many times the mean.
     """
     load = basis.ball_load + 5.0 * max(np.abs(system.load[:3]).max(), 1.0) / len(basis.azimuth)

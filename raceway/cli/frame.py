@@ -162,10 +162,7 @@ def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) ->
 def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
     """A scene from its file and the changes.
 
-    Raises
-    ------
-    SceneError
-        With the mistakes of both.
+    SceneError: With the mistakes of both.
     """
     scene_input, mistakes = _with_changes(scene, changes)
     try:

@@ -30,8 +30,6 @@ class Film(Oil):
     """Hertz contact behind an oil film (Hamrock and Dowson): the surfaces stand off by the central film thickness,
     which the heat of shear in the inlet reduces (Murch and Wilson).
 
-    Notes
-    -----
     The thickness belongs to the running speed, the loaded contact angles and each contact's load Q0 in the equilibrium.  Its
     dependence on the load, h = h0 (Q/Q0)^-e, is linearised in the elastic approach d: h = h0 (1 + m - m d/d0), m = 1.5 e.
     The force by the gap is then again a power of 1.5, K' (reach - gap)^1.5 with reach = (1 + m) h0 and

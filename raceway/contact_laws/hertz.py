@@ -21,8 +21,6 @@ SHARE = 150.0
 def point_stiffness(pairs: ContactPairs, load: np.ndarray) -> np.ndarray:
     """(n,) k_n [N/m3] whose penetration under the peak pressure at ``load`` (n,) [N] is 1 % of Hertz's approach.
 
-    Notes
-    -----
     Rigid paraboloids A x^2 + B y^2 that overlap by delta carry Q = pi k delta^2 / (2 sqrt(A B)); with Hertz's delta that
     gives k = 2 sqrt(A B) Q / (pi delta^2), which is 2/3 of the peak pressure over delta for any ellipse near a circle.
     """
@@ -55,8 +53,6 @@ def three_halves(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, 
 class Hertz:
     """Q = K delta^1.5 with K from the complete elliptic integrals (``raceway.core.contact.hertz``).
 
-    Notes
-    -----
     At points of deforming surfaces the bodies themselves give Hertz's compliance; the law is then a penalty that takes no
     more than 1 % of Hertz's approach at the ball load under the axial load alone.
     """

@@ -33,8 +33,6 @@ def ten_ninths(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_
 class Line:
     """delta = c Q^0.9 / L^0.8, so Q = (delta / c)^(10/9) L^(8/9), of one contact of a steel roller with a raceway.
 
-    Notes
-    -----
     Both constants are experience; the diameters have no influence.  ISO's is 3.4 % softer in displacement than Palmgren's.
 
     References

@@ -51,8 +51,6 @@ def linear(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate
 class Penalty:
     """p = k_n max(-g, 0); of rigid bodies Q = pi k_n delta^2 / (2 sqrt(A B)) for a contact of curvatures A and B.
 
-    Notes
-    -----
     Without ``stiffness`` the penalty is scaled at ``calibrate_at`` (by default the ball load under the axial load alone):
     as a resultant so that the approach equals Hertz's there (at other loads it does not), at surface points, where the
     bodies deform, so that its penetration is 1 % of Hertz's approach.
@@ -100,8 +98,6 @@ class Penalty:
 class Unilateral:
     """Pressure p >= 0, gap g >= 0, p g = 0 at every surface point: no penalty and no penetration.
 
-    Notes
-    -----
     Not a function of the gap: bodies that can hold the constraint exactly (condensed ones, by an active set) read
     ``constraint`` and do not call the kernel.  The kernel is the stiffest of the penalties that stand for it, a hundredth
     of the penetration that the law ``hertz`` leaves at points.

@@ -14,8 +14,6 @@ def interpolated(function: Callable[[np.ndarray], np.ndarray], points: np.ndarra
 
     function : of points (k, m), its values (m,), not zero
 
-    Notes
-    -----
     Interpolation on the product of Chebyshev nodes of the variables that differ, as long as these are fewer than half of the points.
 
     References

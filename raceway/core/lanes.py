@@ -2,8 +2,6 @@
 
 Kernels call these functions without the first arguments, ``context`` and ``builder``: their bodies write machine code.
 
-Notes
------
 Arithmetic, comparisons and ``where`` act on each lane alone, as IEEE 754 has it of the single numbers; a number beside lanes stands in
 each of them.  Rows of any length are taken in blocks of ``WIDTH``: ``live_of`` tells which lanes of a block lie in the row, ``take`` reads
 zeros beyond it, ``put`` writes nothing there.  Processors with shorter vectors do the same in two or four pieces.

@@ -1,7 +1,5 @@
 """Reference life of a ball bearing from the loads of its contacts, and its modified life.
 
-Notes
------
 Contact loads are (..., 2, Z) [N], race 0 inner, 1 outer; the inner ring turns, the outer one stands.  Every number broadcasts over
 the leading axes, one operating point each.
 
@@ -91,8 +89,6 @@ def system_life(lives: np.ndarray, axis: int | tuple[int, ...] = -1) -> np.ndarr
 def set_rating(ratings: np.ndarray) -> np.ndarray:
     """Dynamic rating [N] of a set from those (rows, ...) of its rows, i^0.7 C of i equal ones.
 
-    Notes
-    -----
     i^-0.3 times the sum, of rows that share the load by their ratings: then all live (sum / F)^3, and the set i^-0.9 of that.
     """
     return np.asarray(len(ratings) ** (-1.0 / (3.0 * _SLOPE)) * ratings.sum(axis=0))
@@ -101,8 +97,6 @@ def set_rating(ratings: np.ndarray) -> np.ndarray:
 def reliability_factor(reliability: ArrayLike) -> np.ndarray:
     """a_1: life that a share of bearings reaches, over the basic life, which 90 % reach.
 
-    Notes
-    -----
     Weibull's distribution of three parameters, a_1 = 0.05 + 0.95 (ln R / ln 0.9)^(2/3), gives the printed digits of ISO 281's
     table from 90 to 99.95 % and what is between them.
     """
@@ -113,8 +107,6 @@ def reliability_factor(reliability: ArrayLike) -> np.ndarray:
 def reference_viscosity(speed: ArrayLike, pitch_diameter: ArrayLike) -> np.ndarray:
     """nu_1 [m2/s], the kinematic viscosity that lubricates well at a speed of the inner ring [rad/s]; inf at rest.
 
-    Notes
-    -----
     In mm2/s, r/min and mm: 45000 n^-0.83 d_m^-0.5 below 1000 r/min, 4500 n^-0.5 d_m^-0.5 from there on (ISO 281:2007, 9.3.3.3).
     """
     turns = np.abs(np.asarray(speed)) * 30.0 / np.pi

@@ -1,7 +1,5 @@
 """Load ratings of a row of balls by ISO 281 and ISO 76, and the loads of single contacts that they stand for.
 
-Notes
------
 C = b_m f_c cos(a)^0.7 Z^(2/3) D^1.8 with D in mm (3.647 D^1.4 above 25.4 mm) and C0 = f_0 Z D^2 cos(a), f_c and f_0 being
 tabulated over g = D cos(a) / d_m for grooves of 0.52 D; one row of balls, lengths in metres.
 

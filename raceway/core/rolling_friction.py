@@ -1,7 +1,5 @@
 """Friction of balls that roll between races: losses in the contacts and in the mixture of oil and air around the balls.
 
-Notes
------
 Powers are work that the shaft loses: force or moment times the rate at which it slips or rolls, all rates in proportion to the shaft's
 speed w.  Divided by w they are the torque on the shaft.  Of a contact, with its load Q, semi-axes a across and b along the running
 direction, entraining speed u, radius R_x = D (1 -+ g) / 2 along it, g = D cos(angle) / d_m, - at the inner race:
@@ -71,8 +69,6 @@ def measured_factors(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest factor of the computed friction that bearings measured near a size [m] and a speed [rad/s] leave possible.
 
-    Notes
-    -----
     The least and the largest factor of the bearings on both sides, linear in log d_m between them and constant beyond, times
     ``_MARGIN`` and, apart from all measured n d_m, (distance in n d_m)^(1/4).  1 is always inside.
     """

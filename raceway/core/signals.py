@@ -1,7 +1,5 @@
 """From 1x lines of force and displacement to a complex dynamic stiffness, with its quality figures.
 
-Notes
------
 Signals are Re(phasor e^{jwt}).  The line of the displacement that does work with the force counts: with F, x the complex
 1x vectors of force and translation, Z = (F^H F) / (F^H x).  For a fixed direction that is force over displacement along
 it; for a force that turns, the forward (or backward) parts of both.  Z = K - m w^2 + j w C.
@@ -73,8 +71,6 @@ def stiffness(force: np.ndarray, displacement: np.ndarray) -> complex:
 def steady_stiffness(force: np.ndarray, displacement: np.ndarray, change: np.ndarray) -> complex:
     """Z [N/m] of the steady motion, from the 1x vectors (5,) of one that changes under the additional forces ``change`` (5,).
 
-    Notes
-    -----
     With D the (5, 5) dynamic stiffness of the steady motion, D x + change = F, and D (x + d) = F where D d = change, so that
     F^H d = (x + d)^H D^H d.  D is symmetric: along a motion whose stiffness is Z, D^H is D Z* / Z, and to first order in
     ``change`` F^H d = Z* / Z x^H change, moments on free tilts included.
@@ -180,8 +176,6 @@ class Line:
 def phasors(time: np.ndarray, signal: np.ndarray, frequencies: list[float]) -> np.ndarray:
     """Complex phasors (len(frequencies), k) of a signal (n, k) by least squares, with mean and drift.
 
-    Notes
-    -----
     Frequencies closer than half a line of the window to another one or to zero cannot be separated and must not be given.
     """
     wt = 2.0 * np.pi * time[:, None] * np.asarray(frequencies)
@@ -195,8 +189,6 @@ def phasors(time: np.ndarray, signal: np.ndarray, frequencies: list[float]) -> n
 def lines(time: np.ndarray, displacement: np.ndarray, frequencies: dict[str, float]) -> list[Line]:
     """Lines of a displacement (n, >= 3) x, y, z at named frequencies [Hz].
 
-    Notes
-    -----
     Of frequencies that the window (time span T) cannot separate, |f1 - f2| < 0.5 / T, the first one remains; those
     above half the sampling rate are left out.
     """

@@ -1,7 +1,5 @@
 """Steady temperatures of a bearing in its machine: a network of six nodes, and correlations for its conductances.
 
-Notes
------
 Nodes are the inner ring, the balls, the outer ring, shaft, housing and the oil in the bearing, each of one temperature; beside them stand
 the oil's inlet and the ambient, whose temperatures are known.  With the conductances G [W/K] between nodes and the heats Q [W] that
 arise in them, sum_j G_ij (T_i - T_j) = Q_i.  A raceway's track is hotter than the mean of its ring, which alone is a node.
@@ -58,8 +56,6 @@ class Network:
     conductances : of all ``LINKS`` [W/K], numbers or columns (n,); ``inf`` gives both nodes one temperature
     heats : (n, 6) heat that arises in the ``NODES`` [W];  inlet, ambient : temperatures, numbers or columns (n,)
 
-    Notes
-    -----
     Nodes of one temperature are one unknown.  An infinite path from the inlet to the ambient would be a contradiction: the ambient's
     then counts.
     """

@@ -56,9 +56,7 @@ class ThreadPool:
     def do(self, count: int, job: Job) -> None:
         """Jobs 0 to count - 1; returns when all are done.
 
-        Raises
-        ------
-        What a job raised; none is running any more, and none that had not begun was begun.
+        Raises What a job raised; none is running any more, and none that had not begun was begun..
         """
         queue = iter(range(count))
 

@@ -34,10 +34,7 @@ def public_names() -> list[str]:
 def further_name(name: str) -> Any:
     """What an installed package, of this project or a third party's, offers under a public name.
 
-    Raises
-    ------
-    AttributeError
-        None does; of a name of this project's packages: how to install it.
+    AttributeError: None does; of a name of this project's packages: how to install it.
     """
     for package, has in packages().items():
         if name in has["names"]:

@@ -266,10 +266,7 @@ def unused_options(plugin: Any) -> dict[str, str]:
     A class whose options can contradict or override each other defines ``unused_options(self) -> dict[str, str]``; callers
     warn with "`table.option` has no effect: reason".
 
-    Raises
-    ------
-    PluginError
-        A plug-in whose own answer is not option -> reason.
+    PluginError: A plug-in whose own answer is not option -> reason.
     """
     method = getattr(plugin, "unused_options", None)
     if method is None:

@@ -14,8 +14,6 @@ WATCH, _WATCH_S = "end with parent", 1.0
 def end_with(parent: int) -> None:
     """In a worker: end when the process of this number is no longer its parent.
 
-    Notes
-    -----
     Called when the worker begins, before it has anything to do: pools keep workers that wait, some for minutes.
     """
 
@@ -31,8 +29,6 @@ def end_with(parent: int) -> None:
 def deaf_to_terminals() -> Iterator[None]:
     """Threads and processes that are started meanwhile do not hear Ctrl-C and SIGHUP, which a terminal sends to all.
 
-    Notes
-    -----
     They inherit what is blocked.  What arrives here meanwhile is delivered afterwards.
     """
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
@@ -45,8 +41,6 @@ def deaf_to_terminals() -> Iterator[None]:
 def start_tracker() -> None:
     """Start what clears up behind processes of Python, before the first of them.
 
-    Notes
-    -----
     Python starts it with the first process and lets that thread hear Ctrl-C again afterwards, and so the process, too.
     """
     from multiprocessing import resource_tracker

@@ -83,10 +83,7 @@ class Entry:
     def plugin(self) -> type[Any]:
         """The class, imported when it is first asked for.
 
-        Raises
-        ------
-        PluginError
-            A class that is not at its place, has another name, or breaks a duty of its kind.
+        PluginError: A class that is not at its place, has another name, or breaks a duty of its kind.
         """
         found = self._imported if self._given is None else self._given
         if isinstance(found, Fault):
@@ -159,10 +156,7 @@ class Registry:
         -------
         list of Entry : what the file adds; its ``version`` is a hash of the file
 
-        Raises
-        ------
-        PluginError
-            A file that is missing, fails to import, or adds nothing; the registry is as it was before.
+        PluginError: A file that is missing, fails to import, or adds nothing; the registry is as it was before.
         """
         path = Path(path)
         module, version = import_file(path)
@@ -187,10 +181,7 @@ class Registry:
     def notify(self, hook: str, **arguments: object) -> None:
         """Call a life-cycle hook of every plug-in, in the order of registration.
 
-        Raises
-        ------
-        PluginError
-            A plug-in's hook raised; the message names it.  A ``RacewayError`` of its own passes through as it is.
+        PluginError: A plug-in's hook raised; the message names it.  A ``RacewayError`` of its own passes through as it is.
         """
         names = {id(plugin): name for name, plugin in self.manager.list_name_plugin()}
         for implementation in getattr(self.manager.hook, hook).get_hookimpls():
@@ -226,10 +217,7 @@ class Registry:
     def find_any(self, text: str) -> Entry:
         """The plug-in that ``[KIND:]NAME`` means.
 
-        Raises
-        ------
-        PluginError
-            An unknown kind or name, a name that several kinds have, or one that two plug-ins claim; lists the choices.
+        PluginError: An unknown kind or name, a name that several kinds have, or one that two plug-ins claim; lists the choices.
         """
         kind, colon, name = text.rpartition(":")
         if colon:
@@ -254,10 +242,7 @@ class Registry:
     def find(self, kind: str, name: str) -> Entry:
         """The plug-in of a kind and name, imported.
 
-        Raises
-        ------
-        PluginError
-            Unknown name (with the nearest one), or a name that two plug-ins claim.
+        PluginError: Unknown name (with the nearest one), or a name that two plug-ins claim.
         """
         entries = self.entries.get((kind, name), [])
         if len(entries) == 1 and not self._drop_broken(entries[0]):
@@ -281,10 +266,7 @@ class Registry:
     def format_of(self, path: str | Path) -> Entry:
         """The format of a file, by the ending of its name; the longest ending that fits.
 
-        Raises
-        ------
-        PluginError
-            No format has the ending (lists those that there are), or two have it.
+        PluginError: No format has the ending (lists those that there are), or two have it.
         """
         name = Path(path).name.lower()
         readers = [entry for entry in self.of_kind("format") if hasattr(entry.plugin, "read")]
@@ -438,10 +420,7 @@ def default_registry() -> Registry:
 def registry_with(files: Iterable[str | Path]) -> Registry:
     """The plug-ins of this process and those of one-off files, which it keeps.
 
-    Raises
-    ------
-    PluginError
-        A file that is missing, fails to import or adds nothing.
+    PluginError: A file that is missing, fails to import or adds nothing.
     """
     registry = default_registry()
     for file in files:

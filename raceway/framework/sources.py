@@ -75,13 +75,8 @@ def foreign_words() -> Iterator[None]:
 class blamed:
     """Put what a plug-in's own code raises to its name; what it prints goes to standard error.
 
-    Raises
-    ------
-    PluginError
-        Instead of anything but a ``RacewayError``, a lack of memory and the end of a generator, which pass through.
+    PluginError: Instead of anything but a ``RacewayError``, a lack of memory and the end of a generator, which pass through.
 
-    Notes
-    -----
     A class, as ``contextlib.suppress`` is one: a run calls plug-ins some twenty times.  Several threads may be inside: standard output
     is itself again when the last one leaves.
     """
@@ -109,10 +104,7 @@ class blamed:
 def import_file(path: Path) -> tuple[Any, str]:
     """The module of a plug-in file, and a hash of the file; one module for each content.
 
-    Raises
-    ------
-    PluginError
-        A file that is missing or fails to import.
+    PluginError: A file that is missing or fails to import.
     """
     try:
         size_of(path, _LONGEST)

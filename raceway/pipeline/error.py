@@ -1,7 +1,5 @@
 """Relative errors of Z, each with how it was estimated.
 
-Notes
------
 A method of order p leaves an error c dt^p.  A second run with n' instead of n steps per turn gives c, so that the error of
 the run itself is (Z - Z') / ((n / n')^p - 1); it costs n' / n of the run.
 
@@ -110,8 +108,6 @@ class Errors:
     def unresolved(self) -> list[str]:
         """The total and the parts that are as large as what they are the error of: nothing identified says anything then.
 
-        Notes
-        -----
         Estimates are those of small errors, to first order: of one that is not small nothing follows, neither for Z nor for K.
         """
         return [name for name, part in self.parts.items() if (part.size or 0.0) >= 1.0]

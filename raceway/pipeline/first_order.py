@@ -1,7 +1,5 @@
 """Numbers of a scene that have derivatives, their slopes by a key, and their band over tolerances to first order.
 
-Notes
------
 Over tolerances numbers are even in their ranges and independent, as ``raceway band`` takes them; an answer is the nominal one plus the
 sum of its derivatives by each number times what that lies off.  The density of the sum is the convolution of even ones, from which the
 limits of 95 % are taken.  Tolerances that bend the answer within their range need ``raceway band``.

@@ -1,7 +1,5 @@
 """Derivatives of a result by the continuous keys of its scene.
 
-Notes
------
 A derivative is the central difference of neighbouring solutions at p - h and p + h, each begun at the solution itself.  With
 h = 1e-4 p its error is h^2 / 6 of the third derivative, 1e-8 or less of it, and what iterations leave, 1e-12, over 1e-4.  Where
 differences are less even than such a step explains, a smaller one is taken; where none is, a contact opens or closes there, or the
@@ -134,12 +132,8 @@ class SteadyOrbit:
     def of(cls, model: Model, equilibrium: Equilibrium) -> "SteadyOrbit":
         """Search for it.
 
-        Raises
-        ------
-        SceneError
-            An excitation or bodies that have no steady orbit of the force's period.
-        ConvergenceError
-            None was found.
+        SceneError: An excitation or bodies that have no steady orbit of the force's period.
+        ConvergenceError: None was found.
         """
         period = model.excitation.period_s
         if period is None:
@@ -188,10 +182,7 @@ class Gradients:
     ----------
     moving : False leaves the orbit out
 
-    Raises
-    ------
-    SceneError
-        Bodies whose contacts are pressures at surface points, or are not compiled.
+    SceneError: Bodies whose contacts are pressures at surface points, or are not compiled.
     """
 
     model: Model
@@ -205,10 +196,7 @@ class Gradients:
     def orbit(self) -> SteadyOrbit | None:
         """The steady orbit, searched for once; None in a static scene.
 
-        Raises
-        ------
-        SceneError, ConvergenceError
-            The force has none, or none was found.
+        SceneError, ConvergenceError: The force has none, or none was found.
         """
         has_orbit = self.moving and self.model.excitation is not None
         return SteadyOrbit.of(self.model, self.equilibrium) if has_orbit else None
@@ -228,10 +216,7 @@ class Gradients:
     def by_path(self, path: str) -> Gradient:
         """By the key of a path, such as "load.axial".
 
-        Raises
-        ------
-        SceneError
-            No continuous key, or one without a derivative.
+        SceneError: No continuous key, or one without a derivative.
         """
         answer = self.by_all([key_of(self.model.scene, path)])[0]
         if isinstance(answer, NoDerivative):

@@ -1,7 +1,5 @@
 """What is identified in a run's motions, and what a run-up and friction leave in it.
 
-Notes
------
 Of a run-up the distance of each window from the steady motion at its speed is its error: free vibrations, an amplitude that lags
 behind, and the steps in time are in it.  Where no such motion can be solved for, it is the identifier's own error of the window, plus
 that of the time step.

@@ -1,7 +1,5 @@
 """What a number of a result does not say itself: motions that cannot be, and K under other hypotheses.
 
-Notes
------
 The spread is that of K, static stiffness, ball load and pressure over the hypotheses of ``[kinematics]`` that a scene leaves at
 "auto".  No numerical error knows of it: two programs with other hypotheses solve other equations.  Each hypothesis, and together
 those that change a quantity most to either side, are put into the ring that was run; its equilibrium gives kyy, its steady orbit
@@ -98,10 +96,7 @@ class Spread:
 def refuse_impossible(model: Model, equilibrium: Equilibrium, record: Record) -> None:
     """Refuse a motion that leaves the grooves.
 
-    Raises
-    ------
-    ConvergenceError
-        The ring moves further than the groove centres are apart: the ball would climb out of its groove.
+    ConvergenceError: The ring moves further than the groove centres are apart: the ball would climb out of its groove.
     """
     distance = float(np.abs(record.displacement[:, :3] - equilibrium.displacement[:3]).max())
     limit = model.bearing.largest_motion

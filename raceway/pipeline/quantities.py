@@ -33,10 +33,7 @@ class StatedQuantities:
 def stated_quantities(model: Model, equilibrium: Equilibrium, record: Record | None) -> StatedQuantities:
     """Of every plug-in whose numbers the problem has.
 
-    Raises
-    ------
-    PluginError
-        A plug-in that breaks a duty.
+    PluginError: A plug-in that breaks a duty.
     """
     points, tables, warnings = solved_point(model, equilibrium, record), dict[str, Tables](), list[str]()
     values: dict[str, float | np.ndarray] = {}

@@ -523,10 +523,7 @@ def _identified_facts(result: Result) -> list[Fact]:
 def chosen_reports(names: Iterable[str], registry: Registry) -> list[Chosen]:
     """The formats of results of these names, each once, before anything is computed.
 
-    Raises
-    ------
-    PluginError
-        A name that no format of results has, or two; a format whose options have no defaults.
+    PluginError: A name that no format of results has, or two; a format whose options have no defaults.
     """
     reports, names = [], dict.fromkeys(names)
     writing = sorted({each.name for each in registry.of_kind("format") if of_results(each.plugin)}) if names else []

@@ -111,10 +111,7 @@ def _run_band(scene: Scene, once: Callable[[Scene], Result]) -> Result:
 def steady_plan(scene: Scene) -> ScenePlan:
     """The plan of a scene, with [heat] at its steady temperatures.
 
-    Raises
-    ------
-    ConvergenceError
-        There are none.
+    ConvergenceError: There are none.
     """
     plan = make_plan(scene)
     if scene.heat is None:

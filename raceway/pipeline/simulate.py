@@ -337,8 +337,6 @@ def last_turn(record: Record, period: float) -> Recorded | None:
 def settles_elsewhere(model: Model, simulation: Simulation, orbit: Record) -> bool:
     """Whether a motion repeats itself turn by turn on another orbit than the steady motion: several exist.
 
-    Notes
-    -----
     What is left of a free vibration near this orbit changes from turn to turn by as much as it is far from the orbit, unless
     its frequency is a multiple of the force's to some thousandths.
     """

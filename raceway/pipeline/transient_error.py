@@ -1,7 +1,5 @@
 """What a transient and the start of a motion do to Z: its distance from the steady motion, its free vibration, another start.
 
-Notes
------
 The motion that a transient would settle on is solved for where that can be done: its Z has no transient and no time step in it.
 
 What has not died out of a transient is a free vibration, beside the lines of the excitation.  Its leakage into the 1x line
@@ -131,8 +129,6 @@ def _by_window(record: Record, part: slice, frequency_hz: float) -> complex:
 def hann_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
     """1x phasor (k,) of a signal (n, k) under Hann's window over two or more whole turns.
 
-    Notes
-    -----
     The window's spectrum ends two lines from its middle: mean and harmonics of a periodic signal leak nothing.
     """
     window = 1.0 - np.cos(2.0 * np.pi * (np.arange(len(time)) + 0.5) / len(time))

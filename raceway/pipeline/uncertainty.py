@@ -1,7 +1,5 @@
 """How far the headline quantities of a result may be off, and by what: ``uncertainty`` of result.json.
 
-Notes
------
 Parts are relative changes, each with how it was found: ``numerical``, of the solver; ``hypotheses``, ``error.model``; ``data``, geometry that
 is inferred, whose bearing it is, and [tolerances]; ``contact``, exact Hertz instead of the law; ``bodies``, elastic rings and balls instead of
 rigid ones.  Nobody prints how loads, pressures and lives differ between bearings: there inferred numbers go to the ends of their scatter,

@@ -1,7 +1,5 @@
 """Steady temperatures of scenes with [heat]: heat, temperatures, expansion and viscosity, loads, and heat again.
 
-Notes
------
 The temperatures x of inner rings, balls and outer rings are where those that follow from them are the same, G(x) = x: the bearing is
 solved for with x in [mounting] and, as the oil in a contact's inlet is as warm as its surfaces, the mean over all contacts in the lubricant;
 friction gives the heat, the network of ``raceway.core.thermal`` its temperatures.
@@ -116,10 +114,7 @@ def warm(scene: Scene, columns: Mapping[str, np.ndarray], plan: ScenePlan, facto
 def warm_plan(scene: Scene) -> ScenePlan:
     """The plan of a scene with [heat] at its steady temperatures.
 
-    Raises
-    ------
-    ConvergenceError
-        There are none, with the speed above which there are none, or at them it can not run: its grooves leave the balls no room.
+    ConvergenceError: There are none, with the speed above which there are none, or at them it can not run: its grooves leave the balls no room.
     """
     simple = _simple(scene)
     warmth = warm(simple, _one(simple), make_plan(simple))

@@ -86,8 +86,6 @@ class Problem(SceneTables):
     integrator_why : why planning chose the integrator; empty where the scene says one
     hypotheses_why : why ``gyroscopic`` and ``ring_growth`` have their values
 
-    Notes
-    -----
     What follows is computed when it is asked for first: rules ask only for what a scene that may be refused has.
     """
 
@@ -329,8 +327,6 @@ class Problem(SceneTables):
     def depends_on_start(self) -> tuple[bool, str]:
         """Whether the answer depends on the start of the motion, and a second run measures how far.
 
-        Notes
-        -----
         With friction contacts stick where the slip before has left them, also in a series of equilibria.  Of elastic bodies and of
         fits over several speeds no transient is estimated: a second run of them would add nothing.
         """
@@ -344,8 +340,6 @@ class Problem(SceneTables):
     def compared_with_steady(self) -> tuple[bool, str]:
         """Whether the error of a transient is its distance from the steady motion.
 
-        Notes
-        -----
         A motion that starts on its orbit is near it already.  Bodies that are stepped from Python, friction and laws with memory
         have no steady motion that can be solved for by itself.
         """

@@ -43,10 +43,7 @@ def remedy(package: str) -> str:
 def refuse_pictures(otherwise: str = "") -> None:
     """Refuse to draw with pyvista where that would end the process.
 
-    Raises
-    ------
-    RacewayError
-        What installs the system libraries, and ``otherwise``.
+    RacewayError: What installs the system libraries, and ``otherwise``.
     """
     fault = _fault_of_pictures()
     if fault:

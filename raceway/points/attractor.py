@@ -1,7 +1,5 @@
 """The motion that a ring settles on where its steady orbit is unstable or none was found: a time integration, and its Poincaré section.
 
-Notes
------
 The section holds the state once a turn.  It comes back after m turns: an orbit of m turns.  Else its spectrum decides: components at
 multiples of one frequency, modulo one a turn, belong to a quasi-periodic motion, whose section is a closed curve; what else does
 not repeat is chaotic, or has not settled in the turns that were integrated.

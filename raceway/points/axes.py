@@ -163,10 +163,7 @@ def parse_axes(definitions: Vary, option: str = "--vary", most: int = MOST_POINT
 def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Axis:
     """One axis.
 
-    Raises
-    ------
-    SceneError
-        Naming the axis and the rule.
+    SceneError: Naming the axis and the rule.
     """
     key, sign, values = text.partition("=")
     key = key.strip()
@@ -377,10 +374,7 @@ class Design:
 def grid(definitions: Vary) -> Design:
     """A grid of ``KEY=a,b,c`` and ``KEY=start:stop:count``, or of keys with their values.
 
-    Raises
-    ------
-    SceneError
-        With every mistake in them.
+    SceneError: With every mistake in them.
     """
     return Design(axes=parse_axes(definitions, "--grid", _MOST_SWEEP_POINTS))
 
@@ -415,10 +409,7 @@ def sampled(ranges: Vary, design: str, seed: int = 0) -> Design:
 def box(ranges: Vary) -> dict[str, tuple[float, float]]:
     """Key -> low, high of texts ``KEY=low:high``, or of a mapping of keys to (low, high) or "low:high".
 
-    Raises
-    ------
-    SceneError
-        Ends that are no numbers in their order, or a second range of a key.
+    SceneError: Ends that are no numbers in their order, or a second range of a key.
     """
     pairs = ranges.items() if isinstance(ranges, Mapping) else (text.partition("=")[::2] for text in ranges)
     ends_of: dict[str, tuple[float, float]] = {}
@@ -436,10 +427,7 @@ def box(ranges: Vary) -> dict[str, tuple[float, float]]:
 def listed_points(points: Iterable[Mapping[str, object]]) -> Design:
     """A list of points, each a mapping of the same keys to their values.
 
-    Raises
-    ------
-    SceneError
-        No points, or other keys in one of them.
+    SceneError: No points, or other keys in one of them.
     """
     return _point_list("points", tidy(list(points)))
 
@@ -449,10 +437,7 @@ def design_file(path: Path) -> Design:
 
     A TOML file has tables ``[[points]]``, or a grid in a table ``[grid]`` with ``"key" = [values]`` or ``"start:stop:count"``.
 
-    Raises
-    ------
-    SceneError
-        A file that cannot be read, points that do not have the same keys, or mistakes in its axes.
+    SceneError: A file that cannot be read, points that do not have the same keys, or mistakes in its axes.
     """
     readers = {".csv": _csv_points, ".json": _json_points, ".toml": read_toml}
     if path.suffix.lower() not in readers:

@@ -306,10 +306,7 @@ def _short_names(axes: tuple[Axis, ...]) -> dict[str, str]:
 def labelled(comparison: Findings) -> Dataset:
     """Numbers and states of all runs, a dimension for each key.
 
-    Raises
-    ------
-    RacewayError
-        xarray is missing.
+    RacewayError: xarray is missing.
     """
     keys = [axis.key for axis in comparison.axes]
     shape = tuple(len(axis.values) for axis in comparison.axes)

@@ -120,10 +120,7 @@ def block_edges(size: int, length: int) -> dict[str, tuple[int, int]]:
 def open_store(path: str | Path) -> SweepStore:
     """The store of a sweep to read; the sweep may be writing to it.
 
-    Raises
-    ------
-    RacewayError
-        No such store there, or one of another schema.
+    RacewayError: No such store there, or one of another schema.
     """
     folder = Path(path)
     if not (folder / POINTS).is_file():
@@ -206,10 +203,7 @@ def points_of(store: SweepStore) -> Points:
 def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Dataset:
     """The data set of a store: states, and the variables that its scenes have.
 
-    Raises
-    ------
-    RacewayError
-        xarray is missing.
+    RacewayError: xarray is missing.
     """
     design = store.design
     dims = ("point",) if design.listed else design.keys
@@ -288,10 +282,7 @@ def blank(design: Design, scene: ReadTables) -> xarray.Dataset:
 def write_netcdf(store: SweepStore) -> Path:
     """``results.nc`` in the store, whole or not at all.
 
-    Raises
-    ------
-    RacewayError
-        A library is missing, or a disk that takes no more.
+    RacewayError: A library is missing, or a disk that takes no more.
     """
     try:
         # In memory first: the HDF5 library takes the whole process down where a disk is full.
@@ -304,10 +295,7 @@ def write_netcdf(store: SweepStore) -> Path:
 def write_csv(store: SweepStore, path: Path) -> Path:
     """All points and their numbers as CSV, a line each.
 
-    Raises
-    ------
-    RacewayError
-        A file that cannot be written.
+    RacewayError: A file that cannot be written.
     """
     with scratch_file(path, "Choose another place.") as scratch, scratch.open("w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows(_lines(store))

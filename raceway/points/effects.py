@@ -1,7 +1,5 @@
 """Two-level full factorial analysis: what each axis does, alone and together with others.
 
-Notes
------
 With y = ln(quantity) at the 2^k corners (first or last value of each of k axes), s_i = -1 at the first and +1 at the last
 value of axis i, the effect of a set T of axes is
 

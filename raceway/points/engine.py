@@ -208,10 +208,7 @@ def work_through(
 def answers(executor: Executor, work: Work, batches: Iterable[Batch]) -> Generator[Answer, None, None]:
     """Number and answer of each batch as it is finished; nothing is left at work, whatever ends it.
 
-    Raises
-    ------
-    PluginError
-        A worker that is not fit for the work, or an executor that cannot work.
+    PluginError: A worker that is not fit for the work, or an executor that cannot work.
     """
     batch_answers = executor.compute(work, batches)
     try:

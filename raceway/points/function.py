@@ -437,10 +437,7 @@ class Function:
 def refuse_bytes(n: int, entries: int, advice: str) -> None:
     """Refuse points with so many numbers each that they do not fit into the memory that is available.
 
-    Raises
-    ------
-    RacewayError
-        With both numbers of bytes.
+    RacewayError: With both numbers of bytes.
     """
     need = 8.0 * n * entries
     if need > _ASKED and need > _MEMORY * (left := available_bytes()):

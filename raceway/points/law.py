@@ -1,7 +1,5 @@
 """One contact of a bearing in the laboratory, ``raceway.law``: what its law does with an approach and the approach's rate, beside Hertz'.
 
-Notes
------
 A cycle moves the contact harmonically about its equilibrium.  With the approach d = d_0 + x cos(w t), a = (2/T) int F cos(w t) dt and
 b = -(2/T) int F sin(w t) dt over one period: K = a / x, C = b / (w x), and the energy per cycle is W = int F dd = pi b x = pi C w x^2.
 The loss factor is w C / K, the tangent of the phase.  Means over equal samples of a period are exact for the smooth forces of closed

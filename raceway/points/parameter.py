@@ -1,7 +1,5 @@
 """One continuous key of a scene: the systems and boundary-value problems over it.
 
-Notes
------
 The model is built anew at each value, about a millisecond for rigid bodies.  Where the systems at both ends and between them
 differ by the excitation and by arrays that are linear in the key (loads, gyroscopic terms), only these change.
 """

@@ -61,10 +61,7 @@ class Selection:
     def value(self, key: str, default: object = None) -> Any:
         """What a key of the scene is at all points of the selection; ``default`` where it is not given.
 
-        Raises
-        ------
-        KeyError
-            For a key that varies.
+        KeyError: For a key that varies.
         """
         if key in self.axes:
             raise KeyError(key)
@@ -86,10 +83,7 @@ class Selection:
 def parse_at(texts: Iterable[str]) -> Tables:
     """``KEY=VALUE`` texts as a mapping.
 
-    Raises
-    ------
-    SceneError
-        With every text that is not of this form, and every key that stands twice.
+    SceneError: With every text that is not of this form, and every key that stands twice.
     """
     values: Tables = {}
     mistakes = []
@@ -186,10 +180,7 @@ def listed(values: Sequence[object]) -> str:
 def only_axes(selection: Selection, allowed: Sequence[str], purpose: str) -> None:
     """Refuse axes that would have to be chosen first.
 
-    Raises
-    ------
-    SceneError
-        Naming each axis, its values and what to type.
+    SceneError: Naming each axis, its values and what to type.
     """
     mistakes = [
         Mistake(

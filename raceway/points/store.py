@@ -128,10 +128,7 @@ class Store:
     def put(self, rows: Iterable[Row]) -> None:
         """Store finished rows, all in one transaction.
 
-        Raises
-        ------
-        RacewayError
-            A disk that takes no more; what was stored before stays readable.
+        RacewayError: A disk that takes no more; what was stored before stays readable.
         """
         lines = list[tuple[object, ...]]()
         for key, state, reason, content, cost in rows:
@@ -153,10 +150,7 @@ class Store:
     def repair(self, keys: Collection[Key]) -> None:
         """Let rows wait, with a warning, that are missing among ``keys`` or are not what was written.
 
-        Raises
-        ------
-        RacewayError
-            A file whose pages do not hang together: rows could be found by one way and not by another.
+        RacewayError: A file whose pages do not hang together: rows could be found by one way and not by another.
         """
         with told(self.path):
             if self._connection.execute("PRAGMA integrity_check(1)").fetchone() != ("ok",):

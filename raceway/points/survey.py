@@ -38,10 +38,7 @@ class _Survey:
 def survey(tables: ReadTables, design: Design, registry: Registry) -> _Survey:
     """Check every value of a grid, each at the first values of the others, or every point of a list.
 
-    Raises
-    ------
-    SceneError
-        The scene's mistakes, and those of the values: an unknown key, a wrong type.  What only two values together make
+    SceneError: The scene's mistakes, and those of the values: an unknown key, a wrong type.  What only two values together make
         impossible is a failed point.
     """
     notes: list[str] = []

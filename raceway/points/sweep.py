@@ -238,10 +238,7 @@ def prepare(
 def refuse_large(task: Sweep, executor: Executor, force: bool) -> None:
     """Refuse points whose results fill the memory, or whose runs would take longer than a day unless they are forced.
 
-    Raises
-    ------
-    RacewayError
-        With bytes or the predicted time.
+    RacewayError: With bytes or the predicted time.
     """
     refuse_bytes(task.design.size, sum(map(_entry_count, COLUMNS)), "give fewer points at a time")
     if task.function is None and not force:
@@ -459,10 +456,7 @@ def sweep(
 def executor_of(name: str | Executor, options_given: ReadTables, registry: Registry) -> Executor:
     """An executor by its name, with the options that are given and that it has.
 
-    Raises
-    ------
-    PluginError
-        A name that is not known, or an option that it does not have.
+    PluginError: A name that is not known, or an option that it does not have.
     """
     options: Tables = {key: value for key, value in options_given.items() if value is not None}
     if not isinstance(name, str):

@@ -68,8 +68,6 @@ def _measurement(task: tuple[Scene, int], registry: Registry) -> Tables:
 def measured(scene: Scene, registry: Registry, repeats: int) -> Measured:
     """Run a scene: status, quantities, its own error estimate, cost; a failure with its reason.
 
-    Notes
-    -----
     Times are the least of the repeats.  Compiling is apart: a first run that compiled is not among the repeats, because its
     processor time cannot be separated from the compiler's.  ``time_s``, by which settings are compared, is the time of the processor,
     or with several threads the wall time.

@@ -294,10 +294,7 @@ def found_by(pattern: str) -> list[Preset]:
 def preset(name: object, maker: object = None) -> Tables:
     """The [bearing] table of a preset, of ``preset_of``.
 
-    Raises
-    ------
-    SceneError
-        Unknown name, with the nearest five; unknown maker, with the known ones.
+    SceneError: Unknown name, with the nearest five; unknown maker, with the known ones.
     """
     entry = preset_of(name, maker)
     if entry is None:
@@ -426,10 +423,7 @@ def materials() -> dict[str, _NamedMaterial]:
 def with_material(table: Tables, path: str, preset: Tables) -> Tables:
     """A table [bearing.rings] or [bearing.balls] with the numbers of its ``material``; own keys override them, the preset's do not.
 
-    Raises
-    ------
-    SceneError
-        Unknown name, with the nearest one.
+    SceneError: Unknown name, with the nearest one.
     """
     name = table.get("material")
     if name is None:

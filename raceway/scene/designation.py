@@ -47,10 +47,7 @@ def _groups() -> Tables:
 def read_designation(text: str) -> Designation | None:
     """A maker's designation; None where it is no number of a bearing that the catalogue could have.
 
-    Raises
-    ------
-    SceneError
-        A kind of bearing that is not computed.
+    SceneError: A kind of bearing that is not computed.
     """
     word = text.strip().upper()
     for pattern, bearing in _groups()["refused"].items():

@@ -21,8 +21,6 @@ from raceway.scene.tables import Kinematics, Mounting
 def ring_inertia(bearing: Bearing) -> tuple[Number, Number, Number]:
     """Mass [kg], transverse and polar inertia [kg m2] of the inner rings of all rows; zeros when bore or width are not known.
 
-    Notes
-    -----
     Of ``bearing.inner_profile``, or of a hollow cylinder from the bore to a land at d_m - D + 2 h (groove depth h); the groove
     is cut out exactly.  Of a bearing with columns they are columns.
     """
@@ -136,8 +134,6 @@ class Grooves:
 def ball_growth(bearing: Bearing, spin_speed: float) -> float:
     """Centrifugal growth of a ball's radius at its equator, where it rolls [m].
 
-    Notes
-    -----
     A free elastic sphere of the radius R that turns with w_b grows there by
     rho w_b^2 R^3 / E (2 (1 - 2 nu) / 15 + (1 + nu) (2 + nu) / (3 (7 + 5 nu))): the solution of the equations of elasticity in the
     second spherical harmonic.  A ball that rolls on a standing outer ring at the free contact angle has, with g = D cos(alpha)/d_m,
@@ -168,8 +164,6 @@ class RunningBearing:
     def grooves(self) -> tuple[Grooves, ...]:
         """Growth of the grooves of each row.
 
-        Notes
-        -----
         A ring whose temperature rises by T grows by a T in all lengths: the circles of the groove centres R_i and R_o, the groove
         radii f D; a ball likewise.  Rings and sleeves between them keep rows apart: the planes of the groove centres, at X of the
         inner and X - s A sin(alpha) of the outer one (side s, distance A), move axially by a T_i X and a T_o (X - s A sin(alpha)).
@@ -213,8 +207,6 @@ class RunningBearing:
     def radial_growth(self, b: Bearing) -> float:
         """Radial growth of a row's inner raceway [m]: what the scene gives, and with ``ring_growth`` the centrifugal one.
 
-        Notes
-        -----
         Of a free ring of the exact section, at the free contact angle.  Without a width the ring is taken for a plane-stress annulus
         from the bore a to the land b, which grows at b by rho w^2 b / (4 E) ((1 - nu) b^2 + (3 + nu) a^2).  "with_shaft" ring and
         shaft without a fit are one elastic body: the ring is held back by what speed would take from a fit that holds.
@@ -236,8 +228,6 @@ class RunningBearing:
     def inner_fit(self, b: Bearing) -> float:
         """Radial growth of the inner raceway by the interference on the shaft [m].
 
-        Notes
-        -----
         Thick-walled cylinders of one material: with bore d, raceway d_1 = d_m - D and hole d_s the raceway grows, on the radius, by
         I/2 (d_1 / d) (d^2 - d_s^2) / (d_1^2 - d_s^2); ``_by_interference`` takes two.  The interference
         falls by as much as the ring's bore grows beyond the shaft, by centrifugal growth and by temperature.
@@ -285,8 +275,6 @@ class RunningBearing:
     def interference(self, b: Bearing, seat: str = "shaft") -> float:
         """Interference of shaft or housing with its ring at speed and temperature, on the diameter [m].
 
-        Notes
-        -----
         Of plane-stress annuli: the bore a of a ring up to the radius b grows by rho w^2 a / (4 E) ((1 - nu) a^2 + (3 + nu) b^2), a
         shaft with the hole c by the same with its own numbers and c for b.
 

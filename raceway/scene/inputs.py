@@ -22,10 +22,7 @@ _DEEPEST = 32
 def tidy(value: object, depth: int = 0) -> Any:
     """Plain Python values of a tree: numbers of numpy, tuples and paths become what a TOML file holds, quantities text.
 
-    Raises
-    ------
-    SceneError
-        A tree deeper than any scene, or what no file could hold.
+    SceneError: A tree deeper than any scene, or what no file could hold.
     """
     if depth > _DEEPEST:
         raise SceneError.at(
@@ -84,10 +81,7 @@ def _tomls_in(folder: Path) -> list[Path]:
 def read_toml(path: str | Path) -> Tables:
     """The tables of a TOML file.
 
-    Raises
-    ------
-    SceneError
-        A file that is missing, unreadable, empty or malformed, with the line.
+    SceneError: A file that is missing, unreadable, empty or malformed, with the line.
     """
     path = Path(path)
     try:
@@ -113,10 +107,7 @@ def read_toml(path: str | Path) -> Tables:
 def parse_toml(text: str, name: str) -> Tables:
     """The tables of a TOML text; ``name`` says in messages where it came from.
 
-    Raises
-    ------
-    SceneError
-        A text that is empty or malformed, with the line.
+    SceneError: A text that is empty or malformed, with the line.
     """
     if not text.strip():
         raise SceneError.at(name, None, "is empty; a scene needs at least a [bearing] table (see examples/minimal.toml)")
@@ -133,10 +124,7 @@ def parse_toml(text: str, name: str) -> Tables:
 def text_of(path: Path, most: int = _LONGEST) -> str:
     """Text of a file of so many bytes at most, without a byte order mark.
 
-    Raises
-    ------
-    OSError, SceneError, UnicodeDecodeError
-        There is none, it is larger, or no UTF-8.
+    OSError, SceneError, UnicodeDecodeError: There is none, it is larger, or no UTF-8.
     """
     try:
         size_of(path, most)

@@ -48,10 +48,7 @@ def continuous_keys(scene: SceneTables) -> list[Key]:
 def key_of(scene: SceneTables, path: str) -> Key:
     """One of them.
 
-    Raises
-    ------
-    SceneError
-        A path that is no continuous key of this scene.
+    SceneError: A path that is no continuous key of this scene.
     """
     keys = {key.path: key for key in continuous_keys(scene)}
     if path in keys:
@@ -70,10 +67,7 @@ def key_of(scene: SceneTables, path: str) -> Key:
 def with_number(scene: S, path: str, value: float) -> S:
     """The scene with another number at a continuous key, checked by the rules of its tables.
 
-    Raises
-    ------
-    ValueError
-        A number that its key's or table's rule refuses.
+    ValueError: A number that its key's or table's rule refuses.
     """
     return with_numbers(scene, {path: value})
 

@@ -71,8 +71,6 @@ def mineral_thinning(viscosity: Number, temperature: Number) -> Number:
 def pressure_viscosity(viscosity: Number) -> Number:
     """Coefficient alpha [1/Pa] of a mineral oil from its viscosity [Pa s] at the same temperature.
 
-    Notes
-    -----
     Wooster's rule alpha = (0.6 + 0.965 log10 eta) 1e-8 with eta in mPa s, at least 0.6e-8: an estimate.  Of the coefficients measured on
     thirteen mineral oils at 30 to 100 C it gives 0.70 to 1.17 times (checks/validation/film.py), which moves a film,
     h ~ alpha^0.53, by less than a fifth.

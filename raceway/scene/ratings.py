@@ -38,8 +38,6 @@ class LoadRatings:
 def load_ratings(bearing: Bearing) -> LoadRatings:
     """Ratings of a bearing of one row.
 
-    Notes
-    -----
     The nominal contact angle is ``contact_angle_deg``, 0 where only a clearance is given.  Printed ratings are those of the
     catalogue's geometry; other balls, grooves and angles change them by the standards' formulas.
 

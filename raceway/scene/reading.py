@@ -183,10 +183,7 @@ _PLACEHOLDER = {
 def read_tables(tables: ReadTables, registry: Registry) -> tuple[str, Tables, SceneTables]:
     """Title, the known tables as they were said, and every key of them checked; parameters of ``scene_from_dict``.
 
-    Raises
-    ------
-    SceneError
-        With every mistake that was found.
+    SceneError: With every mistake that was found.
     """
     mistakes: list[Mistake] = []
     title, content = _known_tables(tables, registry, mistakes)
@@ -305,10 +302,7 @@ def _plugin_table(
 def options_class(kind: str, word: str, registry: Registry) -> type:
     """The class of options of a table's ``kind``.
 
-    Raises
-    ------
-    PluginError
-        No plug-in has this name.
+    PluginError: No plug-in has this name.
     """
     return AutoIntegrator if (kind, word) == ("integrator", AutoIntegrator.name) else registry.find(kind, word).plugin
 

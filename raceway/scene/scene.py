@@ -45,10 +45,7 @@ class Given:
     def changed(self, *changes: object) -> Given:
         """With further changes, each a ``Change``.
 
-        Raises
-        ------
-        SceneError
-            A change that is none, or that goes through a value as if it were a table.
+        SceneError: A change that is none, or that goes through a value as if it were a table.
         """
         key_values: list[tuple[str, object]] = []
         for change in changes:
@@ -79,10 +76,7 @@ class Given:
     def scene(self, registry: Registry) -> Scene:
         """The scene, every key checked.
 
-        Raises
-        ------
-        SceneError
-            With every mistake that was found.
+        SceneError: With every mistake that was found.
         """
         return attrs.evolve(scene_from_dict(self.plain(registry), registry), given=self)
 
@@ -330,10 +324,7 @@ def evolve(scene: Any, *changes: Change) -> Scene:
 def plain_tables(source: object, *changes: Change, registry: Registry) -> Tables:
     """The tables of a scene, its title among them, for what makes many scenes of one; not checked.
 
-    Raises
-    ------
-    SceneError
-        A source that is no scene, or a change that cannot be made.
+    SceneError: A source that is no scene, or a change that cannot be made.
     """
     return as_given(source).changed(*changes).plain(registry)
 

@@ -65,8 +65,6 @@ def signs_of(word: str) -> str:
 def places_of(word: str, distance: float) -> tuple[tuple[float, float], ...]:
     """(side, axial place [m]) of each row, neighbours at a distance [m], their middle at 0; side is +1 or -1.
 
-    Notes
-    -----
     Rows of a name begin with those that a positive load seats; rows of signs go from -x to +x.
     """
     signs, rising = _NAMES.get(word, (word, True))

@@ -230,8 +230,6 @@ def _to_ambient(node: str) -> float | str:
 class Heat:
     """Temperatures of rings, balls and oil are computed from the heat of friction; conductances are those of all rows together.
 
-    Notes
-    -----
     Conductances that are 'auto' follow from correlations (``raceway.core.thermal``), those to the ambient from ISO 15312.
     """
 

@@ -112,10 +112,7 @@ class Tolerance:
 def tolerances_of(scene: SceneTables, texts: Iterable[str] | Mapping[str, str]) -> tuple[Tolerance, ...]:
     """Tolerances from texts ``KEY=TEXT`` or a mapping.
 
-    Raises
-    ------
-    SceneError
-        No tolerance at all; a key that is not continuous or given twice; a text that is no tolerance, or empty; a range that the
+    SceneError: No tolerance at all; a key that is not continuous or given twice; a text that is no tolerance, or empty; a range that the
         key's rule refuses.
     """
     pairs = list(texts.items()) if isinstance(texts, Mapping) else [_split(text) for text in texts]

@@ -88,10 +88,7 @@ _LONGEST = 400
 def unit_of(text: str) -> Unit:
     """A unit from its symbols.
 
-    Raises
-    ------
-    ValueError
-        A symbol that is not known, or no product of symbols.
+    ValueError: A symbol that is not known, or no product of symbols.
     """
     unit, sign = _ONE, 1
     for part in re.findall(r"\*\*|[/*·\s]|[^/*·\s]+(?:\*\*[+-]?\d+)?", text.replace(" ** ", "**")):

@@ -101,10 +101,7 @@ class Entry:
 def entries() -> list[Entry]:
     """All entries, those used last first; damaged ones are called so.
 
-    Raises
-    ------
-    OSError
-        A folder that cannot be listed.
+    OSError: A folder that cannot be listed.
     """
     out = []
     for path in _files():
@@ -123,10 +120,7 @@ def entries() -> list[Entry]:
 def clear() -> None:
     """Remove every entry.
 
-    Raises
-    ------
-    OSError
-        What cannot be removed.
+    OSError: What cannot be removed.
     """
     if folder().exists():
         shutil.rmtree(folder())

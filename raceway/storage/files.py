@@ -45,10 +45,7 @@ def scratch_file(path: Path, remedy: str) -> Iterator[Path]:
 def write_whole(content: bytes | memoryview, path: Path) -> Path:
     """Write a file beside its place and move it there; folders are made.  An interruption leaves nothing behind.
 
-    Raises
-    ------
-    RacewayError
-        A folder or disk that cannot be written.
+    RacewayError: A folder or disk that cannot be written.
     """
     with scratch_file(path, "Choose another folder with --out.") as scratch:
         scratch.write_bytes(content)
@@ -118,8 +115,6 @@ def size_words(size: float) -> str:
 def memory_for(size: int) -> Iterator[None]:
     """While entered, this process takes no more memory than a file of so many bytes is worth: ``MemoryError`` beyond.
 
-    Notes
-    -----
     A limit of the operating system on address space: what C libraries inflate or allocate counts, too.  Where the system does
     not report how much is taken (it is no Linux), there is no limit.
     """
@@ -158,10 +153,7 @@ def without_nan(value: Any) -> Any:
 def write_json(content: object, path: Path) -> Path:
     """Write JSON so that a reader sees the old file or the complete new one.
 
-    Raises
-    ------
-    RacewayError
-        Folder or disk that cannot be written.
+    RacewayError: Folder or disk that cannot be written.
     """
     return write_whole((json.dumps(content, indent=1, allow_nan=False) + "\n").encode(), path)
 
@@ -169,8 +161,6 @@ def write_json(content: object, path: Path) -> Path:
 def slug(title: str) -> str:
     """A folder's name from a title: letters, digits, dots and dashes, at most 80, then what the second line says was changed.
 
-    Notes
-    -----
     Accents are left out.  A title with letters of another script, or more of them, ends in a hash of it.  Other changes make another name: where
     letters of them are lost, or more than 100, a hash of all stands at the end.
     """

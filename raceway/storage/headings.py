@@ -92,10 +92,7 @@ def evened(times: np.ndarray) -> np.ndarray:
 def heading_of(path: Path, encoding: str) -> Heading:
     """The heading of a text file: that of its table, or its first line where it has none.
 
-    Raises
-    ------
-    ValueError
-        An empty file, or one whose samples have no common clock: line, rule and remedy.
+    ValueError: An empty file, or one whose samples have no common clock: line, rule and remedy.
     """
     with open(path, encoding=encoding) as stream:
         lines = [text[:_LONGEST] for text in islice(stream, _LINES)]

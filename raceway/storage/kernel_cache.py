@@ -31,8 +31,6 @@ def cache_root() -> Path:
 def refusal(folder: Path) -> str | None:
     """Why a folder of the cache must not be read or written; None where it may, or does not exist yet.
 
-    Notes
-    -----
     It and what it lies in, up to the root of the cache, belong to the user, or to root, who can replace the program as well;
     nobody else may write there.  Below a folder that is closed to others, their rights do not matter.
     """
@@ -59,10 +57,7 @@ def refusal(folder: Path) -> str | None:
 def make(folder: Path) -> None:
     """Make a folder of the cache, closed to others where it is new.
 
-    Raises
-    ------
-    OSError
-        It cannot be made.
+    OSError: It cannot be made.
     """
     root = cache_root()
     root.parent.mkdir(parents=True, exist_ok=True)
@@ -111,10 +106,7 @@ class _KernelFolder:
 def kernel_folders() -> list[_KernelFolder]:
     """All of them, the current one first.
 
-    Raises
-    ------
-    OSError
-        A cache folder that cannot be listed.
+    OSError: A cache folder that cannot be listed.
     """
     root = cache_root() / "kernels"
     folders = []
@@ -131,10 +123,7 @@ def kernel_folders() -> list[_KernelFolder]:
 def clear() -> None:
     """Remove every folder of compiled kernels.
 
-    Raises
-    ------
-    OSError
-        What cannot be removed.
+    OSError: What cannot be removed.
     """
     root = cache_root() / "kernels"
     if root.exists():

@@ -112,10 +112,7 @@ def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTabl
 def read_heading(path: Path) -> Heading:
     """The heading of a file, as ``read_numbers`` reads it.
 
-    Raises
-    ------
-    ValueError, OSError
-        As ``read_numbers``.
+    ValueError, OSError: As ``read_numbers``.
     """
     size_of(path, LARGEST)
     try:

@@ -7,8 +7,6 @@ A rule is a function of arrays, which returns None where numbers are missing.  A
 True a run failed or was refused: nothing is judged over such a gap.  The other numbers that are missing belong to unstable motions:
 those between two numbers are bridged, those at an end leave no judgement.
 
-Notes
------
 For each exponent p a power law is linear in its other numbers.  The interval of p holds every exponent whose sum of squared
 residuals stays below S (1 + t^2 / (n - m)) + 3.84 e^2: S is the least sum, e the root mean square of the runs' errors, n numbers,
 m parameters, t Student's and 3.84 chi squared at 95 %.

@@ -63,10 +63,7 @@ class _Internals:
 class Printed:
     """All that is printed of one size: lengths [m], ratings at each contact angle, stiffnesses of pairs.
 
-    Raises
-    ------
-    SceneError
-        Numbers that no bearing has, each with the rule.
+    SceneError: Numbers that no bearing has, each with the rule.
     """
 
     bore: float
@@ -157,10 +154,7 @@ class Table:
 def read_table(path: Path) -> Table:
     """The lines of a CSV file.
 
-    Raises
-    ------
-    SceneError
-        A file that cannot be read, columns that are missing or unknown, no line that is a bearing.
+    SceneError: A file that cannot be read, columns that are missing or unknown, no line that is a bearing.
     """
     try:
         size_of(path, _LARGEST)

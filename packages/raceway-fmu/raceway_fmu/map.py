@@ -49,8 +49,6 @@ class Series:
     error, relative, difference : (m,) largest difference at control points over the size of the quantity, over its value (or 1e-200
         if that changes its sign), and in its unit
 
-    Notes
-    -----
     Coefficients interpolate at the roots of T_n of each axis.  Control points, which no fit uses, are the n + 1 extremes of T_n, ends
     and corners included, between which the roots lie and where errors of interpolation are largest, and a Sobol sequence in the box.
 

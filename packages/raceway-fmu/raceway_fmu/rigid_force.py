@@ -1,7 +1,5 @@
 """The force of a bearing with rigid rings and balls: numbers of the rings' kernels, for C, and the unit.
 
-Notes
------
 Numbers of geometry and balls are a + b W^2 in the speed W: centrifugal forces, gyroscopic moments, growth of the rings.  They are read from
 models at two speeds; a third speed shows whether that holds.
 """

@@ -37,10 +37,7 @@ def meshio() -> ModuleType:
 def load(path: Path, reader: Callable[[Path], Mesh]) -> Mesh:
     """meshio's own mesh.
 
-    Raises
-    ------
-    MeshError
-        A file that is missing, empty, unpacks without end, or cannot be read, by name.
+    MeshError: A file that is missing, empty, unpacks without end, or cannot be read, by name.
     """
     path = Path(path)
     size = readable(path)
@@ -89,10 +86,7 @@ def store(path: Path, writer: Callable[[Path, Mesh], object], content: Mesh) -> 
 def hexahedra(path: Path, content: Mesh) -> tuple[np.ndarray, list[int | None]]:
     """Cells (m, 8), and for each of meshio's blocks the number of its first cell, None for blocks of other things.
 
-    Raises
-    ------
-    MeshError
-        Solids that are not hexahedra of 8 nodes, or no hexahedra at all.
+    MeshError: Solids that are not hexahedra of 8 nodes, or no hexahedra at all.
     """
     foreign: dict[str, int] = {}
     for block in content.cells:
@@ -141,10 +135,7 @@ def used_only(path: Path, points: np.ndarray, cells: np.ndarray, node_sets: Read
 def facets_of_quads(path: Path | str, cells: np.ndarray, quads: np.ndarray) -> np.ndarray:
     """(k, 2) cell and local face of quadrilaterals (k, 4) that lie on cells.
 
-    Raises
-    ------
-    MeshError
-        Quadrilaterals on no cell.
+    MeshError: Quadrilaterals on no cell.
     """
     from raceway.extend import FACES
 

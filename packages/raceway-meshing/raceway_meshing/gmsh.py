@@ -64,10 +64,7 @@ class Gmsh:
     def mesh(self, bearing: Bearing) -> dict[str, HexMesh]:
         """Meshes of the bodies that have files, renumbered; physical surfaces, or else all surfaces, become sets.
 
-        Raises
-        ------
-        MeshError
-            Gmsh or its system libraries are absent, files cannot be read or meshed with hexahedra, elements are too large or
+        MeshError: Gmsh or its system libraries are absent, files cannot be read or meshed with hexahedra, elements are too large or
             too small.
         """
         from raceway.extend import refuse_bad_cells
@@ -84,13 +81,8 @@ class Gmsh:
     def predict(self, bearing: Bearing) -> Prediction | None:
         """Size of the meshes from the solids' volumes and, but for 'subdivision', the divisions of their edges.
 
-        Raises
-        ------
-        MeshError
-            Gmsh is absent, files cannot be read, elements are too large or too small.
+        MeshError: Gmsh is absent, files cannot be read, elements are too large or too small.
 
-        Notes
-        -----
         Six-sided volumes of transfinite edges are counted exactly: of the numbers of cells along twelve edges, each of the
         three directions' occurs four times.
         """

@@ -104,10 +104,7 @@ class File:
     def mesh(self, bearing: Bearing) -> dict[str, HexMesh]:
         """Meshes of the bodies that have files, renumbered.
 
-        Raises
-        ------
-        MeshError
-            Files that cannot be read or hold other solids, sets that are missing or empty, bad cells.
+        MeshError: Files that cannot be read or hold other solids, sets that are missing or empty, bad cells.
         """
         return bodies(self, bearing, self._body)
 

@@ -337,10 +337,7 @@ def export_coefficients(
 def kind_of(kind: str | None, path: str | Path | None) -> str:
     """The kind as given, or by the path's ending.
 
-    Raises
-    ------
-    SceneError
-        An unknown one.
+    SceneError: An unknown one.
     """
     if kind is None and path is not None:
         kind = _ENDINGS.get(Path(path).suffix.lower())

@@ -29,8 +29,6 @@ class NodeBearing:
     tilts : whether the node's own tilts are the ring's
     damping : added to all translations [N s/m]
 
-    Notes
-    -----
     The node shares x, y, z with the ring, and its tilts where ``tilts`` says so.  ``supports.axial`` decides about x: under
     "force" the axial load is constant (a spring), the ring has its equilibrium on it, and kxx is a spring of the node beside
     the bearing; under "displacement" (spacers) the ring is the node's along x, too, and its load follows from the motion.
@@ -90,10 +88,7 @@ class NodeBearing:
     def motion(self, speed: float, load: np.ndarray) -> np.ndarray:
         """Complex amplitudes of ``moving`` under a synchronous load (n,) on them, without inertia: what the contacts carry.
 
-        Raises
-        ------
-        ConvergenceError
-            A load that the bearing cannot carry.
+        ConvergenceError: A load that the bearing cannot carry.
         """
         full = np.zeros(5, dtype=complex)
         full[self.moving] = load
@@ -119,10 +114,7 @@ class NodeBearing:
 
         Damping is not in it.
 
-        Raises
-        ------
-        ConvergenceError
-            A displacement at which the balls, or free coordinates of the ring, have no equilibrium.
+        ConvergenceError: A displacement at which the balls, or free coordinates of the ring, have no equilibrium.
         """
         model, equilibrium = self.at_rest(speed)
         system, inside = model.system, self._inside(model)

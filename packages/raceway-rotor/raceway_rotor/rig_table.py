@@ -42,8 +42,6 @@ class Signals:
 class Rig:
     """A shaft on two equal bearings, mirror images of each other about a disc at mid-span.
 
-    Notes
-    -----
     The tested bearing is the left one; the shaft's axis runs from the left end to the right one.
     """
 
@@ -142,10 +140,7 @@ class Rig:
 def rig_of(scene: Scene) -> Rig:
     """The table ``[rig]`` of a scene.
 
-    Raises
-    ------
-    SceneError
-        There is none.
+    SceneError: There is none.
     """
     if "rig" not in scene.source:
         raise SceneError.at(

@@ -117,10 +117,7 @@ def _toml_section(tag: str) -> str:
 def check_name(path: Path) -> None:
     """Refuse a file that ROSS would not read.
 
-    Raises
-    ------
-    RacewayError
-        For an ending other than .toml and .json.
+    RacewayError: For an ending other than .toml and .json.
     """
     if path.suffix.lower() not in (".toml", ".json"):
         raise RacewayError(f"`{path}`: ROSS reads .toml and .json, by their suffix: choose one of them")

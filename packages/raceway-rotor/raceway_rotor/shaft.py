@@ -3,8 +3,6 @@ of its own, and the motion that both have in common.
 
 The bearing is stiffer or softer with its force: ``balance`` finds the fixed point at which shaft and bearing agree.
 
-Notes
------
 Deflection w = y + j z and slope s = y' + j z' of a shaft that whirls with e^{j lambda t} while it spins with Omega:
 
     (K - lambda^2 (M_t + M_r) + lambda Omega G) q = f,    q = (w_0, s_0, w_1, s_1, ...)
@@ -159,8 +157,6 @@ class Rotor:
     ring, sensor : answers (w, s) of the shaft in the bearing and (w) at the sensor: rows of (.., 3) for
         a unit of unbalance force [N] at the disc, force [N] and moment [N m] of the shaft on each bearing
 
-    Notes
-    -----
     Both bearings carry the same, as mirror images.  Slope and moment are those of the bearing's own frame, whose axis points
     to where its load seats it.
     """
@@ -300,10 +296,7 @@ class Bearing:
 def bearing(scene: Scene, axial: float, registry: Registry) -> Bearing:
     """The scene's bearing as it sits in the rig under an axial load [N].
 
-    Raises
-    ------
-    SceneError
-        A scene whose bearing is not the same all around.
+    SceneError: A scene whose bearing is not the same all around.
     """
     if any(scene.load.radial) or any(scene.load.moment):
         raise SceneError.at(
@@ -340,8 +333,6 @@ class State:
     mass : of the inner ring [kg];  coupling : force by tilt at rest, of the bearing [N/rad]
     runs : of the bearing, that it took
 
-    Notes
-    -----
     Complex amplitudes in forward whirl; the unbalance force is real.  The shaft bends the bearing, too: what it carries for
     its tilt, ``coupling`` times the slope, taken off the force leaves the stiffness against deflection alone.
     """
@@ -381,10 +372,7 @@ class State:
 def balance(free: Rotor, bearing: Bearing) -> State:
     """Force and moment at which the ring and the shaft in it move alike.
 
-    Raises
-    ------
-    ConvergenceError
-        No such force and moment found.
+    ConvergenceError: No such force and moment found.
     """
     speed = free.speed
     gain = bearing.compliance - free.ring[:, 1:]

@@ -201,10 +201,7 @@ class BearingSolids:
     def of(cls, result: Result) -> BearingSolids:
         """From a result; rings without dimensions get usual ones, which are named.
 
-        Raises
-        ------
-        SceneError
-            Rows of different bearings.
+        SceneError: Rows of different bearings.
         """
         b = result.model.problem.bearing
         if not b.equal_rows:

@@ -36,10 +36,7 @@ _OTHERWISE = ", or leave out --picture"
 def mesh_picture(meshes: Mapping[str, HexMesh], title: str) -> bytes:
     """PNG of all bodies with their edges, one colour a kind of body.
 
-    Raises
-    ------
-    RacewayError
-        pyvista is missing or cannot draw here.
+    RacewayError: pyvista is missing or cannot draw here.
     """
 
     def draw(pyvista: ModuleType, plotter: Plotter) -> None:

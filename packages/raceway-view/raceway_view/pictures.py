@@ -79,10 +79,7 @@ _BAR: Tables = {"color": INK, "n_labels": 5, "fmt": "%.0f", "vertical": True}
 def pyvista_of(otherwise: str = "") -> ModuleType:
     """The package.
 
-    Raises
-    ------
-    RacewayError
-        It or its system libraries are missing; names what installs them.
+    RacewayError: It or its system libraries are missing; names what installs them.
     """
     import pyvista
 
@@ -93,10 +90,7 @@ def pyvista_of(otherwise: str = "") -> ModuleType:
 def quietly(pyvista: ModuleType, draw: Callable[[], T], otherwise: str = "") -> T:
     """Draw; without a display VTK says so on standard error, and then draws in memory as it was asked to.
 
-    Raises
-    ------
-    RacewayError
-        VTK cannot draw here.
+    RacewayError: VTK cannot draw here.
     """
     try:
         with pyvista.vtk_verbosity("off"):

@@ -10,8 +10,6 @@ from raceway.core.signatures import LAW_POINTER, MATRIX, VECTOR
 def add_damping(damping, gap, gap_rate, force, d_gap, d_rate):
     """Add a viscous force -damping * gap_rate [N] to closed contacts; the sum never pulls.
 
-    Notes
-    -----
     Where the dashpot would pull harder than the law pushes, the contact carries nothing.
     """
     if damping == 0.0:
@@ -43,8 +41,6 @@ _WEIGHTS = (
 def stored_energy(law, params, state_old, state_new, gap, scratch, energy):
     """energy (n,) [J]: the integral of the law's force over the approach from first touch to ``gap`` (n,), at rest.
 
-    Notes
-    -----
     Meant for laws without memory; ``scratch`` is (6, n).
     """
     n = gap.size

@@ -1,7 +1,5 @@
 """Thickness of an elastohydrodynamic film in an elliptic contact: smooth, fully flooded, isothermal; and what the inlet's heat takes.
 
-Notes
------
 With the entraining speed u, the viscosity eta, the pressure-viscosity coefficient alpha, E' = 2 E*, the radii R_x along and R_y
 across the running direction, the load Q and the ellipticity k = a/b: U = eta u / (E' R_x), G = alpha E', W = Q / (E' R_x^2),
 H = h / R_x.  The four regimes, of which the one with the thickest minimum film is taken:

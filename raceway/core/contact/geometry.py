@@ -1,7 +1,5 @@
 """Lengths and curvatures of a ball bearing at rest, at the free contact angle.
 
-Notes
------
 B = (f_i + f_o - 1) D is the distance of the groove centres, R_i = d_m/2 + (f_i - 1/2) D cos(alpha) the radius of the
 inner ones.  With g = D cos(alpha)/d_m the curvature sums are (4 - 1/f + 2g/(1-g))/D inside and (4 - 1/f - 2g/(1+g))/D
 outside.  An internal radial clearance P_d sets cos(alpha) = 1 - P_d/(2B).

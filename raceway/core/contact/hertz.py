@@ -1,7 +1,5 @@
 """Exact elliptic Hertz contact of two bodies that touch at a point.
 
-Notes
------
 With the ellipticity chi = a/b, m = 1 - 1/chi^2 and the complete elliptic integrals K(m), E(m), the curvature
 difference is F = 1 - 2 / (chi^2 - 1) (K/E - 1).  a* = (2 chi^2 E / pi)^(1/3), b* = a*/chi and
 delta* = (2 K / pi) (pi / (2 chi^2 E))^(1/3) give, with S the curvature sum and E* the contact modulus,
@@ -111,8 +109,6 @@ class Ellipse:
     def stick_ratio(self, poisson: float) -> tuple[float, float]:
         """Stiffness of the sticking contact along the major and the minor axis over the normal one, bodies of one material.
 
-        Notes
-        -----
         Without slip the traction is that of a flat punch, 1 / sqrt(1 - x^2/a^2 - y^2/b^2); Cerruti's solution gives the
         displacement T ((1 - nu) K + nu D) / (2 pi G a) along the major axis, with K - D for D along the minor one, against
         (1 - nu) K / (2 pi G a) normal to it: K and D = (K - E) / e^2 at e^2 = 1 - (b/a)^2.  A circle has 2 (1 - nu) / (2 - nu).

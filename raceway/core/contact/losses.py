@@ -130,8 +130,6 @@ _POINT = record(Contacts, *[VECTOR] * 17), _FILM, float64
 def _ball_rates(at, film, speed, outer_race, balls):
     """Rates of balls that roll without slip at the centres of both contacts; what the gyroscopic moment takes; drag.
 
-    Notes
-    -----
     In the cage's frame, with the ball's rate w_B about an axis at the angle t against the shaft's:
     (w - w_c) d_m (1 - g_i) = w_B D cos(a_i - t), w_c d_m (1 + g_o) = w_B D cos(a_o - t).  Spin: (w - w_c) sin a_i + w_B sin(a_i - t) at
     the inner race, w_B sin(a_o - t) - w_c sin a_o at the outer one.  It is 0 at tan t = sin a / (cos a +- D / d_m), + at the outer race;
@@ -217,8 +215,6 @@ def mean_slip(spin, curvature):
 def _contact_losses(at, film, speed, balls):
     """Torque on the shaft by each contact.
 
-    Notes
-    -----
     Of load Q, semi-axes a across and b along the running direction, k = a/b, entraining speed u, mean pressure p = Q / (pi a b),
     W = Q / (E' R_x^2), U = 2 eta u / (E' R_x), thermal loading L = eta beta u^2 / k_oil of the inlet:
 

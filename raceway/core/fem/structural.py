@@ -1,7 +1,5 @@
 """Structural compliances: deflection of a body's finite elements beyond the half-space of Hertz's formula.
 
-Notes
------
 A contact force presses with the line density of its Hertz ellipse on the nodes of the surface.  Below it, on the inward
 normal, the elements' displacement and that of a half-space under the same line differ by a nearly constant amount, the
 structural compliance: mean over depth of (u_elements - u_half-space) / Q.  No displacement at the patch itself enters, so the
@@ -262,8 +260,6 @@ class ElasticBodies:
     def direct(self, race: int, angles: np.ndarray) -> np.ndarray:
         """Compliance of ring and ball together at contact angles [rad], in m/N; race: 0 inner, 1 outer.
 
-        Notes
-        -----
         The rings' tables give its change over the groove, calibrations its size.
         """
         return self._at_angles(race, angles) + self.beyond(race, angles)

@@ -1,7 +1,5 @@
 """Pseudo-arclength continuation of periodic motions over a parameter: load, speed, share of the force, anything.
 
-Notes
------
 The state y0 = (q, q') at the start of the span and the parameter p are followed together along their common arc, so that a
 fold, where p turns back, is passed like any other point.  Newton's corrector adds one row to the closing condition
 (P - T) dy0 - T_p dp = T_r + y_m - P y0: the correction stands across the predictor.  The derivative of the balance of forces by
@@ -106,10 +104,7 @@ class Branch:
     def along(self, path: Path, parameter: float, tangent: np.ndarray) -> Point:
         """The point of an orbit that is known, with a direction to leave it by.
 
-        Raises
-        ------
-        ConvergenceError
-            The path is none of forces that have values.
+        ConvergenceError: The path is none of forces that have values.
         """
         problem = self.problem_at(parameter)
         linearisation = self._linearise(problem, path, parameter)
@@ -154,10 +149,7 @@ class Branch:
     def step(self, here: Point, size: float) -> Point:
         """The point at a length along the branch, in units.
 
-        Raises
-        ------
-        ConvergenceError
-            The corrector finds none, or turned round.
+        ConvergenceError: The corrector finds none, or turned round.
         """
         solution = here.solved
         path, dp = solution.path, size * here.tangent[-1] * self.unit
@@ -311,8 +303,6 @@ def _two_spans(problem: Problem) -> Problem:
 def doubled(branch: Branch, point: Point) -> tuple[Branch, Point]:
     """The branch of two spans, and its first point: ``point``, a period doubling, with the tangent that leaves it.
 
-    Notes
-    -----
     At a period doubling a disturbance v comes back as -v after a span: T v = -v. Two spans of the orbit, with v along the
     first and -v along the second, are the first point of a problem of two spans, at which another branch crosses with the
     tangent (v, 0).

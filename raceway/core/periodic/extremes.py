@@ -1,7 +1,5 @@
 """Contact forces along a steady orbit, between its samples: largest, least, and at equidistant times of a turn.
 
-Notes
------
 The force of a contact over a turn is the trigonometric polynomial through its samples, in further spans those of the ball that stands
 there then.  Newton's method leads from the largest sample to the largest value; forces do not pull.
 """

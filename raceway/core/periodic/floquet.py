@@ -1,7 +1,5 @@
 """Floquet multipliers of a periodic motion: what becomes of a small disturbance.
 
-Notes
------
 The transfer of a disturbance (dq, dq') over one span, turned back, has the multipliers mu as eigenvalues; over a turn they
 are mu^(2 pi / span).  All inside the unit circle: disturbances die out.  One outside: the motion is never seen.  With next
 to no damping they lie on the circle but for some 1e-7, and a disturbance neither grows nor dies.  An unstable motion is

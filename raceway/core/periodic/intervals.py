@@ -1,7 +1,5 @@
 """Interval by interval: the state at a Gauss point, the balance of forces there, and the elimination of its unknowns.
 
-Notes
------
 The angle theta = w t is the independent variable, so that displacements and their derivatives by the angle are of one
 size: w^2 M q'' + w C q' + K q + f(t, q, w q') = push.  Unknown are q and q' at the start of each interval and the
 accelerations A at its Gauss points.  Linearised, an interval's own unknowns are eliminated,
@@ -316,8 +314,6 @@ def spread(free, elimination, first, parameter, change):
 def differentiate(nodes, points, speed, ball, rate):
     """rate (m s + 4, Z, r) [m/s] of columns ball (m s + 4, Z, r) that have rates: both with two samples beyond each end.
 
-    Notes
-    -----
     The derivative of the polynomial through the s points of an interval and two neighbours on either side; ``nodes`` has an
     interval more at each end, for the places of those neighbours.
     """

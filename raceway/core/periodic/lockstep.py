@@ -1,7 +1,5 @@
 """Steady orbits of four points in lockstep, by Fourier collocation and Newton's method.
 
-Notes
------
 The motion is sampled at N equidistant angles of its span, of the force's angle: a turn, or one ball pitch where a turning force acts
 on equal balls.  Then it is looked at from the frame that turns with the force, u = R^T q, in which it repeats itself after a pitch
 and its 1x part stands still: few samples do.  Derivatives are those of the trigonometric polynomial through the samples,

@@ -1,7 +1,5 @@
 """What becomes of a small disturbance of a motion over its span, from samples of the derivatives along it.
 
-Notes
------
 A disturbance v of a motion obeys M w^2 v'' + A1 v' + A0 v = 0 over the force's angle, A0 and A1 trigonometric polynomials through
 their samples: y' = B y with y = (v, v').  Magnus's expansion of fourth order takes y over a step, its exponential by the diagonal
 Pade approximant of fourth order: both are symplectic where B is Hamiltonian, so that multipliers of motions without damping

@@ -1,7 +1,5 @@
 """Meshes that are halved where the error is made, and the error that is left.
 
-Notes
------
 *At the nodes*: the balance of forces is integrated over each interval once more with more points along the motion found;
 what q and q' would gain is the interval's defect, and the linearised problem carries all defects round to the error of the
 motion (it is solved already, so this costs one sweep without tangents).  *Between the nodes*: the highest Legendre
@@ -152,8 +150,6 @@ class Refined:
 def refine(solution: Solved, tolerance: float) -> Refined:
     """Divide intervals and solve again until the estimated error is below the tolerance, or the mesh cannot grow.
 
-    Notes
-    -----
     An error within rounding's share, or a mesh that reaches ``MOST_INTERVALS``, ends it too; the error says so.
     """
     problem = solution.problem

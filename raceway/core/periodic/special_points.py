@@ -35,8 +35,6 @@ class _Special:
 def special_points(branch: Branch, start: Point, end: Point, size: float) -> list[_Special]:
     """Those between a point and the next one, a step of length ``size`` [units] further on, in their order of kinds.
 
-    Notes
-    -----
     Each has a function along the branch that changes its sign there, with T the transfer over a span that is turned back:
 
     fold               the parameter's part of the tangent

@@ -1,7 +1,5 @@
 """Newton's steps of four points' steady orbits, by generalised conjugate residuals.
 
-Notes
------
 With the mean tangent of the samples the linear system falls into harmonics, whose inverses answer each column.
 
 References

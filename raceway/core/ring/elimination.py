@@ -109,8 +109,6 @@ def cholesky_solve(matrix, rhs, n):
 def copy_matrix(source, target):
     """target[:, :] = source.
 
-    Notes
-    -----
     Where an array is assigned to a slice of another, numba compiles the words of its error message, too: seconds.
     """
     for i in range(source.shape[0]):

@@ -22,8 +22,6 @@ class _FrictionEnergy:
 def friction_energy(system: System, record: Record) -> _FrictionEnergy:
     """Energies of friction along a record; zeros where the system has none.
 
-    Notes
-    -----
     A contact with the elastic tangential displacement u (``raceway.core.ring.kernels.rolling``) stores k u^2 / 2. A
     step in which its slip grows by d loses k u d with the u at the step's end: the return mapping lets the slip grow only
     along u, so no step of a record that keeps every step can give energy.
@@ -100,8 +98,6 @@ def _gaps(system: System, record: Record) -> Iterator[tuple[float, np.ndarray]]:
 def energy_balance(system: System, record: Record) -> _EnergyBalance:
     """Balance of kinetic and stored energy against the work of loads and excitation and the losses in dampers.
 
-    Notes
-    -----
     For laws without memory, balls that do not orbit, and no gyroscopic moments.  The stored energy is integrated from the
     law itself, not from the motion, so that the balance measures the integrator; work and losses are integrals in time of
     fourth order, those of friction sums over steps of first order.

@@ -1,7 +1,5 @@
 """Static equilibrium of the ring under a constant load, by a trust region on the total potential.
 
-Notes
------
 With rigid rings, no friction and laws whose force grows with the approach, the potential is convex: the length of
 e - p and of p are convex in (q, p), the contact energies grow and are convex in those lengths, and a minimum over the
 balls p keeps convexity.  The compliance of elastic bodies keeps it as long as the contacts are softer than what it takes

@@ -1,7 +1,5 @@
 """Equilibria of four points in lockstep: each lane of a value is a point, and one Newton iteration moves ring and balls.
 
-Notes
------
 A ball's place p is eliminated from each step: with R its imbalance and F its force on the ring, p follows e by -J^-1 (R + X de), and the ring
 sees F - P J^-1 R and the tangent E - P J^-1 X (``raceway.core.ring.kernels.rolling.Balance``).  Without gyroscopic moments the potential is
 convex in all unknowns together, so that what balances is the one equilibrium; moments are put on where that is nearly found.

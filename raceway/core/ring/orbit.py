@@ -1,7 +1,5 @@
 """The steady orbit under a periodic force, by Fourier collocation in time.
 
-Notes
------
 At N equidistant times of one period M D2 q + C D q + K q + f(q, D q) = load + force(t), with D the spectral
 differentiation matrix; Newton on all N states at once.  It contains the inertia forces, so that a transient that
 starts on it starts without a jump: the contacts carry F0 + m w^2 r, not F0.
@@ -83,10 +81,7 @@ def _room(system: Ring, n: int, tangents: bool) -> Responses:
 def responses(system: System, states: States, tangents: bool = False) -> Responses:
     """What the contacts do at many states, whose balls are a guess and become the places.
 
-    Raises
-    ------
-    ConvergenceError
-        Where the balls of one find no place.
+    ConvergenceError: Where the balls of one find no place.
     """
     n, out = len(states.times), _room(system, len(states.times), tangents)
     q, v = np.ascontiguousarray(states.q), np.ascontiguousarray(states.v)
@@ -165,10 +160,7 @@ def orbit_near(
 ) -> Orbit:
     """Newton on all times at once from a first guess (samples, 5), an odd number of equidistant times.
 
-    Raises
-    ------
-    ConvergenceError
-        None found near it.
+    ConvergenceError: None found near it.
     """
     times = np.arange(samples) * (period / samples)
     force = np.array([system.outer_force(t) for t in times])

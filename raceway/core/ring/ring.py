@@ -81,8 +81,6 @@ class ChangingSpeed:
     shift : function of speeds (n,) [rad/s] -> shift of the first sprung row (n,) [m], with which all on the spring slide; None
         where rows stay
 
-    Notes
-    -----
     Centrifugal forces, gyroscopic moments of the balls and centrifugal growth go with w^2, the cage speed and gyroscopic moments
     of the rotor with w.  A sprung row slides to where the spring's force is met at w, as in a steady run.
     """
@@ -210,12 +208,8 @@ class Ring(ABC):
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under ``load`` from a first guess q (5,): displacement, balls (Z, k), iterations.
 
-        Raises
-        ------
-        ConvergenceError
-            With the last state and its residual.
-        PluginError
-            An array of another shape.
+        ConvergenceError: With the last state and its residual.
+        PluginError: An array of another shape.
         """
 
     def stepped(self) -> SteppedSystem | None:
@@ -336,8 +330,6 @@ class Ring(ABC):
     def damped_time_step(self, tangent: np.ndarray, damping: np.ndarray) -> float:
         """Stable limit of central differences [s] with tangent and dashpots (5, 5) of the contacts.
 
-        Notes
-        -----
         Contacts see the predicted velocity v0 + dt a0 (``raceway.core.time``).  At the limit a motion changes its
         sign each step, q1 = -q0, v = 0, a0 = -4 q0 / dt^2, so that dt = 2 / s with the largest root s of
         det(s^2 M - 2 s C - K) = 0; of one mode with the damping ratio z it is (2 / w) (sqrt(1 + 4 z^2) - 2 z).  Damping of the
@@ -369,8 +361,6 @@ class Ring(ABC):
     ) -> tuple[np.ndarray, np.ndarray]:
         """Stiffness and damping (5, 5) at an equilibrium with sliding rows following, from those with these rows held.
 
-        Notes
-        -----
         Without friction and mass the rows' place s follows by K_ss s = -K_sq q, so that the ring meets K - K_qs K_ss^-1 K_sq, where
         K_qs, K_sq, K_ss are the first column, row and entry of the rows' own K (the spring's rate is 0).  C is the derivative by
         j w at w = 0 of K + j w C condensed alike: of slow motions.

@@ -178,8 +178,6 @@ class System(Ring):
     def damping_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
         """Damping of the contacts (5, 5) at an equilibrium that was evaluated, of slow motions: the balls move, too.
 
-        Notes
-        -----
         In a motion with exp(g t) every rate is g times a displacement, the balls' as well: the force changes by K(g) + g C(g), and
         the damping is the derivative of that by g at 0.  C(0) alone is that of a ring which moves while the balls stay.
         """
@@ -203,8 +201,6 @@ class System(Ring):
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """By a trust region on the potential; what has none is added to that equilibrium.
 
-        Notes
-        -----
         A load that the trust region does not reach at once is raised in steps.  Gyroscopic moments are added to the
         equilibrium without them, all at once or in steps.  Friction is left out: the balls have rolled into place, and
         their slips are set so that no contact carries a tangential force.

@@ -1,7 +1,5 @@
 """What damped contacts add to the stiffness against small harmonic motions, the balls condensed out at their frequency.
 
-Notes
------
 In a motion with exp(g t) contact k answers with k + g c.  Condensing the balls of ring coordinates q and places p gives the matrix
 S(g) = H_qq - H_qp H_pp^-1 H_pq with H(g) = K + g C, and j w S is wanted at.  For real g > 0 compiled kernels give S exactly (a time
 step needs it).  S is a rational function whose poles are the balls' rates of decay, in the left half plane: the barycentric rational

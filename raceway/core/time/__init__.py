@@ -3,8 +3,6 @@
 schemes    ``OneStep``, ``Explicit``, ``Static``, and ``integrate``, which takes the loop that a bearing asks for
 compiled   loops over small systems;  advance: takes them in chunks;  stepped: the same, step for step, for systems stepped from Python
 
-Notes
------
 Newmark's method and generalised-alpha, Newton's method in the displacement of the new step:
 
 M [(1 - am) a1 + am a0] + (1 - af) r1 + af r0 = 0 with r = f + C v + K q - F,

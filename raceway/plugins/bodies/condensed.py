@@ -263,8 +263,6 @@ class Condensed:
     def balls_meet(self, problem: Problem) -> bool:
         """Whether one ball's load reaches the next one through a ring.
 
-        Notes
-        -----
         On a rigid seat at depth t below the groove the field of a load falls off within t: 2e-4 of a contact's compliance is left
         at 3.7 t (B7206C).
         """

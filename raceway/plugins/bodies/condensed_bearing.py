@@ -47,8 +47,6 @@ def inertia_table(model: Model, equilibrium: Equilibrium) -> Tables:
     Each with the error (w / w_1)^2 that leaving out its inertia makes in what it contributes; None in a static scene, and for
     a ball whose inertia the motion has.
 
-    Notes
-    -----
     A ball pressed by Q between two grooves is held along them by k = Q_i / L_i + Q_o / L_o, where L is the distance from the
     ball's centre to the groove's.
     """

@@ -30,10 +30,7 @@ _ENOUGH = 5.0
 def build(problem: Problem, plan: ScenePlan) -> ElasticBodies:
     """The bearing of a scene with elastic bodies.
 
-    Raises
-    ------
-    MeshError
-        Bodies that cannot be meshed, or that overlap by more than an element before anything is loaded.
+    MeshError: Bodies that cannot be meshed, or that overlap by more than an element before anything is loaded.
     """
     basis, resultants = make_basis(problem, meshed=True), problem.contact.discretisation == "resultant"
     as_rigid = problem if resultants else with_hertz(problem)

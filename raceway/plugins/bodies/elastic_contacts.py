@@ -76,8 +76,6 @@ class ElasticBodies(BuiltBearing):
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
         """Keys of ``equilibrium.balls[]`` in result.json beyond those of all bodies, each (Z,).
 
-        Notes
-        -----
         The approach of a contact, that of the ball's centre to the groove where the rigid frame of its ring has it, is
         Hertz's at its load, and the rest: finite bodies, the mesh, and what a penalty lets overlap.
         """

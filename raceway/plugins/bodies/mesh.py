@@ -56,10 +56,7 @@ def _check_size(mesher: Mesher, bearing: Bearing, meshes: Mapping[str, HexMesh])
 def check_sets(mesher: Mesher, meshes: Mapping[str, HexMesh], supports: Supports) -> None:
     """Refuse elastic bodies that are missing, and meshes without the sets on which contacts and seats act.
 
-    Raises
-    ------
-    MeshError
-        The key that names the body's file, the set, and the remedy.
+    MeshError: The key that names the body's file, the set, and the remedy.
     """
     for body, sets in _SETS.items():
         path = getattr(mesher, body, None)
@@ -133,10 +130,7 @@ def locking(problem: Problem, one_point: bool = False) -> list[str]:
 def mesher_of(problem: Problem) -> Mesher:
     """The scene's mesher; an option ``ball_load`` that is left out becomes the static load of a ball under the axial load.
 
-    Raises
-    ------
-    SceneError
-        A scene without [mesh].
+    SceneError: A scene without [mesh].
     """
     if problem.mesh is None:
         raise SceneError.at("mesh", None, 'is required here: for instance [mesh] with kind = "structured"')
@@ -149,12 +143,8 @@ def mesher_of(problem: Problem) -> Mesher:
 def mesh_bodies(problem: Problem) -> dict[str, HexMesh]:
     """Meshes by the name of the body, as ``HexMesh``, without inverted or degenerate cells.
 
-    Raises
-    ------
-    MeshError
-        What the mesher refuses, a bad cell, or a body in other units than metres.
-    PluginError
-        A mesher that returns something else, or raises anything but a ``RacewayError``.
+    MeshError: What the mesher refuses, a bad cell, or a body in other units than metres.
+    PluginError: A mesher that returns something else, or raises anything but a ``RacewayError``.
     """
     mesher = mesher_of(problem)
     with blamed(f"mesher '{mesher.name}'", "mesh()"):
@@ -206,12 +196,8 @@ def predicted_mesh(problem: Problem) -> Tables | None:
         ``bodies[{name, cells, bytes}]`` (what each mesh keeps), ``cells`` of all, ``bytes`` at the peak while they are
         made; None without [mesh], and where the mesher cannot predict it before it reads or meshes.
 
-    Raises
-    ------
-    MeshError
-        Sizes that cannot work.
-    PluginError
-        A mesher whose prediction is none, or that raises anything but a ``RacewayError``.
+    MeshError: Sizes that cannot work.
+    PluginError: A mesher whose prediction is none, or that raises anything but a ``RacewayError``.
     """
     prediction = None if problem.mesh is None else _prediction(problem)
     if prediction is None:

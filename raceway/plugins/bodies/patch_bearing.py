@@ -225,10 +225,7 @@ _ROOM = 1.2
 def build(problem: Problem, plan: ScenePlan, per_semi_axis: int) -> _NodalBearing:
     """The bearing of a scene with condensed bodies and pressures at so many surface points along each semi-axis.
 
-    Raises
-    ------
-    MeshError
-        Rings without dimensions, sections that cannot be meshed.
+    MeshError: Rings without dimensions, sections that cannot be meshed.
     """
     basis = make_basis(problem)
     as_rigid = with_hertz(problem)

@@ -107,8 +107,6 @@ def line_contact(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Hertz's line contact: p0 = 2 Q / (pi b L) [Pa], semi-axes L / 2 and b = sqrt(4 Q R / (pi L E*)) [m].
 
-    Notes
-    -----
     Mean over the length: the profile raises the pressure in the middle.
 
     References

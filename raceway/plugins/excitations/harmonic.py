@@ -176,8 +176,6 @@ def run_up(t, params, out):
 
     params: unbalance on this bearing m e [kg m], first and last speed [rad/s], duration [s], lag [rad], sense.
 
-    Notes
-    -----
     The centre of mass at e (cos phi, sin phi) accelerates by -e w^2 along the radius and by e w' across it; the force on
     the ring is the reaction.  Beyond the duration the speed stays.
     """

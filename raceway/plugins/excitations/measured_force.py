@@ -28,8 +28,6 @@ def samples(t, params, out):
 
     params: interval [s], 1 if the samples repeat, then rows of F_x, F_y, F_z, M_y, M_z one after the other.
 
-    Notes
-    -----
     Before the first and after the last sample of a record that does not repeat, the end values hold.
     """
     n = (params.size - 2) // 5
@@ -60,8 +58,6 @@ def samples(t, params, out):
 class Measured:
     """Columns t [s] and any of Fx, Fy, Fz [N], My, Mz [N m], resampled to equal intervals; identify at ``speed_rpm``.
 
-    Notes
-    -----
     A record that repeats must hold whole periods: its last sample is one interval before its first one again.
     """
 

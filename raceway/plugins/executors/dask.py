@@ -33,8 +33,6 @@ _TEXT = optional(lambda _instance, _attribute, _value: None)
 class Dask:
     """Workers of dask.distributed: of a scheduler that runs already, else of a cluster on this machine.
 
-    Notes
-    -----
     Workers may come and go.  Each is asked first whether it has the same program and plug-ins; one that has not gets no
     points, and a warning names it.  Dask itself gives the batch of a dead worker to another one.
     """

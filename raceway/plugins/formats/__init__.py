@@ -64,10 +64,7 @@ def labelled(result: RunResult) -> Any:
         ``force`` and ``contact_force`` of the turns that are used by ``time``, where motion was recorded; the identified numbers, and
         ends of the intervals of K and kyy
 
-    Raises
-    ------
-    RacewayError
-        xarray is missing.
+    RacewayError: xarray is missing.
     """
     import numpy as np
 

@@ -157,8 +157,6 @@ def _speeds(_instance: object, _attribute: object, value: tuple[float, ...]) -> 
 class ImpedanceFit:
     """K and C of Z(w) = K - m w^2 + j w C by least squares over whirl speeds, with known m.
 
-    Notes
-    -----
     K changes with the spin speed of the balls and with the amplitude: a fitted m would take what K loses over the speeds.  So
     spin and force are held, as a shaker on a turning rotor does, and m is that of ring and rotor, as in every K of this program.
     Free tilts lean with a shape that changes with w, and gyroscopic moments are linear in w: Z is of another form then, and the

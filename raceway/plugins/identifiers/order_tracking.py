@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 class OrderTracking:
     """Least squares of the synchronous (1x) component in windows of some turns of the excitation's phase: a series over speed with errors.
 
-    Notes
-    -----
     Samples have Hann's weights.  Within a window the complex amplitude A may change linearly in time; the line is taken at its
     middle.  While speed and amplitude change, M q'' of q = Re A e^{j phase} is M (-w^2 A + 2 j w A' + j w' A), and of a known
     damping C that is C (j w A + A'): what is beyond the steady terms would appear as damping m (w' + 2 w A' / A) / w and is

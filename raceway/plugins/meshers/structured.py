@@ -49,10 +49,7 @@ class Structured:
     def mesh(self, bearing: Bearing) -> dict[str, HexMesh]:
         """inner_ring, outer_ring and every ball of each row, in the bearing's coordinates.
 
-        Raises
-        ------
-        MeshError
-            Dimensions that are missing or do not fit, elements larger than the wall or too many for the memory.
+        MeshError: Dimensions that are missing or do not fit, elements larger than the wall or too many for the memory.
         """
         self.predict(bearing)  # refuses what cannot work
         bodies: dict[str, HexMesh] = {}
@@ -69,10 +66,7 @@ class Structured:
     def predict(self, bearing: Bearing) -> Prediction:
         """Number of cells of each body and bytes, exactly as ``mesh`` would make them; nothing is meshed.
 
-        Raises
-        ------
-        MeshError
-            As ``mesh``.
+        MeshError: As ``mesh``.
         """
         if not bearing.equal_rows:
             raise MeshError("bearing.row holds rows of different bearings: mesh each by itself, as a scene of one row")

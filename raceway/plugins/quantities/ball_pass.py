@@ -1,7 +1,5 @@
 """Ball-pass frequencies of each row at the loaded contact angle.
 
-Notes
------
 With g = D cos(a) / d_m at the loaded contact angle a, over the shaft's frequency: FTF = (1 - g) / 2 (cage), BPFO = Z (1 - g) / 2 and
 BPFI = Z (1 + g) / 2 (balls over a place of the outer and of the inner race), BSF = d_m (1 - g^2) / (2 D) (turns of a ball about its own
 axis).  Balls roll without slip and cos(a) is the mean over both races of all loaded balls of a row: at speed the races' angles differ.

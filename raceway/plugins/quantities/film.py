@@ -1,7 +1,5 @@
 """Film parameters of the thinnest oil film between balls and races, of any contact law in a scene that has an oil.
 
-Notes
------
 Film thicknesses are those of Hamrock and Dowson at the running speed and each loaded contact's load (``raceway.core.contact.film``), which
 the heat of the inlets thins.  The contact law 'film' lets them stand the surfaces off; of other laws the surfaces' places know no film.
 """

@@ -1,7 +1,5 @@
 """Friction torque and power loss of all rows and of each, by source, with a band.
 
-Notes
------
 The terms are those of ``raceway.core.rolling_friction``; seals and cage are given.  Each end of the band is the farther one of two: the terms'
 own bands, relative and independent of each other, torque +- sqrt(sum (band part)^2), and what bearings measured near this size and speed leave
 possible (``measured_factors``).  Palmgren's rule of thumb stands beside it (``palmgren_torque``).
@@ -246,8 +244,6 @@ def ball_contacts(points: SolvedPoints) -> BallContacts:
 def palmgren_torque(points: SolvedPoints) -> dict[str, float]:
     """Palmgren's rule of thumb at one point [N m], by supply of oil.
 
-    Notes
-    -----
     M0 = 1e-7 f0 (nu n)^(2/3) d_m^3, 160e-7 f0 d_m^3 where nu n < 2000; M1 = f1 F d_m; in N mm, mm2/s, r/min and mm.  F is the larger of
     the radial load and 0.9 F_a cot(angle) - 0.1 F_r at the nominal angle.  Of rows the sum; a radial load is shared.
 

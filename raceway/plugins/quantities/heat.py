@@ -1,7 +1,5 @@
 """Temperatures of a bearing at solved points, by its thermal network.
 
-Notes
------
 A scene with [heat] is solved where the temperatures that it is computed with are those that follow from it (``raceway.pipeline.warm``).
 """
 

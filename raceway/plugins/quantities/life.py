@@ -1,7 +1,5 @@
 """Reference life of a bearing and of its rows, modified life, equivalent load and static safety.
 
-Notes
------
 Lives follow from the loads of all contacts, which know clearance, preload, tilts and speed: the constant ones, or, where a force
 repeats itself, those over a turn of the motion, in which a load that turns with the inner ring meets its points otherwise than those of
 the outer ring (``raceway.core.life``).  Whatever fails first ends the life: rings and rows add up.

@@ -20,8 +20,6 @@ _SUFFICIENT = 0.06
 class Sliding:
     """Whether balls roll: the traction coefficient that they need, and how hard a row is pressed together.
 
-    Notes
-    -----
     Across the running direction the gyroscopic moment M takes 2 M / D of the traction mu (Q_i + Q_o) of both contacts, M under control of
     the outer race as in motions; along it the inner contacts of a row drive what rolling, drag and slip at the outer race cost, where a
     scene has an oil.  Spin takes none: its slip turns about the contact's centre.  Rows with an unloaded ball are not judged.

@@ -1,7 +1,5 @@
 """The thermal network of a bearing at solved points.
 
-Notes
------
 The heat of a contact goes to both of its bodies in halves, drag of the balls to the oil, that of seals to both rings in halves.  Conductances
 that are 'auto' in the table [heat] follow from ``raceway.core.thermal``: contacts at the mean load and angle of the loaded balls of each
 row, with the piezoviscous-elastic film of Hamrock and Dowson between them; convection with the viscosity of the contacts' inlets; joints and

@@ -91,8 +91,6 @@ def _mass_at(position: float, speed: float = 0.0, acceleration: float = 0.0) -> 
 def impact(rows: Rows, bench: Bench, integrator: str, speed: float, steps: int) -> None:
     """A mass meets a contact: its greatest force and the speed that it leaves with.
 
-    Notes
-    -----
     What is expected follows from the energy that the law stores; of a law that loses some, from the differential equation with
     the law's own force, solved by scipy.
     """
@@ -169,8 +167,6 @@ def settled_from_afar(rows: Rows, bench: Bench, guesses: list[float]) -> None:
 def chatter(rows: Rows, bench: Bench, integrator: str, options: Tables, step: float, chatters: bool) -> None:
     """A mass on a damper falls on a contact that is far stiffer than the steps can follow; in truth it comes to rest.
 
-    Notes
-    -----
     Newmark's average acceleration keeps all of what a step cannot follow: the contact opens and closes every other step for
     ever, from some heights of the fall.  Whether it does so at all depends on the law, and is expected of the same steps solved
     by bisection with the law's own force (``_trapezoids``).  Generalised-alpha with a small radius at infinity forgets it in

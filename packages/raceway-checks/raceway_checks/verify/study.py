@@ -1,7 +1,5 @@
 """``raceway verify``: reference cases, in the units of their sources, against this program's own numbers.
 
-Notes
------
 Two equal spheres that meet count as one of half the mass at the relative speed.  With the approach d, m d'' + k d^1.5 = 0 gives
 d_max = (5 m v^2 / (4 k))^(2/5), F_max = k d_max^1.5 and t_c = (4/5) sqrt(pi) Gamma(2/5) / Gamma(9/10) d_max / v.
 

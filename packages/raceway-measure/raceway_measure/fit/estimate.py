@@ -1,7 +1,5 @@
 """Least squares with exact derivatives: free and uncertain numbers, estimate, covariance, and combinations that the data do not determine.
 
-Notes
------
 Numbers are searched for in multiples of their sizes, J is the derivative of the weighted residuals by these.  A right singular vector
 v of J with singular value s is a combination of changes that moves the data by s; along it the standard error of the estimate is that
 of the noise over s.  Where 95 % of that is more than the numbers themselves, or s is rounding, the data do not determine the combination.
@@ -71,10 +69,7 @@ class Free:
 def free_keys(scene: Scene, paths: Iterable[str]) -> list[Free]:
     """Free keys of a scene, each with its range.
 
-    Raises
-    ------
-    SceneError
-        No key, one twice, or one that is no continuous key of the scene.
+    SceneError: No key, one twice, or one that is no continuous key of the scene.
     """
     paths = [path.strip() for path in paths if path.strip()]
     if not paths:
@@ -183,10 +178,7 @@ class Residuals(Protocol):
     def residuals(self, values: np.ndarray) -> np.ndarray:
         """At numbers (p,).
 
-        Raises
-        ------
-        ConvergenceError, SceneError
-            The model has no answer there.
+        ConvergenceError, SceneError: The model has no answer there.
         """
         ...
 

@@ -1,7 +1,5 @@
 """K, C and mass of a linear model from a record of force and displacement, in one direction or two.
 
-Notes
------
 F(w) = (K + j w C - w^2 m) X(w) + T(w) at the frequencies of a discrete Fourier transform of the full record.  T(w) is a real polynomial
 in j w: the transient of the state at the beginning and the end of the record, which need not begin at rest nor hold full periods.
 A measured velocity or acceleration stands for X times a power of j w; their values at both ends add as many negative powers to T.

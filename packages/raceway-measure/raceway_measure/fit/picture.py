@@ -85,10 +85,7 @@ def draw_fit(content: ReadTables) -> Figure:
 def figures(rotation: Rotation, component: Synchronous, state: State) -> dict[str, Figure]:
     """Figures "signals", "spectrum" and "orbits" of a record.
 
-    Raises
-    ------
-    RacewayError
-        matplotlib is missing.
+    RacewayError: matplotlib is missing.
     """
     drawings = {"signals": new_figure(8.0, 4.4), "spectrum": new_figure(8.0, 3.4), "orbits": new_figure(5.6, 5.4)}
     first, means = drawings["signals"].subplots(

@@ -73,10 +73,7 @@ class FrequencyResponse:
     def to_uff(self, path: str | Path) -> Path:
         """Write it as dataset 58, double precision and binary: the same bits are read again.
 
-        Raises
-        ------
-        RacewayError
-            pyuff is not installed, or a file that cannot be written.
+        RacewayError: pyuff is not installed, or a file that cannot be written.
         """
         path = Path(path)
         write_whole(b"", path)

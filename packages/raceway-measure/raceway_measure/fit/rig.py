@@ -1,7 +1,5 @@
 """A bearing in its rig from the 1x response at the sensor: by inversion, and by a fit of free numbers of the scene.
 
-Notes
------
 The shaft's answers are linear in unbalance force U, bearing force F and bearing moment M.  The response at the sensor is one complex
 equation for F and M; the other says that the bearing, under F and M, tilts as the shaft does.  By inversion the tilt is that of the
 scene's bearing (it cannot be seen beside a bearing); the deflection, and so the radial stiffness, is that of the signal.
@@ -44,10 +42,7 @@ def refuse_no_load(scene: Scene) -> None:
 def invert(shaft: Rotor, bearing: Bearing, sensor: complex) -> State:
     """State of the bearing from the deflection at the sensor [m], its phase against the unbalance.
 
-    Raises
-    ------
-    ConvergenceError
-        No moment found at which bearing and shaft tilt alike.
+    ConvergenceError: No moment found at which bearing and shaft tilt alike.
     """
 
     def force(moment: complex) -> complex:

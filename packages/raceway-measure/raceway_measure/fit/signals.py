@@ -241,10 +241,7 @@ class Recording:
 def recording_of(signals: Signals) -> Recording:
     """The record that a bearing in a rig is identified from.
 
-    Raises
-    ------
-    SceneError
-        Signals from which K and C cannot be identified: what they are, why, and the remedy.
+    SceneError: Signals from which K and C cannot be identified: what they are, why, and the remedy.
     """
     columns, fault = signals.columns, ""
     if any(name.startswith("force") for name in columns):
@@ -291,10 +288,7 @@ def _clipping(name: str, signal: np.ndarray) -> str:
 def write_recording(recording: Recording, path: Path) -> Path:
     """Write a record as CSV: seconds, micrometres, the probe's voltage, r/min.
 
-    Raises
-    ------
-    RacewayError
-        A folder that cannot be written.
+    RacewayError: A folder that cannot be written.
     """
     columns = {
         "time_s": (recording.time, "%.9g"),
@@ -312,15 +306,10 @@ def write_recording(recording: Recording, path: Path) -> Path:
 def read_tdms(path: Path) -> dict[str, np.ndarray]:
     """Header with unit -> numbers (n,), or text, times first, of the file's one group of channels.
 
-    Notes
-    -----
     The clock is that of NI's waveform properties, wf_increment [s] and wf_start_offset [s]; channels whose clocks or lengths differ
     are refused.  A file without the properties has a channel of times.
 
-    Raises
-    ------
-    ValueError
-        The channel's fault and remedy.
+    ValueError: The channel's fault and remedy.
     """
     from nptdms import TdmsFile
 

@@ -1,7 +1,5 @@
 """The synchronous (1x) component of a record at its mean speed, and the run-out of the measured track in it.
 
-Notes
------
 In each block of turns mean, drift, the forward and backward harmonics 1x to 3x and a linear change of the forward 1x component are
 fitted to r = y + j z over the shaft's angle, which need not be sampled evenly.  A straight line (or parabola, where the speed changes
 by more than 2 %) through the blocks' components over their speeds gives that at the mean speed, and its residuals the standard
@@ -65,10 +63,7 @@ class Synchronous:
 def synchronous(rotation: Rotation) -> Synchronous:
     """The 1x component of a record.
 
-    Raises
-    ------
-    RacewayError
-        The sensor sees no motion once per turn.
+    RacewayError: The sensor sees no motion once per turn.
     """
     forward, backward, speeds, residual = _blocks(rotation)
     if max(np.abs(forward).max(), np.abs(backward).max()) <= _ROUNDING * np.abs(rotation.recording.plane).max():
@@ -166,10 +161,7 @@ class RunOut:
 def slow_roll(recording: Recording) -> Synchronous:
     """The 1x component of a slow roll.
 
-    Raises
-    ------
-    RacewayError
-        A record that cannot be used; one without pulses has no phase.
+    RacewayError: A record that cannot be used; one without pulses has no phase.
     """
     try:
         rotation = rotation_of(recording)
@@ -185,10 +177,7 @@ def stated_run_out(
 ) -> RunOut | Synchronous | None:
     """The 1x component of a slow roll's signals, or the run-out with an amplitude [m] and the angle [deg] of its high spot.
 
-    Raises
-    ------
-    SceneError
-        Signals that cannot be used, or both.
+    SceneError: Signals that cannot be used, or both.
     """
     if vector is not None:
         if slow is not None:

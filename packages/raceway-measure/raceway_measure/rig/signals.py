@@ -2,8 +2,6 @@
 
 Signals without noise, drift and run-out, read by order tracking and inverted with the beam that made them, are exact.
 
-Notes
------
 The article's section 3.3, as printed: detrend, denoise, whole-turn Fourier transform, shaft correction, impedance:
 F_tr = m e w^2 / 2; Z = F_tr / delta, delta = delta_c - delta_s, delta_s = delta_st / (1 - r^2),
 delta_st = m e w^2 a (3 L^2 - 16 a^2) / (192 E I), with the distance a of the sensor from the bearing and the span L.  What it

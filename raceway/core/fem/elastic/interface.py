@@ -362,8 +362,6 @@ class Interface:
     def of_rings(self, nodes: np.ndarray) -> _RingFlexibility:
         """Of some of the rings' nodes (k,), ``nodes`` (m,) among them.
 
-        Notes
-        -----
         Contacts move little from iteration to iteration: what was asked for before stays, up to twice of what is asked.
         """
         reach = np.union1d(self._flexibility.nodes, nodes) if self._flexibility else nodes

@@ -248,8 +248,6 @@ _FOLLOW_TOLERANCE = 1e-2
 class LinearSolver:
     """(c_k K + c_c C + c_m M)^-1 with the tangents of the last contact forces.
 
-    Notes
-    -----
     A frame that moves drags the system along: with Phi = the free nodes' displacement under a unit motion of each
     frame, solved for whenever the multigrid is made, y = (q, Phi q + w) splits the matrix into two blocks that hardly know of
     each other: Phi^T A Phi, a few numbers, and multigrid for w (bodies, contacts, masses).

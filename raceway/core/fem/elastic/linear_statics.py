@@ -307,10 +307,7 @@ class StaticSolver:
     def solve(self, load: np.ndarray, values: np.ndarray | float = 0.0, tolerance: float = 1e-8) -> _Solution:
         """Displacements under nodal forces (n, 3), where held as prescribed (n, 3).
 
-        Raises
-        ------
-        ConvergenceError
-            Iterations that end too early.
+        ConvergenceError: Iterations that end too early.
         """
         displacement = np.array(np.broadcast_to(values, load.shape), dtype=float).reshape(-1)
         displacement[self._free] = 0.0

@@ -90,10 +90,7 @@ class StaticSolution:
 def solve_equilibrium(system: StaticSystem, guess: np.ndarray, tolerance: float = TOLERANCE) -> StaticSolution:
     """The state at which contact forces and elasticity balance ``system.load``, near a guess (size,).
 
-    Raises
-    ------
-    ConvergenceError
-        Nothing found; ``state`` holds the last good state ``y``, the part of the load that it carries, and ``residuals``.
+    ConvergenceError: Nothing found; ``state`` holds the last good state ``y``, the part of the load that it carries, and ``residuals``.
     """
     load = system.load.copy()
     history: list[float] = []

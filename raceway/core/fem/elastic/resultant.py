@@ -188,8 +188,6 @@ class ResultantContact(Contact):
     def stable_step(self, mass: np.ndarray) -> float:
         """See ``Contact``.
 
-        Notes
-        -----
         The eigenvalues of M^-1 B^T D B that are not zero are those of D B M^-1 B^T, of three rows a contact.
         """
         np.maximum(self.stiffest, self._sizes(), out=self.stiffest)

@@ -52,14 +52,9 @@ class ElasticRing(SteppedRing):
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under ``load``; the first guess is the equilibrium of rigid bodies, or the one found before.
 
-        Notes
-        -----
         Friction is left out: the balls have rolled into place.
 
-        Raises
-        ------
-        ConvergenceError
-            With the last good state ``y`` and the residuals.
+        ConvergenceError: With the last good state ``y`` and the residuals.
         """
         if self._y is None and self.held_by is not None:
             guess = self._alone(q, self.held_by)
@@ -75,10 +70,7 @@ class ElasticRing(SteppedRing):
     def equilibrium(self) -> np.ndarray:
         """(size,) unknowns at the last equilibrium under ``load``.
 
-        Raises
-        ------
-        ConvergenceError
-            None was looked for.
+        ConvergenceError: None was looked for.
         """
         if self._y is None:
             raise ConvergenceError("elastic bodies have forces at their equilibria only: solve for them first")
@@ -102,10 +94,7 @@ class ElasticRing(SteppedRing):
     ) -> Evaluation:
         """The last equilibrium; its tangent is that of the ring with all nodes in balance.
 
-        Raises
-        ------
-        ConvergenceError
-            A place of the ring that is no equilibrium that was found.
+        ConvergenceError: A place of the ring that is no equilibrium that was found.
         """
         y = self.equilibrium
         if np.abs(y[:5] - q).max() > 0.0:
@@ -197,8 +186,6 @@ _ANGLE = 0.25
 def from_orbit(ring: ElasticRing, orbit: Orbit) -> Motion:
     """Near the steady orbit of the same ring with rigid bodies, at the first of its times.
 
-    Notes
-    -----
     The contacts carry the excitation less the inertia of ring and rotor.  Equilibria under these forces a little before and
     after give velocity and acceleration: of a displacement at the excitation's frequency exactly.  Elastic bodies move
     further than rigid ones; the inertia is scaled by how much further, found by a first equilibrium.

@@ -466,8 +466,6 @@ class Closed:
     def respond(self, loads: np.ndarray) -> np.ndarray:
         """Displacements (copies, 3 k) of the contacts' nodes under forces (copies, 3 k) there.
 
-        Notes
-        -----
         By reciprocity, row j of block -c is what a force j does c sectors on.
         """
         turns = self.part.copies.turns

@@ -45,10 +45,7 @@ def batches(count: int, size: int = BATCH) -> Iterator[slice]:
 def nodal_volumes(points: Floats, cells: NDArray[np.uint32]) -> Floats:
     """(m, 8) Integral of each shape function over each element [m3]; the 2 x 2 x 2 rule is exact.
 
-    Raises
-    ------
-    MeshError
-        An element whose Jacobian is not positive at a Gauss point, or that holds a coordinate that is not finite.
+    MeshError: An element whose Jacobian is not positive at a Gauss point, or that holds a coordinate that is not finite.
     """
     at, weights = gauss(2)
     slopes, values = shape_slopes(at), shape_values(at)
@@ -79,8 +76,6 @@ def divide(cells: NDArray[np.uint32]) -> NDArray[np.int64]:
     -------
     ranges : (at most RANGES, 5) first element, last element + 1, first node, last node + 1, first node's place among the parts
 
-    Notes
-    -----
     The elements are cut into contiguous ranges, always the same for one mesh.  Each range has its own forces for the nodes
     between its lowest and its highest; these parts are added in the order of the ranges, whoever computed them.  On a mesh
     whose numbers follow its shape the parts hardly overlap.

@@ -143,8 +143,6 @@ _SIX, _SEVEN, _EIGHT = (types.UniTuple(float64, count) for count in (6, 7, 8))
 def modes(a):
     """Modes 1 to 7 of eight nodal values in VTK's order: butterflies along xi, then eta, then zeta.
 
-    Notes
-    -----
     A trilinear field is the sum over k of a_k h_k, with h = (1, xi, eta, zeta, eta zeta, xi zeta, xi eta, xi eta zeta)
     numbered 0 to 7. The values of h_k at the nodes are the columns of a Hadamard matrix, so nodal values become modes, and
     back, by additions alone. Here a mode is the plain sum A_k = sum_I h_k(I) a_I = 8 a_k; mode 0, the mean, is never needed.

@@ -93,10 +93,7 @@ class HexMesh:
     def nodes(self, name: str) -> np.ndarray:
         """(k,) nodes of a node set.
 
-        Raises
-        ------
-        MeshError
-            A set that is missing, with the nearest name, or empty.
+        MeshError: A set that is missing, with the nearest name, or empty.
         """
         return _member(self.node_sets, name, "node")
 
@@ -139,8 +136,6 @@ class HexMesh:
     def renumbered(self) -> "HexMesh":
         """The same mesh with neighbours near each other in memory.
 
-        Notes
-        -----
         Nodes by reverse Cuthill-McKee on the graph of the cells' edges, unless the given numbers are nearer already, as
         those of swept meshes are; cells by their smallest node.
         """
@@ -175,10 +170,7 @@ class HexMesh:
 def merged(meshes: Mapping[str, HexMesh]) -> HexMesh:
     """Several meshes as one, points not shared; set ``s`` of body ``b`` is called ``b.s``, all cells of ``b`` also ``b``.
 
-    Raises
-    ------
-    MeshError
-        No mesh at all.
+    MeshError: No mesh at all.
     """
     if not meshes:
         raise MeshError("there is no mesh to merge")
@@ -256,8 +248,6 @@ def placed(points: np.ndarray, bearing: Any, psi: float, side: float = 1.0, axia
 def growing(length: float, first: float, coarse: float, growth: float) -> np.ndarray:
     """(n + 1,) points from 0 to ``length``: distances start at ``first`` or less, grow by ``growth``, end at ``coarse``.
 
-    Notes
-    -----
     The row of distances first * growth^i, cut at ``coarse``, is continued until it is long enough and then shrunk by one
     factor to fit, so that no distance exceeds what was asked.
     """

@@ -60,10 +60,7 @@ def cell_quality(mesh: HexMesh) -> _Quality:
 def refuse_bad_cells(mesh: HexMesh, body: str = "") -> _Quality:
     """The quality, unless a cell is inverted or degenerate.
 
-    Raises
-    ------
-    MeshError
-        How many cells, the first of them, its centre and its nodes.
+    MeshError: How many cells, the first of them, its centre and its nodes.
     """
     measures = cell_quality(mesh)
     bad = np.flatnonzero(measures.scaled_jacobian < DEGENERATE)
@@ -85,10 +82,7 @@ def refuse_bad_cells(mesh: HexMesh, body: str = "") -> _Quality:
 def refuse_doubled(mesh: HexMesh, body: str) -> None:
     """Refuse what cannot be one body: cells that are duplicated, points that coincide and are not one, parts that do not hang together.
 
-    Raises
-    ------
-    MeshError
-        How many, and where the first is.
+    MeshError: How many, and where the first is.
     """
     _, first, counts = np.unique(np.sort(mesh.cells, axis=1), axis=0, return_index=True, return_counts=True)
     if (counts > 1).any():
@@ -179,10 +173,7 @@ def body_bytes(cells: int) -> int:
 def refuse_memory(prediction: Prediction, key: str, value: float | str, remedy: str) -> None:
     """Refuse what will not fit.
 
-    Raises
-    ------
-    MeshError
-        With the predicted number of elements and bytes.
+    MeshError: With the predicted number of elements and bytes.
     """
     if prediction.memory_bytes > MEMORY_LIMIT:
         raise MeshError.at(
@@ -196,10 +187,7 @@ def refuse_memory(prediction: Prediction, key: str, value: float | str, remedy: 
 def refuse_coarse(size: float, wall: float, where: str) -> None:
     """Refuse elements that are larger than what they shall fill.
 
-    Raises
-    ------
-    MeshError
-        With both numbers.
+    MeshError: With both numbers.
     """
     if size > wall:
         raise MeshError.at(

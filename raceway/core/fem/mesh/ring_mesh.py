@@ -241,10 +241,7 @@ def _facets(
 def ring_shape(bearing: Any, inner: bool) -> RingShape:
     """Profile of a ring of a row with side +1, from the dimensions of the scene's [bearing] table.
 
-    Raises
-    ------
-    MeshError
-        Dimensions that are missing, or that do not fit together.
+    MeshError: Dimensions that are missing, or that do not fit together.
     """
     key = "inner_profile" if inner else "outer_profile"
     if getattr(bearing, key, None) is not None:

@@ -80,8 +80,6 @@ class RingSection:
     def growth(self, young: columns.Number, poisson: columns.Number) -> columns.Number:
         """Radial growth of the raceway at the contact when a free ring turns [m], for 1 kg/m3 and 1 rad/s.
 
-        Notes
-        -----
         Ritz' method on the section: u_r and u_x are polynomials in x and r up to degree 8 that minimise the elastic energy less
         the work of the centrifugal force.  The groove's shoulders bend with it: an annulus from bore to land grows by 5 % more.
         Energies are integrated over the radius at each x first, then along the axis.

@@ -1,7 +1,5 @@
 """All balls between both races: places and contact forces that are in equilibrium, and what the ring feels of them.
 
-Notes
------
 Contacts are numbered as in ``raceway.core.ring.kernels``: inner races first.  A contact sees the ball at
 
     D_inner = p - e,    D_outer = p,    each plus  W F,
@@ -52,8 +50,6 @@ class Gyroscopic:
     scale : J times the speeds of ring and cage [N m];  ratio : D / d_m;  shares : of inner and outer race, 2 in all
     diameter, groove : of the ball, and the inner groove's radius [m];  traction : largest coefficient of both contacts; 0: none
 
-    Notes
-    -----
     ``raceway.core.ring.kernels.rolling`` (``with_gyroscopic``) has the equations: T = share M / D at both contacts along the grooves, M a
     function of both contact angles; the inner race takes no more than its normal force, the outer one the rest, or both what
     ``traction_within`` leaves.
@@ -343,9 +339,7 @@ class Balls:
     ) -> tuple[np.ndarray, np.ndarray, LinearisedBalls]:
         """Equilibrium of the balls while the ring stands: places, forces and the state there.
 
-        Raises
-        ------
-        ConvergenceError
+        Raises ConvergenceError.
         """
         still = np.zeros(2 * self.count)
         now = self.linear(centre, position, force, rate, applied)

@@ -1,7 +1,5 @@
 """Coulomb friction at the surface points of one contact: traction along the groove, stick and slip point by point.
 
-Notes
------
 All points share one rigid displacement along the groove (``raceway.core.ring.kernels.rolling``: the way L a of the
 contact less the turn of the ring's section), as bodies do that are stiff away from their contact.  With C the
 compliance of ball and race along the groove and s the slip of every point,

@@ -1,7 +1,5 @@
 """Exact gap of points of a sphere to the torus of a groove, with its derivatives by the place of the sphere.
 
-Notes
------
 With D = (axial, radial) the place of the ball's centre seen from the groove's centre in the ball's meridian plane, a
 point at angle phi and latitude l lies at
 

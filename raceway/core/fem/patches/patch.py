@@ -1,7 +1,5 @@
 """Grids of surface points on which a ball meets a race, and the compliances of both bodies on them.
 
-Notes
------
 Rows run along the groove, columns along the rolling direction.  Ball and race have the same spacing of points, so that
 the angles obey d(phi) R_ball = d(alpha) R_groove: the ball's mesh is turned until its row ``anchor`` lies on the race's
 row of that number, and the race's mesh, being axisymmetric, is phased to the azimuth of the ball.  Nothing is
@@ -205,10 +203,7 @@ class RingBody:
 def make_patch(ring: RingBody, ball: _Ball, spacing: Spacing, balls: int) -> Patch:
     """The patch of a ring for a ball, ``balls`` in a row; compliances along the groove where the ball has them.
 
-    Raises
-    ------
-    MeshError
-        A section that cannot be meshed, a window beyond the groove.
+    MeshError: A section that cannot be meshed, a window beyond the groove.
     """
     shape, sense = ring.shape, ring.shape.sign
     middle = 0.5 * (ring.window[0] + ring.window[1])

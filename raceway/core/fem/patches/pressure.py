@@ -335,10 +335,7 @@ class Contact:
 
         Friction acts where ``slipping`` is given.
 
-        Raises
-        ------
-        BeyondPatch
-            Contact at the end of the patch, short of the groove's edge.
+        BeyondPatch: Contact at the end of the patch, short of the groove's edge.
         """
         patch = self.patch
         axial, radial = float(position[0]), float(position[1])
@@ -375,8 +372,6 @@ class Contact:
     def mean_stiffness(self, position: np.ndarray) -> np.ndarray:
         """(2, 2) stiffness as ``press`` gives it, the mean over all places of the points under the ellipse [N/m].
 
-        Notes
-        -----
         A set of points changes in steps as the ellipse slides over it, and the stiffness of the set with it, by some percent.
         Turned about the groove's centre by one distance of rows the ellipse meets the same points again: the mean over
         that distance has no ripple.
@@ -499,10 +494,7 @@ class Reach:
     def grown(self, beyond: BeyondPatch, ellipse: Ellipse, radius: float, room: float) -> "Reach":
         """One that holds a contact which left this one, by a clear step at least.
 
-        Raises
-        ------
-        ConvergenceError
-            A contact as large as the ball: what runs away is not meshed.
+        ConvergenceError: A contact as large as the ball: what runs away is not meshed.
         """
         load = max(self.largest_load, beyond.load) * (room if beyond.across else 1.0)
         a, b = ellipse.semi_axes(load)

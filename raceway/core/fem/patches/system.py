@@ -206,10 +206,7 @@ class Pool:
     def widened(self, solve: Callable[[], T]) -> T:
         """The solution, on patches that are made wider while the contact leaves them.
 
-        Raises
-        ------
-        ConvergenceError
-            The contact leaves every patch, or nothing makes them wider.
+        ConvergenceError: The contact leaves every patch, or nothing makes them wider.
         """
         for _ in range(_WIDER):
             try:
@@ -253,8 +250,6 @@ class PatchSystem(SteppedRing):
     pool : patches and solvers, shared by all copies of this system
     ball_mass : of one ball [kg]; 0 leaves out its inertia in steps of time
 
-    Notes
-    -----
     ``memory`` (2 Z, 5 + points) is empty at first.  Columns: energy that friction has taken [J]; how many velocities of
     the balls are known; the last one and the one before, axial in the inner races' rows and radial in the outer ones'
     [m/s]; number of the patches; slips of the points beyond those of ``ball`` [m].  Balls have the acceleration (3 v1 - 4 v0 + v(-1)) / (2 dt).
@@ -348,10 +343,7 @@ class PatchSystem(SteppedRing):
 
         Friction is left out: the balls have rolled into place, and their slips are such that no point carries traction.
 
-        Raises
-        ------
-        ConvergenceError
-            With the last state.
+        ConvergenceError: With the last state.
         """
         if ball is not None and np.any(ball):
             try:

@@ -159,8 +159,6 @@ def offset_weights(divisions: int, harmonics: np.ndarray, offsets: np.ndarray) -
     -------
     even, odd : (offsets, s) of the cosine and of the sine part
 
-    Notes
-    -----
     A unit force at azimuth 0 is the sum of all harmonics with weight 1/N, N the number of sectors. The compliance C(n) is a
     smooth function of n, so it is solved at few n; (1 + n) C as a function of log(1 + n/8) is interpolated by a spline of
     degree 5. The spline is linear in its data, so that sum over n of C(n) cos(2 pi n k / N) is a sum over the solved
@@ -250,8 +248,6 @@ class Revolution:
     seat : "clamped" (also for a ring that is tied to a rigid frame, in that frame), "free", or the stiffness of an elastic bed
         [N/m3], the same in all three directions, on the cylinder of ``profile.seat``
 
-    Notes
-    -----
     Answers of a free body are those under loads balanced by uniform acceleration, measured from the rigid motion of its
     masses: the mass-weighted mean of displacement and rotation vanishes.
     """

@@ -1,7 +1,5 @@
 """Balls that act on each other through elastic rings: groove centres that move as vectors.
 
-Notes
------
 A ball presses on both grooves with the vector F (axial, radial) of its force on the ring, the outer one with the centrifugal
 force F_c beyond that.  The inner groove centre then moves against the outer one by
 
@@ -230,8 +228,6 @@ def _solve_transposed(scalars, work, row):
 def step(scalars, table, ball_gain, work):
     """Newton steps of d, and of the structural approaches with them; False where the bodies take off more than there is.
 
-    Notes
-    -----
     ``STEP`` holds the steps of the structural approaches at fixed d before.
     """
     z, balls = table.shape[0], int(scalars[ring.ROW])

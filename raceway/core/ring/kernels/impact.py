@@ -1,7 +1,5 @@
 """One mass against one contact: published impacts, and the simplest motion that a law or an integrator can be tried on.
 
-Notes
------
 The mass moves along x, the first coordinate of the ring; gap = clearance - x, and the contact pushes along -x.  With
 the contact far away and a linear stiffness the same system is a linear oscillator.  Laws work on two contacts at least
 (a bearing has two races), so the second one is there and stays open.

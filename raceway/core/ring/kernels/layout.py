@@ -1,7 +1,5 @@
 """The inner ring's rigid motion seen from each ball's meridian plane.
 
-Notes
------
 A row of balls has a side (+1: a positive axial motion of the inner ring seats it, -1: the mirror image), a lever X (its
 axial distance from the reference point) and a shift (axial approach built in by the preload of a set).  With
 u = tilt_y sin - tilt_z cos and rho = y cos + z sin, the vector from the outer to the inner groove centre is
@@ -44,8 +42,6 @@ COLUMNS = 13
 def place(t, q, v, constants, work, rows):
     """Of every ball: the azimuth's cos and sin, e (axial, radial) and its velocity, into three ``rows`` of ``work``.
 
-    Notes
-    -----
     A ball that orbits meets the ring at another place every moment: de/dt has a part of the cage speed.
     """
     scalars, table = constants
@@ -285,8 +281,6 @@ def first_place(k, ea, er, scalars, table):
 def normal_forces(contacts, scalars, work):
     """Rows CONTACT_FORCE, FORCE_BY_GAP and FORCE_BY_RATE of ``work`` from rows GAP and GAP_RATE.
 
-    Notes
-    -----
     A time constant tau makes a contact that answers as its spring does to g + tau dg/dt: for small motions that is a dashpot
     c = tau k beside the spring, with k the law's own stiffness at every gap. The force stays continuous, never pulls and
     never gives energy: as the law's force grows with the approach, its excess over the spring's has the sign of the
@@ -333,8 +327,6 @@ def are_condensed(scalars):
 def elastic_columns(scalars):
     """Columns of ``ball`` for the elasticity of the bodies, the last ones.
 
-    Notes
-    -----
     Columns 0 and 1 of a ball are positions; columns 2 and 3 are slips where there is friction; then come, of condensed
     bodies, two structural approaches and, where balls act on each other through the rings, two displacements of groove
     centres. All but slips have rates, slips are only committed.
@@ -371,8 +363,6 @@ def keep_slips(scalars, ball, history):
 def next_balls(scalars, dt, ball, before, history, trial):
     """First guess of the balls after a step, and the part of their rates that is known by then.
 
-    Notes
-    -----
     Rates follow the second-order backward difference (1.5 new - 2 now + 0.5 before) / dt.
     """
     end, inverse = slips_end(scalars, ball), 1.0 / dt
@@ -408,8 +398,6 @@ def seat_of(k, arm, table, work, direction):
 def add_ball(seat, force, stiffness, f, K):
     """Add one ball's force [N] and its derivatives by e to the ring's f (5,) and K (5, 5) or (0, 0).
 
-    Notes
-    -----
     e = J q with the rows J_a = side (1, 0, 0, R s, -R c) and J_r = (0, c, s, -X s, X c).
     """
     c, s, arm, side, lever = seat

@@ -1,7 +1,5 @@
 """Rigid rings and balls with centrifugal force: each ball centre finds its place in its meridian plane.
 
-Notes
------
 With n = (sin a, cos a) the direction of a contact at its angle a and t = (cos a, -sin a), the inner race gives a ball
 g_i = f_i n_i + h_i t_i and the outer one takes g_o = f_o n_o + h_o t_o; g_i - g_o + F_c = 0.  h = tau - T: T comes from the gyroscopic
 moment, tau from friction; both put the couple -r h on the section of the inner ring (of friction -r k_t u, which belongs to the stored

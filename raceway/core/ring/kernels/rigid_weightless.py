@@ -1,7 +1,5 @@
 """Rigid rings and balls without mass: the two races of each ball in series along the line of the groove centres.
 
-Notes
------
 With e = e_rest + J q the vector from the outer to the inner groove centre and s = |e|, the races share the approach
 s - B: f_inner(s - s_o - L_i) = f_outer(s_o - L_o), where s_o is the distance of ball and outer groove centre and L the
 offsets at first touch.  A ball that carries nothing sits midway between the races.

@@ -1,7 +1,5 @@
 """Rigid rings on cylindrical rollers: line contacts cut into laminae, with the rollers' profile.
 
-Notes
------
 With the radial approach of both races d = y cos + z sin + growth - clearance / 2 and u = tilt_y sin - tilt_z cos, a lamina at x along
 the roller, of profile P(x) = A ln[1 / (1 - (2 x / L)^2)], has the approaches d - p - x u / 2 - P at the inner race and p - x u / 2 - P
 at the outer one: the roller shares the misalignment evenly, as ISO/TS 16281 has it.  The roller lies where Q_o(p) = Q_i(d - p) + F_c.
@@ -112,8 +110,6 @@ def _add_tangent(k, row, gain, work, tangent):
 def rollers(t, q, v, balls, contacts, constants, response):
     """See ``raceway.core.ring.kernels``; ball[:, 1] is the outer approach p [m], radial; ball[:, 0] is not used.
 
-    Notes
-    -----
     The difference of the sides grows with p: Newton's method within a bracket finds the one place.
     """
     ball, ball_gain, ball_history = balls

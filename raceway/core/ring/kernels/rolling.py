@@ -83,8 +83,6 @@ class Moment(NamedTuple):
 def gyroscopic_moment(inner, outer, ratio, scale):
     """M at the directions n = (sin a, cos a) of the contacts; ratio r = D / d_m, scale = J * (inner ring's speed) * w_c.
 
-    Notes
-    -----
     Under control of the outer race the ball's axis lies at tan(beta) = sin(a_o) / (cos(a_o) + r); its spin is the ring's speed over
     r cos(beta) [(cos a_o + tan(beta) sin a_o) / (1 + r cos a_o) + (cos a_i + tan(beta) sin a_i) / (1 - r cos a_i)].  The
     first fraction is 1 / (cos a_o + r), so that M = scale sin(a_o) (1 - r cos a_i) / [r (1 + cos(a_i - a_o))]: no function
@@ -313,8 +311,6 @@ def regular(j):
 def shallower(inner, outer):
     """Approach of the shallower of the closed contacts [m], of both gaps.
 
-    Notes
-    -----
     It sets the scale of a ball's steps: under a light ring load the centrifugal force presses the ball far deeper into the outer race than
     the inner race is.
     """

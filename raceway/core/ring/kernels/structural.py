@@ -1,7 +1,5 @@
 """Elastic rings and balls around any of the rigid kernels: contacts and structural compliances in series.
 
-Notes
------
 The bodies add w = C(beta) Q to the gaps: Q (2 Z,) are the contact forces, C the structural compliances [m/N], what
 finite elements give beyond the half-spaces that the law knows already: the rings' and balls' own share c(beta), tabulated
 over the angle beta of the line of groove centres, with a continuous slope, constant beyond its ends, and a load on the

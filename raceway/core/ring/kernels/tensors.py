@@ -59,8 +59,6 @@ def weighted_sum(a, s, b, t):
 def times_adjugate(a, j):
     """A adj J.
 
-    Notes
-    -----
     Products leave out the determinant that quotients by a matrix share: A J^-1 = (A adj J) / det J.
     """
     return Tensor(a.aa * j.rr - a.ar * j.ra, a.ar * j.aa - a.aa * j.ar, a.ra * j.rr - a.rr * j.ra, a.rr * j.aa - a.ra * j.ar)
