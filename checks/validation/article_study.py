@@ -108,7 +108,7 @@ def _elastic_row(run: ElasticRun) -> Tables:
         "displacement": {"x": 1e-5 * (1.0 - 0.01 * off), "y": 2e-6 if run.radial else 1e-20},
         "kyy_n_per_m": 2.5e8 * (1.0 + 0.004 * off), "subsurface": [stress] if off else [],
         "identification": None if run.excitation is None else known,
-        "stability": {"energy_drift": 1e-4 if off else None, "status": "completed"}, "error": {"transient": 1e-3},
+        "stability": {"energy_drift": 1e-4 if off else None, "status": "completed"}, "error": {"transient": 1e-3, "total": 1e-3},
         "warnings": ["one node"] if off else [], "cost": _cost(run),
     }  # fmt: skip
 

@@ -31,6 +31,8 @@ SCENE = Path(__file__).resolve().parent / "data" / "article_elastic.toml"
 #: Condensed bodies come first: the others are compared with them, and they show in seconds whether the scene is what was meant.
 BODIES = ("condensed", "rigid", "elastic")
 _REFERENCE = BODIES[0]
+#: Of a scene that has it, elastic bodies are stepped by it, too.
+_EXPLICIT = "central_difference"
 #: One operating point: turns and steps of a turn.
 TURNS, STEPS = 2, 40
 #: Stiffness of a contact that sticks [N/m], for all bodies alike: it gives way by 0.8 um before it slides, a tenth of the orbit.  The
@@ -73,6 +75,8 @@ _DIFFERENCES = (
     "ball rolls or orbits in any of them: what sticks stays for as long as the motion repeats itself.",
     "The balance of energy is summed over all steps for elastic bodies; for rigid ones it is integrated from the samples, whose "
     "distance it then shows as well; for condensed bodies with contacts at surface points there is none.",
+    "Explicit steps, of elastic bodies where the scene has `integrator.kind = 'central_difference'`: without iterations, below the "
+    "stable step of elements and contacts, as many a turn as that needs; `integrator.least_step` adds mass, whose share of Z is stated.",
 )
 
 
@@ -82,12 +86,14 @@ class ElasticRun:
 
     bodies : of ``BODIES``;  axial, radial : load [N]
     excitation : (direction, amplitude law) of a motion; None at rest
+    explicit : a motion by the scene's explicit steps
     """
 
     bodies: str
     axial: float
     radial: float = 0.0
     excitation: tuple[str, str] | None = None
+    explicit: bool = False
 
     @property
     def phase(self) -> str:
@@ -102,7 +108,11 @@ class ElasticRun:
 
     @property
     def name(self) -> str:
-        return f"{self.phase} {self.case} with {self.bodies} bodies"
+        return f"{self.phase} {self.case} with {self.bodies} bodies" + (", explicit" if self.explicit else "")
+
+    @property
+    def integrator(self) -> str | None:
+        return None if self.excitation is None else _EXPLICIT if self.explicit else "newmark"
 
 
 @attrs.frozen
@@ -128,8 +138,10 @@ class ElasticDesign:
     def runs(self) -> list[ElasticRun]:
         """Those at rest first, motions last: they cost most."""
         static = [ElasticRun(bodies, axial, radial) for axial, radial in self.load_cases for bodies in BODIES]
-        axial = float(self.tables["load"]["axial"])
-        return static + [ElasticRun(bodies, axial, excitation=pair) for pair in CLAIMED for bodies in BODIES]
+        axial, ways = float(self.tables["load"]["axial"]), [(bodies, False) for bodies in BODIES]
+        if self.tables.get("integrator", {}).get("kind") == _EXPLICIT:
+            ways.append(("elastic", True))
+        return static + [ElasticRun(bodies, axial, 0.0, pair, explicit) for pair in CLAIMED for bodies, explicit in ways]
 
     def point(self, run: ElasticRun, registry: Registry) -> Tables:
         """The scene's tables of one run."""
@@ -146,11 +158,11 @@ class ElasticDesign:
                 "kinematics.ball_inertia": True,
                 "excitation.kind": run.excitation[0],
                 "excitation.amplitude": run.excitation[1],
-                "integrator.kind": "newmark",
-                "integrator.tolerance": _TOLERANCE,
+                "integrator.kind": run.integrator,
                 "integrator.turns": self.turns,
-                "integrator.steps_per_turn": STEPS,
             }
+            if not run.explicit:
+                values |= {"integrator.tolerance": _TOLERANCE, "integrator.steps_per_turn": STEPS}
         if run.excitation is not None and self.friction > 0.0:
             values["contact.stick_stiffness"] = _STICK
         scene = dict(self.tables)
@@ -251,6 +263,7 @@ def _result_numbers(result: ReadTables) -> Tables:
         "kyy_n_per_m": static["stiffness"][1][1],
         "subsurface": model.get("subsurface") or [],
         "mesh": model.get("mesh"),
+        "mass_scaling": model.get("mass_scaling"),
         "identification": None if identification is None else {key: identification[key] for key in _IDENTIFIED},
         "stability": {key: result["stability"][key] for key in _STABILITY},
         "error": {key: result["error"][key] for key in _ERROR},
@@ -301,11 +314,15 @@ def _at_rest(row: ReadTables, reference: ReadTables) -> Tables:
 
 
 def _in_motion(row: ReadTables, reference: ReadTables) -> Tables:
-    """Relative differences of K, C and |Z| of two motions; ``wc``: that of w C over the reference's |Z|, where C is next to nothing."""
+    """Relative differences of K, C and |Z| of two motions, and of the complex Z, its size.
+
+    ``wc`` : difference of w C over the reference's |Z|, where C is next to nothing
+    """
     z, reference_values = _stiffness_numbers(row), _stiffness_numbers(reference)
     speed = reference["identification"]["speed_rpm"] * math.pi / 30.0
     differences: Tables = {name: _over(z[name], reference_values[name]) for name in z}
-    return differences | {"wc": speed * (z["c"] - reference_values["c"]) / reference_values["abs_z"]}
+    wc = speed * (z["c"] - reference_values["c"]) / reference_values["abs_z"]
+    return differences | {"wc": wc, "z": math.hypot((z["k"] - reference_values["k"]) / reference_values["abs_z"], wc)}
 
 
 def _stiffness_numbers(row: ReadTables) -> dict[str, float]:
@@ -431,7 +448,7 @@ class ElasticArticle(Answer):
 
     def _compared(self, run: ElasticRun, row: Tables) -> Tables:
         """A row with its run and its differences."""
-        table: Tables = {"phase": run.phase, "case": run.case, "bodies": run.bodies, "axial_n": run.axial, "radial_n": run.radial, **row}  # fmt: skip
+        table: Tables = {"phase": run.phase, "case": run.case, "bodies": run.bodies, "integrator": run.integrator, "axial_n": run.axial, "radial_n": run.radial, **row}  # fmt: skip
         if row["status"] != "completed":
             return table
         reference = None if run.bodies == _REFERENCE else self.row(run.phase, run.case, _REFERENCE)

@@ -18,8 +18,10 @@ if TYPE_CHECKING:
 
 #: The article's largest deviation of a peak pressure from exact Hertz, section 3.2.
 _ARTICLE_DEVIATION = 0.0242
-#: Kind of bodies -> colour and marker.
-_LOOKS = {"elastic": ("#c8501e", "o"), "condensed": ("#0b5fa5", "s"), "rigid": ("#5b6570", "^")}
+#: Bodies and steps -> colour and marker.
+_LOOKS = {
+    "elastic": ("#c8501e", "o"), "condensed": ("#0b5fa5", "s"), "rigid": ("#5b6570", "^"), "elastic, explicit": ("#7a2f8f", "D"),
+}  # fmt: skip
 _NAMES = {"ball_loads": "a ball load, over the largest", "x": "x", "y": "y", "kyy": "kyy", "k": "K", "abs_z": "|Z|"}
 
 
@@ -58,6 +60,8 @@ def drawings(content: ReadTables) -> list[Picture]:
         quantities = (("k", "K", 1e-6, "N/µm"), ("abs_z", "|Z|", 1e-6, "N/µm"), ("c", "C", 1.0, "N s/m"))
         panels = [_bars_panel(moving, *quantity) for quantity in quantities]
         pictures.append(Picture("article-elastic-stiffness", "K, |Z| and C of the operating point", tuple(panels)))
+        panels = [_cost_panel(case, of_case) for case, of_case in _by_case(moving).items()]
+        pictures.append(Picture("article-elastic-cost", "Z against run time, from condensed bodies", tuple(panels)))
     return pictures
 
 
@@ -66,9 +70,14 @@ def _by_case(rows: list[Tables]) -> dict[str, list[Tables]]:
     return {case: [row for row in rows if row["case"] == case] for case in dict.fromkeys(row["case"] for row in rows)}
 
 
+def _way(row: ReadTables) -> str:
+    """Bodies, and the steps where they are explicit."""
+    return f"{row['bodies']}, explicit" if row["integrator"] == "central_difference" else str(row["bodies"])
+
+
 def _new(axes: Axes, row: Tables) -> str | None:
-    """The kind of bodies where it has no name in the legend yet."""
-    return None if row["bodies"] in axes.get_legend_handles_labels()[1] else row["bodies"]
+    """``_way`` where it has no name in the legend yet."""
+    return None if _way(row) in axes.get_legend_handles_labels()[1] else _way(row)
 
 
 def _pressures_panel(race: str, rows: list[Tables]) -> Panel:
@@ -115,15 +124,30 @@ def _bars_panel(rows: list[Tables], key: str, name: str, scale: float, unit: str
 
     def draw(axes: Axes) -> None:
         for row, y in zip(rows, numbers, strict=True):
-            x = cases.index(row["case"]) + 0.27 * (list(_LOOKS).index(row["bodies"]) - 1)
-            axes.bar(x, y, 0.24, color=_LOOKS[row["bodies"]][0], label=_new(axes, row))
+            x = cases.index(row["case"]) + 0.22 * (list(_LOOKS).index(_way(row)) - 1.5)
+            axes.bar(x, y, 0.2, color=_LOOKS[_way(row)][0], label=_new(axes, row))
             axes.annotate(f"{y:.4g}", (x, y), xytext=(0, 2), textcoords="offset points", ha="center", fontsize=8)
         finish(axes, name, "", f"{name} [{unit}]", 3)
         axes.set_xticks(range(len(cases)), [case.replace(" ", "\n", 1) for case in cases])
         axes.margins(y=0.12)
 
-    words = "; ".join(f"{row['case']}, {row['bodies']} {y:.4g}" for row, y in zip(rows, numbers, strict=True))
+    words = "; ".join(f"{row['case']}, {_way(row)} {y:.4g}" for row, y in zip(rows, numbers, strict=True))
     return Panel(draw, f"{name} in {unit}: {words}.", name)
+
+
+def _cost_panel(case: str, rows: list[Tables]) -> Panel:
+    """Distance of Z from that of the reference over processor time; of the reference the error that it states."""
+    points = [(row, row["cost"]["cpu_s"], (row["from_condensed"] or {"z": row["error"]["total"]})["z"]) for row in rows]
+    points = [point for point in points if point[2] is not None]
+
+    def draw(axes: Axes) -> None:
+        for row, seconds, error in points:
+            colour, mark = _LOOKS[_way(row)]
+            axes.loglog(seconds, error, mark, color=colour, fillstyle="none", markersize=8, label=_way(row))
+        finish(axes, case, "processor time [s]", "difference of Z from condensed bodies", 2)
+
+    words = "; ".join(f"{_way(row)} {error:.1e} in {seconds:.3g} s" for row, seconds, error in points)
+    return Panel(draw, f"Difference of Z from condensed bodies, of these the error that they state: {words}.", case)
 
 
 def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None, command: str) -> Page:
@@ -184,6 +208,7 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
     _motion_section(out, content)
     out.rows(in_motion[1], in_motion[0])
     show_picture(out, by_name, "article-elastic-stiffness")
+    show_picture(out, by_name, "article-elastic-cost")
     _stresses(out, static, section)
     out.section("Cost")
     out.rows([_cost_row(row) for row in content["rows"]], "Every run; elements of condensed bodies are none of the run")
@@ -194,7 +219,7 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
     out.section("What differs between the bodies")
     out.listing(content["what_differs"])
     warnings = [
-        {"run": _case(row), "bodies": row["bodies"], "warning": words}
+        {"run": _case(row), "bodies": _way(row), "warning": words}
         for row in content["rows"]
         for words in row.get("warnings") or []
     ]
@@ -219,14 +244,22 @@ def tables(content: ReadTables) -> dict[str, list[Tables]]:
             continue
         z = row["identified"]
         moving_lines.append({
-            "force": _case(row), "bodies": row["bodies"],
+            "force": _case(row), "bodies": _way(row),
             "K N/µm": f"{1e-6 * z['k']:.3f}", "C N s/m": f"{z['c']:.0f}", "|Z| N/µm": f"{1e-6 * z['abs_z']:.3f}",
             "K": percent(differences.get("k")), "C": percent(differences.get("c")),
             "wC over |Z|": percent(differences.get("wc")), "|Z|": percent(differences.get("abs_z")),
+            "peak MPa": f"{1e-6 * _peak_pressure(row):.1f}", "CPU s": f"{row['cost']['cpu_s']:.1f}",
             "energy balance": shown(row["energy_balance"], ".1e"), "transient": shown(row["error"]["transient"], ".1e"),
             "stability": row["stability"]["status"],
         })  # fmt: skip
     return {_AT_REST.format(**content): lines, _IN_MOTION.format(**content): moving_lines}
+
+
+def _peak_pressure(row: ReadTables) -> float:
+    """Largest pressure of the equilibrium [Pa]: at a node where contacts have points, by Hertz where they have none."""
+    kinds = [f"peak_pressure_{kind}{race}_pa" for kind in ("nodal_", "") for race in RACES]
+    pairs = [(ball.get(kinds[k]), ball[kinds[k + 2]]) for ball in row["balls"] for k in range(2)]
+    return max(hertz if nodal is None else nodal for nodal, hertz in pairs)
 
 
 _AT_REST = (
@@ -256,6 +289,15 @@ def in_short(content: ReadTables) -> list[str]:
         if parts:
             name, value = max(parts, key=lambda part: abs(part[1]))
             points.append(f"Elastic from {reference} bodies {words}: at most {percent(value)}, in {_NAMES[name]}.")
+    stepped = [(row, _implicit(rows, row)) for row in elastic if row["integrator"] == "central_difference"]
+    apart = [
+        row["identified"][name] / other["identified"][name] - 1.0
+        for row, other in stepped
+        if other
+        for name in ("k", "abs_z")
+    ]
+    if apart:
+        points.append(f"Explicit from implicit steps of elastic bodies (K, |Z|): at most {percent(max(apart, key=abs))}.")
     balance = [row["energy_balance"] for row in elastic if row["phase"] == "motion" and row["energy_balance"] is not None]
     if balance:
         points.append(
@@ -266,6 +308,12 @@ def in_short(content: ReadTables) -> list[str]:
             f"{content['failed']} of {content['runs']} runs failed or were refused: the reasons stand under “Cost”."
         )
     return points
+
+
+def _implicit(rows: Sequence[ReadTables], explicit: ReadTables) -> ReadTables | None:
+    """The row of the same motion by implicit steps, if that came to an end."""
+    same = (row for row in rows if row["integrator"] == "newmark" and all(row[k] == explicit[k] for k in ("case", "bodies")))
+    return next((row for row in same if row["status"] == "completed"), None)
 
 
 def _case(row: ReadTables) -> str:
@@ -279,7 +327,7 @@ def _motion_section(out: Page, content: ReadTables) -> None:
         f"{content['speed_rpm']:g} r/min, {content['scene']['load']['axial']:g} N, tilt locked, balls with inertia, friction "
         f"{content['friction']:g}; integrator `newmark`, {content['turns']} turn{'s' if content['turns'] > 1 else ''} of "
         f"{content['steps_per_turn']} steps, the same start and "
-        "identifier for all bodies. Unidirectional: a force of constant amplitude along one line. Bidirectional: m e w² of the rig’s "
+        "identifier for all bodies; explicit steps are as many as stability needs. Unidirectional: a force of constant amplitude along one line. Bidirectional: m e w² of the rig’s "
         "unbalance, turning with the rotor. The balance of energy is its drift over what was exchanged; stability is what result.json "
         "states: Floquet multipliers belong to steady orbits, which friction does not have."
     )
@@ -328,7 +376,7 @@ def _cost_row(row: ReadTables) -> Tables:
         state = Cell(row["status"], "failed", row["reason"])
     memory = cost["peak_memory_bytes"]
     return {
-        "run": _case(row), "bodies": row["bodies"], "elements": shown(cost["elements"]),
+        "run": _case(row), "bodies": _way(row), "elements": shown(cost["elements"]),
         "CPU s": f"{cost['cpu_s']:.1f}", "and compiling s": f"{cost['compile_s']:.1f}", "wall s": f"{cost['wall_s']:.1f}",
         "peak GiB": shown(None if memory is None else memory / 2**30, ".2f"),
         "steps": shown(cost["steps"]), "iterations": shown(cost["newton_iterations"]), "": state,

@@ -8,6 +8,7 @@ import json
 import re
 import tomllib
 
+import attrs
 import pytest
 from raceway_article import elastic
 from raceway_article.elastic import SCENE, ElasticDesign, design
@@ -125,6 +126,36 @@ def test_settings_of_a_motion_are_the_same_for_all_bodies_and_rest_has_no_fricti
     assert {(point["excitation"]["kind"], point["excitation"]["amplitude"]) for point in moving} == {
         ("unidirectional", "constant"), ("bidirectional", "unbalance")
     }  # fmt: skip
+
+
+def test_explicit_steps_of_the_scene_are_a_fourth_way_under_the_same_settings():
+    steps = {"integrator": {"kind": "central_difference", "least_step": 3e-9}}
+    made = design(read_toml(SCENE) | steps, turns=1)
+    explicit = [run for run in made.runs() if run.explicit]
+    assert [run.excitation for run in explicit] == list(elastic.CLAIMED) and len(made.runs()) == 20
+    for run in explicit:
+        point, implicit = (made.point(each, default_registry()) for each in (run, attrs.evolve(run, explicit=False)))
+        assert point.pop("integrator") == {"kind": "central_difference", "least_step": 3e-9, "turns": 1}
+        assert implicit.pop("integrator")["kind"] == "newmark"
+        assert point == implicit
+
+
+def test_the_picture_of_cost_has_every_way_and_its_difference():
+    def row(bodies, integrator, k, cpu):
+        numbers = {
+            "identified": {"k": k, "c": 0.0, "abs_z": k},
+            "identification": {"speed_rpm": 12e3},
+            "error": {"total": 1e-5},
+        }
+        reference = None if bodies == "condensed" else {"z": abs(k / 2e8 - 1.0)}
+        return {"phase": "motion", "case": "unidirectional constant force", "status": "completed", "bodies": bodies,
+                "integrator": integrator, "cost": {"cpu_s": cpu}, "from_condensed": reference, **numbers}  # fmt: skip
+
+    rows = [row("condensed", "newmark", 2e8, 1.0), row("elastic", "newmark", 2.02e8, 60.0), row("elastic", "central_difference", 2.03e8, 3600.0)]  # fmt: skip
+    picture = next(each for each in drawings({"rows": rows}) if each.name == "article-elastic-cost")
+    words = picture.panels[0].alternative
+    assert "condensed 1.0e-05 in 1 s" in words and "elastic 1.0e-02 in 60 s" in words
+    assert "elastic, explicit 1.5e-02 in 3.6e+03 s" in words
 
 
 @pytest.mark.parametrize(
