@@ -232,7 +232,7 @@ def test_the_page_of_invented_numbers_opens_without_a_network(monkeypatch):
     content = elastic_study().to_dict()
     text = page(content, drawings(content), None, "raceway study article --bodies elastic").html()
     images = re.findall(r'<img alt="([^"]+)"', text)
-    assert len(images) == 2 + 4 + 3 and all(len(words) > 40 for words in images)
+    assert len(images) == 2 + 4 + 3 + 2 and all(len(words) > 40 for words in images)
     assert not re.findall(r'(?:src|href)="(?!data:|#)', text)
     for words in ("Peak pressures", "In motion", "Cost", "What differs", "+2.00\u202f%", "bidirectional unbalance force"):
         assert words in text
