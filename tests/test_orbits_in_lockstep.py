@@ -25,6 +25,8 @@ CHANGES = {
     "a pair": {"bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0}},
     "one direction": {"excitation": SCENE["excitation"] | {"kind": "unidirectional", "unbalance": 1e-5}, "supports": {"tilt": "locked"}},
     "side load": {"load": {"axial": 500.0, "radial": [40.0, -20.0]}, "rotor": {"mass": 1.5, "damping": 300.0}},
+    "dashpots, moments": {"contact": {"damping": 60.0}, "kinematics": {"gyroscopic": "traction"}},
+    "time constants": {"contact": {"time_constant": 5e-7}, "excitation": SCENE["excitation"] | {"whirl": "backward"}},
 }  # fmt: skip
 
 

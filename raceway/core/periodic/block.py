@@ -17,9 +17,11 @@ VISCOUS = TANGENT + 25
 IMBALANCE, RATE, BEND, CENTRE = (VISCOUS + 25 + 5 * i for i in range(4))
 ROWS = CENTRE + 5
 #: Rows of ``shared``, numbers of each point: w^2 mass, w damping; derivatives of the imbalance by u beside the tangent and by u'; means of
-#: the tangents by u and u', and those of the harmonics' inverses; which lanes are asked for, and answers of a level.
+#: the tangents by u and u', and those of the harmonics' inverses; which lanes are asked for, and answers of a level; dashpot [N s/m] and
+#: time constant [s] of the contacts, speed [rad/s].
 MASS, DAMPED, FIXED, BY_RATE, MEAN, KEPT, WANTED, ANSWER = 0, 5, 30, 55, 80, 130, 180, 181
-SHARED_ROWS = ANSWER + 2
+DASHPOT, TIME, SPEED = range(ANSWER + 2, ANSWER + 5)
+SHARED_ROWS = SPEED + 1
 
 
 class Block(NamedTuple):

@@ -22,38 +22,192 @@ from numba import boolean, float64, int64, types, void
 from raceway.core.jit import jit
 from raceway.core.lanes import LANES, MASK, WIDTH, any_of, larger, live_of, put, smaller, spread, take, where
 from raceway.core.periodic import fourier
-from raceway.core.periodic.block import BEND, BLOCK, CENTRE, DAMPED, FIXED, IMBALANCE, MASS, MEAN, RATE, VISCOUS, WANTED
+from raceway.core.periodic.block import (
+    BEND,
+    BLOCK,
+    CENTRE,
+    DAMPED,
+    DASHPOT,
+    FIXED,
+    IMBALANCE,
+    MASS,
+    MEAN,
+    RATE,
+    SPEED,
+    TIME,
+    VISCOUS,
+    WANTED,
+)
 from raceway.core.periodic.steps import invert, newton_steps
 from raceway.core.ring import kernels as ring_rows
 from raceway.core.ring.elimination import copy_matrix
-from raceway.core.ring.kernels.layout import DAMPING, TIME_CONSTANT, keep_slips, rows_of_tangent
-from raceway.core.ring.lockstep import ARM, DQ, LOAD, SHAFT, TANGENT, Q, ring_forces, rolling_of
+from raceway.core.ring.kernels.layout import DAMPING, TIME_CONSTANT, keep_slips, no_tangent, rows_of_tangent, with_tangent
+from raceway.core.ring.kernels.rolling import (
+    ROLLING,
+    couple_slopes,
+    linear_balance,
+    no_tangential,
+    plain_balance,
+    regular,
+    with_gyroscopic,
+)
+from raceway.core.ring.kernels.tensors import (
+    Pair,
+    Tensor,
+    less,
+    less_row,
+    pair_of,
+    put_pair,
+    row_times_adjugate,
+    times_adjugate,
+)
+from raceway.core.ring.lockstep import (
+    AHEAD,
+    ARM,
+    DQ,
+    INNER,
+    LOAD,
+    OUTER,
+    PLACE,
+    PLACE_RATE,
+    SHAFT,
+    TANGENT,
+    Q,
+    centre,
+    contacts_of,
+    move_balls,
+    ring_forces,
+    rolling_of,
+    seats,
+)
 from raceway.core.ring.states import KERNELS, POINTS, STATES
 from raceway.core.signatures import CUBE, LAW_POINTER, MATRIX, VECTOR, Balls, Constants, Contacts, Response
 
 #: Iterations of a level, and with balls found in every sample; the last step over the motion.
 _ITERATIONS, _NESTED, _ROUNDED = 15, 30, 1e-8
+#: Step over the one before from which on dampers are left to a kernel.
+_SLOW = 0.3
 #: Iterations with new inverses.
 _INVERSES = 3
 
 
-@jit(MASK(LAW_POINTER, int64, BLOCK))
-def forces(law, n, block):
+@jit(types.UniTuple(LANES, 2)(MATRIX, int64, MASK), inline=True)
+def pair_at(rows, row, live):
+    """A row and the next one."""
+    return take(rows, row, 0, live), take(rows, row + 1, 0, live)
+
+
+@jit(void(int64, int64[::1], VECTOR, BLOCK))
+def _move_with_rates(n, order, derivative, block):
+    """Move the balls of all samples; rates of their places, ``fourier.ball_rates`` in lanes."""
+    live, w, stride = live_of(0, WIDTH), take(block.shared, SPEED, 0, live_of(0, WIDTH)), block.rows.shape[0] // n
+    total = derivative.size // 2
+    for j in range(n):
+        move_balls(block.rows[j * stride], block.work[j * stride])
+    for k in range(block.work.shape[2] // (2 * WIDTH)):
+        for j in range(n):
+            axial, radial, follower = spread(0.0), spread(0.0), k
+            for m in range(total // n):
+                for i in range(n):
+                    a, r = pair_of(block.work[i * stride], PLACE, WIDTH * follower, live)
+                    weight = derivative[total - m * n - i + j]
+                    axial, radial = axial + weight * a, radial + weight * r
+                follower = order[follower]
+            put_pair(block.work[j * stride], PLACE_RATE, WIDTH * k, live, w * axial, w * radial)
+
+
+@jit(void(MATRIX, MATRIX, MATRIX))
+def _gap_rates(of_points, shared, work):
+    """Rates of the gaps, and the gaps that contacts with a time constant answer to, see ``layout.normal_forces``."""
+    live, w, tau = live_of(0, WIDTH), take(shared, SPEED, 0, live_of(0, WIDTH)), take(shared, TIME, 0, live_of(0, WIDTH))
+    for k in range(0, work.shape[1] // 2, WIDTH):
+        (ia, ir), (oa, orr) = pair_of(work, INNER, k, live), pair_of(work, OUTER, k, live)
+        (ea, er), (pa, pr) = centre(seats(k, live, work), of_points, RATE, live), pair_of(work, PLACE_RATE, k, live)
+        rate_i, rate_o = -(ia * (w * ea - pa) + ir * (w * er - pr)), -(oa * pa + orr * pr)
+        put_pair(work, ring_rows.GAP_RATE, k, live, rate_i, rate_o)
+        gap_i, gap_o = pair_of(work, ring_rows.GAP, k, live)
+        ahead_i = where(gap_i < 0.0, gap_i + larger(tau * rate_i, gap_i), gap_i)
+        ahead_o = where(gap_o < 0.0, gap_o + larger(tau * rate_o, gap_o), gap_o)
+        put_pair(work, AHEAD, k, live, ahead_i, ahead_o)
+
+
+@jit(void(MATRIX, MATRIX))
+def _add_dampers(shared, work):
+    """What dashpots and time constants change in the law's forces and derivatives, see ``layout.normal_forces`` and ``add_damping``."""
+    live, c, tau = live_of(0, WIDTH), take(shared, DASHPOT, 0, live_of(0, WIDTH)), take(shared, TIME, 0, live_of(0, WIDTH))
+    for k in range(0, work.shape[1], WIDTH):
+        gap, rate = take(work, ring_rows.GAP, k, live), take(work, ring_rows.GAP_RATE, k, live)
+        by_gap, by_rate = take(work, ring_rows.FORCE_BY_GAP, k, live), take(work, ring_rows.FORCE_BY_RATE, k, live)
+        limited = (tau > 0.0) & (gap < 0.0) & (tau * rate <= gap)
+        by_rate = by_rate + where(limited, 0.0, tau * by_gap)
+        by_gap = where(limited, 2.0 * by_gap, by_gap)
+        force = take(work, ring_rows.CONTACT_FORCE, k, live)
+        closed = (gap < 0.0) & (c > 0.0) & (tau == 0.0)
+        total = force - c * rate
+        pulls, pushes = closed & (total <= 0.0), closed & (total > 0.0)
+        put(work, ring_rows.CONTACT_FORCE, k, live, where(pulls, 0.0, where(pushes, total, force)))
+        put(work, ring_rows.FORCE_BY_GAP, k, live, where(pulls, 0.0, by_gap))
+        put(work, ring_rows.FORCE_BY_RATE, k, live, where(pulls, 0.0, where(pushes, by_rate - c, by_rate)))
+
+
+@jit(void(boolean, ROLLING, float64, LANES, MATRIX, MATRIX))
+def _put_damping(rolls, rolling, sense, w, r, work):
+    """The tangent by the velocity, w C, each ball's place eliminated, and what it adds to that by u in a frame that turns, w C G."""
+    live, none, damping = live_of(0, WIDTH), spread(0.0), no_tangent()
+    nothing = Pair(none, none)
+    for k in range(0, work.shape[1] // 2, WIDTH):
+        contacts, by_velocity = contacts_of(k, live, work), nothing
+        (by_rate, _), elastic, h = pair_of(work, ring_rows.FORCE_BY_RATE, k, live), contacts[0].stiffness, no_tangential()
+        b = plain_balance(contacts, elastic, -by_rate)
+        if rolls:
+            h = with_gyroscopic(k, live, contacts, h, rolling, work)
+            b = linear_balance(contacts, elastic, -by_rate, h)
+        j = regular(b.j)
+        inverse = 1.0 / (j.aa * j.rr - j.ar * j.ra)
+        t = times_adjugate(b.p, j)
+        t = Tensor(t.aa * inverse, t.ar * inverse, t.ra * inverse, t.rr * inverse)
+        if rolls:
+            u = row_times_adjugate(couple_slopes(contacts, h)[1], j)
+            by_velocity = less_row(nothing, Pair(u.axial * inverse, u.radial * inverse), b.m)
+        damping = with_tangent(damping, seats(k, live, work), less(b.m, t, b.m), nothing, by_velocity, none)
+    for i, entries in enumerate(rows_of_tangent(damping)):
+        for m, entry in enumerate(entries):
+            put(r, VISCOUS + 5 * i + m, 0, live, w * entry)
+        for m in (1, 3):
+            y, z = pair_at(r, VISCOUS + 5 * i + m, live)
+            at = TANGENT + 5 * i + m
+            put(r, at, 0, live, take(r, at, 0, live) + sense * z)
+            put(r, at + 1, 0, live, take(r, at + 1, 0, live) - sense * y)
+
+
+@jit(MASK(LAW_POINTER, boolean, float64, int64, BLOCK))
+def forces(law, damped, sense, n, block):
     """Move the balls; forces of the contacts into the imbalances, and their tangents; which points' balls still move."""
-    rows, live, none = block.rows, live_of(0, WIDTH), spread(0.0)
+    rows, live, none, memory = block.rows, live_of(0, WIDTH), spread(0.0), block.memory
     rolling, moves, stride = rolling_of(rows[0], live), ~live, rows.shape[0] // n
     rolls = any_of(~(rolling.scale == 0.0))
     for j in range(n):
-        r = rows[j * stride]
-        force, tangent, _, moving = ring_forces(
-            law, rolls, rolling, none, block.params, block.memory, block.work[j * stride], r
-        )
+        r, work = rows[j * stride], block.work[j * stride]
+        ahead = work[AHEAD] if damped else work[ring_rows.GAP]
+        if damped:  # the balls are where their rates are known
+            _gap_rates(r, block.shared, work)
+        else:
+            move_balls(r, work)
+        law(
+            ahead, work[ring_rows.GAP_RATE], block.params, memory, memory, 0.0,
+            work[ring_rows.CONTACT_FORCE], work[ring_rows.FORCE_BY_GAP], work[ring_rows.FORCE_BY_RATE],
+        )  # fmt: skip
+        if damped:
+            _add_dampers(block.shared, work)
+        force, tangent, _, moving = ring_forces(rolls, rolling, none, work)
         moves = moves | moving
         for i, part in enumerate(force):
             put(r, IMBALANCE + i, 0, live, part)
         for i, entries in enumerate(rows_of_tangent(tangent)):
             for m, entry in enumerate(entries):
                 put(r, TANGENT + 5 * i + m, 0, live, entry)
+        if damped:
+            _put_damping(rolls, rolling, sense, take(block.shared, SPEED, 0, live), r, work)
     return moves
 
 
@@ -140,12 +294,6 @@ def _derivatives(n, sense, d1, d2, rows):
             put(r, RATE + i + 1, 0, live, z1 + sense * y)
 
 
-@jit(types.UniTuple(LANES, 2)(MATRIX, int64, MASK), inline=True)
-def pair_at(rows, row, live):
-    """A row and the next one."""
-    return take(rows, row, 0, live), take(rows, row + 1, 0, live)
-
-
 @jit(LANES(int64, CUBE, MATRIX))
 def _imbalances(n, rows, shared):
     """What inertia, damping, shaft and loads leave of the forces, and means of the tangents; the change of the radial stiffness over its mean."""
@@ -191,27 +339,29 @@ def solve_level(kernels, alone, n, first, points, states, turning, dofs, closene
     fourier.circle(n, circle)
     fourier.circulants(n, span, d1, d2)
     places = np.empty((WIDTH * n * alone, states.ball.shape[1], states.ball.shape[2]))
-    rates, derivative, damped = np.zeros(places.shape), np.empty(2 * total * alone), False
-    if alone:
+    rates, derivative, damped = np.zeros(places.shape), np.empty(2 * total), False
+    for lane in range(min(WIDTH, states.status.size - first)):
+        damped |= dampers(points, first + lane)
+        for j in range(n if alone else 0):
+            copy_matrix(states.ball[first + lane], places[lane * n + j])
+    if alone or damped:
         fourier.circulants(total, 2.0 * np.pi, derivative[:total], np.empty(total))
         for j in range(total):
             derivative[total + j] = derivative[j]
-        for lane in range(min(WIDTH, states.status.size - first)):
-            for j in range(n):
-                copy_matrix(states.ball[first + lane], places[lane * n + j])
-            damped |= dampers(points, first + lane)
     before, error, change = spread(np.inf), spread(np.inf), spread(0.0)
     done, lost, moves = ~(take(shared, WANTED, 0, live) > 0.0), ~live, ~live
-    for count in range(_NESTED if alone else _ITERATIONS):
+    for count in range(_NESTED if alone or damped else _ITERATIONS):
         _derivatives(n, turning.sense, d1, d2, rows)
         if alone:
             forces_alone(kernels, n, first, points, turning, derivative, places, rates, block)
         else:
-            moves = forces(kernels.law, n, block)
+            if damped:
+                _move_with_rates(n, turning.order, derivative, block)
+            moves = forces(kernels.law, damped, turning.sense, n, block)
         change = _imbalances(n, rows, shared)
         if count < _INVERSES:
             invert(n, 2.0 * np.pi / span, dofs, inverse, shared)
-        newton_steps(n, alone, dofs, d1, circle, inverse, rows, block.basis, shared)
+        newton_steps(n, alone or damped, dofs, d1, circle, inverse, rows, block.basis, shared)
         step, size = spread(0.0), spread(1e-300)
         for j in range(n):
             r = rows[j * (rows.shape[0] // n)]
@@ -226,8 +376,10 @@ def solve_level(kernels, alone, n, first, points, states, turning, dofs, closene
                 if i > 0:
                     size = larger(larger(away, -away), size)
         fine = (step <= closeness * size) | ((step <= _ROUNDED * size) & (step > 0.5 * before))
-        error, before = where(done, error, step / size), step
         lost = lost | ~(step < 1e-2)
+        if damped and not alone and count > 3:  # a ball follows its rates by as much as its dampers bear: a kernel is quicker
+            lost = lost | ((step > _SLOW * before) & (step > _ROUNDED * size) & ~done)
+        error, before = where(done, error, step / size), step
         if count > 2 or not damped:
             done = done | (~moves & fine)
         put(shared, WANTED, 0, live, where(done | lost, 0.0, 1.0))

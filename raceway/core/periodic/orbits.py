@@ -18,10 +18,13 @@ from raceway.core.periodic.block import (
     BY_RATE,
     CENTRE,
     DAMPED,
+    DASHPOT,
     FIXED,
     MASS,
     ROWS,
     SHARED_ROWS,
+    SPEED,
+    TIME,
     VISCOUS,
     WANTED,
     Block,
@@ -34,7 +37,7 @@ from raceway.core.periodic.monodromy import span_transfer
 from raceway.core.periodic.steps import COLUMNS
 from raceway.core.ring.elimination import copy_matrix
 from raceway.core.ring.kernels import CONTACT_FORCE
-from raceway.core.ring.kernels.layout import TILT_ARM, work_rows
+from raceway.core.ring.kernels.layout import DAMPING, TILT_ARM, TIME_CONSTANT, work_rows
 from raceway.core.ring.lockstep import ARM, DQ, LOAD, PLACE, SHAFT, TANGENT, WORK_ROWS, Q, asks_for_rates, gather
 from raceway.core.ring.states import KERNELS, POINTS, STATES
 from raceway.core.signatures import CUBE, LINEAR, MATRIX, VECTOR, record
@@ -133,7 +136,7 @@ def _begin(kernels, alone, linear, first, points, states, turning, push, like, b
         for i in range(50):
             rows[0, TANGENT + i, lane] = 0.0
     if not alone:
-        lockstep.forces(kernels.law, 1, block)
+        lockstep.forces(kernels.law, False, 1.0, 1, block)
         if asks_for_rates(work[0]):
             return False
     for j in range(1, n):
@@ -157,6 +160,8 @@ def _begin(kernels, alone, linear, first, points, states, turning, push, like, b
             for i in range(5):
                 rows[j * stride, Q + i, lane] = u[j, i]
                 rows[j * stride, DQ + i, lane] = u[j, i] - rows[j * stride, CENTRE + i, lane]
+        shared[DASHPOT, lane], shared[TIME, lane] = points.scalars[p, DAMPING], points.scalars[p, TIME_CONSTANT]
+        shared[SPEED, lane] = w
         for i in range(5):
             shared[MASS + i, lane] = w * w * turning.mass[p, i]
             for m in range(5):
@@ -172,7 +177,7 @@ def _solve_block(kernels, alone, linear, first, end, points, states, turning, li
     line, mean, before, pending = np.empty(10), np.empty(5), np.zeros((WIDTH, 10)), np.zeros(WIDTH)
     closeness = _CLOSE if len(like) == 0 else _CLOSER
     for p in range(first, min(first + WIDTH, end)):
-        pending[p - first] = states.status[p] == 0 and out.status[p] != 0 and (alone or not lockstep.dampers(points, p))
+        pending[p - first] = states.status[p] == 0 and out.status[p] != 0
         if pending[p - first] > 0.0:
             fourier.force_line(turning, p, out.force[p])
     if pending.max() == 0.0 or not _begin(kernels, alone, linear, first, points, states, turning, out.force, like, block):

@@ -35,7 +35,9 @@ from raceway.core.signatures import LAW_POINTER, LINEAR, MATRIX, VECTOR
 #: Rows of ``work`` behind the law's, halves of 4 Z: azimuth; side and lever [m]; reach of the tilts [m] and centrifugal force [N]; e at
 #: rest [m]; offsets [m]; place p [m]; its step by R [m]; its derivatives by e; directions and distances of its contacts.
 DIRECTION, SEAT, REACH, REST, OFFSET, PLACE, STEP, BY_CENTRE, INNER, OUTER, LENGTH = (*range(5, 12), 12, 14, 15, 16)
-WORK_ROWS = 17
+#: Of damped motions: rate of the place [m/s]; gap that a contact with a time constant answers to [m].
+PLACE_RATE, AHEAD = 17, 18
+WORK_ROWS = 19
 #: Rows of ``of_points``, one number of each point: q, its step, load, shaft against tilts, reach of the tilts; numbers of rolling; the tangent
 #: and its right side.
 Q, DQ, LOAD, SHAFT, ARM, ROLLS, TANGENT = 0, 5, 10, 15, 16, 17, 24
@@ -72,6 +74,7 @@ def gather(first, points, params, work, of_points):
             work[REACH, c], work[REACH, o], work[REST, c], work[REST, o] = reach, table[k, ring.CENTRIFUGAL], rest_a, rest_r
             work[OFFSET, c], work[OFFSET, o] = ring.offsets_of(k, scalars, table)
             work[PLACE, c], work[PLACE, o] = ring.first_place(k, middle.axial, middle.radial, scalars, table)
+            work[rows.GAP_RATE, c] = work[rows.GAP_RATE, o] = 0.0
             for row in range(STEP, BY_CENTRE + 2):
                 work[row, c] = work[row, o] = 0.0
             for i in range(params.shape[1]):
@@ -136,7 +139,7 @@ def _eliminate(of_points, live):
 
 
 @jit(at.CONTACTS(int64, MASK, MATRIX), inline=True)
-def _contacts(k, live, work):
+def contacts_of(k, live, work):
     """Both contacts of a ball."""
     (ia, ir), (oa, orr) = pair_of(work, INNER, k, live), pair_of(work, OUTER, k, live)
     (si, so), (fi, fo) = pair_of(work, LENGTH, k, live), pair_of(work, rows.CONTACT_FORCE, k, live)
@@ -153,7 +156,7 @@ def _eliminated(k, live, rolls, rolling, work):
 
     That is its force [N] with the tangent by e, its couple [N m] with that, the size of its contacts' forces, and whether it still moves.
     """
-    z, contacts, h = work.shape[1] // 2, _contacts(k, live, work), at.no_tangential()
+    z, contacts, h = work.shape[1] // 2, contacts_of(k, live, work), at.no_tangential()
     (ia, ir, _, fi, ki), (oa, orr, _, fo, _) = contacts
     balance = at.plain_balance(contacts, ki, spread(0.0))
     if rolls:
@@ -252,23 +255,20 @@ def rolling_of(of_points, live):
     )  # fmt: skip
 
 
-@jit(
-    types.Tuple((ring.FORCES, ring.TANGENTS, LANES, MASK))(
-        LAW_POINTER, boolean, at.ROLLING, LANES, MATRIX, MATRIX, MATRIX, MATRIX
-    ),
-    inline=True,
-)
-def ring_forces(law, rolls, rolling, loads, params, memory, work, of_points):
-    """Move the balls; their forces on the ring and the tangent, the size of contact forces on top of the loads', whether balls still move."""
-    live, end, none = live_of(0, WIDTH), work.shape[1] // 2, spread(0.0)
-    for k in range(0, end, WIDTH):
+@jit(void(MATRIX, MATRIX), inline=True)
+def move_balls(of_points, work):
+    """Move the balls with the ring's step and by their own; gaps of their contacts."""
+    live = live_of(0, WIDTH)
+    for k in range(0, work.shape[1] // 2, WIDTH):
         _follow(k, live, of_points, work)
-    law(
-        work[rows.GAP], work[rows.GAP_RATE], params, memory, memory, 0.0,
-        work[rows.CONTACT_FORCE], work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE],
-    )  # fmt: skip
+
+
+@jit(types.Tuple((ring.FORCES, ring.TANGENTS, LANES, MASK))(boolean, at.ROLLING, LANES, MATRIX), inline=True)
+def ring_forces(rolls, rolling, loads, work):
+    """Forces of the balls on the ring and the tangent, the size of contact forces on top of the loads', whether balls still move."""
+    live, none = live_of(0, WIDTH), spread(0.0)
     force, tangent, size, moves = no_force(), no_tangent(), loads, ~live
-    for k in range(0, end, WIDTH):
+    for k in range(0, work.shape[1] // 2, WIDTH):
         seat = seats(k, live, work)
         own, stiffness, couple, by_centre, forces, moving = _eliminated(k, live, rolls, rolling, work)
         force = with_force(force, seat, own.axial, own.radial, couple)
@@ -304,7 +304,12 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
     tangent, done, (rest_a, rest_r) = no_tangent(), ~live, pair_of(work, REST, 0, live)
     most = _LONGEST * (larger(rest_a, -rest_a) + larger(rest_r, -rest_r))
     for _ in range(_ITERATIONS):
-        force, tangent, size, moves = ring_forces(law, rolls, rolling, loads, params, memory, work, of_points)
+        move_balls(of_points, work)
+        law(
+            work[rows.GAP], work[rows.GAP_RATE], params, memory, memory, 0.0,
+            work[rows.CONTACT_FORCE], work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE],
+        )  # fmt: skip
+        force, tangent, size, moves = ring_forces(rolls, rolling, loads, work)
         norm = _imbalance(force, free, of_points, live)
         done = ~moves & (norm <= TOLERANCE * size)
         if rolls == turn and not any_of(~done):
@@ -327,7 +332,7 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
     largest = _put_tangent(tangent, none, True, free, of_points, live)
     done = done & (_eliminate(of_points, live) > LEAST * largest)
     for k in range(0, end, WIDTH):
-        inner, outer = _contacts(k, live, work)
+        inner, outer = contacts_of(k, live, work)
         (sa, sr), (pa, pr) = pair_of(work, STEP, k, live), pair_of(work, PLACE, k, live)
         # A ball without centrifugal force that nothing presses has no place.
         done = done & ~((inner.force == 0.0) & (inner.stiffness == 0.0) & (take(work, REACH, end + k, live) == 0.0))
