@@ -377,7 +377,9 @@ def solve_level(kernels, alone, n, first, points, states, turning, dofs, closene
                     size = larger(larger(away, -away), size)
         fine = (step <= closeness * size) | ((step <= _ROUNDED * size) & (step > 0.5 * before))
         lost = lost | ~(step < 1e-2)
-        if damped and not alone and count > 3:  # a ball follows its rates by as much as its dampers bear: a kernel is quicker
+        if (
+            damped and not alone and count > 3
+        ):  # a ball follows its rates by as much as its dampers bear: a kernel is quicker
             lost = lost | ((step > _SLOW * before) & (step > _ROUNDED * size) & ~done)
         error, before = where(done, error, step / size), step
         if count > 2 or not damped:

@@ -44,8 +44,8 @@ from raceway.core.signatures import CUBE, LINEAR, MATRIX, VECTOR, record
 
 #: Change of the stiffness along a motion, over its mean, beyond which no more samples are tried: balls leave their races.
 _WILD = 1.0
-#: Last step over the motion: of points, and of neighbours whose differences are derivatives.
-_CLOSE, _CLOSER = 1e-11, 1e-13
+#: Last step over the motion: of points, of neighbours whose differences are derivatives, and of samples that are doubled anyway.
+_CLOSE, _CLOSER, _NEAR = 1e-10, 1e-13, 1e-9
 
 
 class Orbits(NamedTuple):
@@ -185,7 +185,9 @@ def _solve_block(kernels, alone, linear, first, end, points, states, turning, li
     while True:
         for lane in range(WIDTH):
             shared[WANTED, lane] = pending[lane]
-        done, steps, change = lockstep.solve_level(kernels, alone, n, first, points, states, turning, dofs, closeness, block)
+        # The first level is never the last one: its motion is compared with the next one's.
+        enough = _NEAR if n == turning.least and 2 * n <= turning.most and len(like) == 0 else closeness
+        done, steps, change = lockstep.solve_level(kernels, alone, n, first, points, states, turning, dofs, enough, block)
         put(shared, ANSWER, 0, live, where(done, steps, np.inf))
         put(shared, ANSWER + 1, 0, live, change)
         u, stride = np.empty((n, 5)), block.rows.shape[0] // n
