@@ -12,7 +12,7 @@ INSTALL = $(BIN)/python -m pip install -q --no-compile -c constraints.txt
 APT_PACKAGES := calculix-ccx chromium chromium-driver fonts-dejavu-core libegl1 libfontconfig1 libgl1 libglu1-mesa libgomp1 libxcursor1 libxext6 libxfixes3 libxft2 libxinerama1 libxrender1
 APT_LINE     := apt-get install -y --no-install-recommends $(APT_PACKAGES)
 
-.PHONY: help demo test test-all lint docs ross wheel evidence mutants constraints apt-line clean
+.PHONY: help demo test test-all lint docs ross gpu wheel evidence mutants constraints apt-line clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1 :\2/p' Makefile | while IFS=: read -r name words; do printf '%-20s%s\n' "$$name" "$$words"; done
@@ -42,6 +42,9 @@ docs: $(VENV)-docs/.installed ## the site in docs/_build/html, its tutorials and
 
 ross: $(VENV)-docs/.installed ## the tests under the rotor program ROSS
 	$(VENV)-docs/bin/python -m pytest -q -m ross packages/raceway-rotor/tests/test_ross_inside.py packages/raceway-rotor/tests/test_against_ross.py
+
+gpu: $(VENV)/.all ## explicit steps on a CUDA device, checked and timed; without one their kernels run as Python, some minutes
+	$(BIN)/python -m checks.device --turn
 
 wheel: $(VENV)/.all ## a wheel in dist with compiled kernels, installed into an empty environment without extras, which runs a scene
 	rm -rf dist build && mkdir -p build/source

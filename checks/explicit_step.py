@@ -56,23 +56,29 @@ def bearing(scene: Any) -> ElasticBearing:
     return ElasticBearing(mesh_bodies(resolve(scene)), data)
 
 
-def steps(built: ElasticBearing, threads: int) -> tuple[float, State]:
-    """CPU time of the quickest step [s], and the state after all."""
-    system = built.system
-    assembly, contact = system.assembly, system.contact
+def pressed(built: ElasticBearing) -> State:
+    """Bodies at rest, undeformed, that overlap; the contacts begin there."""
+    assembly, contact = built.system.assembly, built.system.contact
     assert contact is not None
-    assembly.threads = ThreadPool(threads)
     held = np.tile([0.0, 0.5 * built.setup.geometry.pitch_diameter], (built.ball_count, 1)) - built.setup.offsets[1]
     y = built.guess(np.array([_PRESSED, 0.0, 0.0, 0.0, 0.0]), held)
     contact.restore(contact.place, np.zeros_like(contact.memory))
-    system.locate(y)
+    built.system.locate(y)
     if contact.friction is not None:
         contact.friction.begin((contact.move @ assembly.nodal(y)).reshape(-1, 3))
-    zero = np.zeros(system.size)
+    zero = np.zeros(built.system.size)
+    return State(y, zero, zero.copy())
+
+
+def steps(built: ElasticBearing, threads: int) -> tuple[float, State]:
+    """CPU time of the quickest step [s], and the state after all."""
+    system = built.system
+    system.assembly.threads = ThreadPool(threads)
+    start = pressed(built)
     few, many = 2, 2 + max(2, _WORK // built.cells)
     with system.threads:
-        recorder = Recorder(system, State(y, zero, zero.copy()), Schedule(_STEP, many, 1, many), None)
-        ahead = system.explicit(_STEP)
+        recorder = Recorder(system, start, Schedule(_STEP, many, 1, many), None)
+        ahead = system.explicit(_STEP, "cpu")
         assert ahead is not None
         short, long = (
             least(lambda count=count: ahead.take(recorder, count), _CALLS, time.process_time) for count in (few, many)

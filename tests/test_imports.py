@@ -15,7 +15,7 @@ try:
     {code}
 except SystemExit as end:
     assert (end.code or 0) == {status}, end.code
-sys.stderr.write("\\n" + json.dumps(sorted({{name.partition(".")[0] for name in sys.modules}})))
+sys.stderr.write("\\n" + json.dumps(sorted({{name.partition(".")[0] for name in sys.modules}} | {{"numba.cuda"}} & set(sys.modules))))
 """
 PICTURES = {"meshio", "gmsh", "pyvista", "matplotlib"}
 HEAVY = PICTURES | {"numba", "scipy"}
@@ -28,7 +28,7 @@ CASES = {
     "check and plan of a scene": (f"import raceway as rw; rw.check({ARTICLE!r}); rw.plan({ARTICLE!r})", HEAVY),
     "help": (MAIN.format(["--help"]), HEAVY | {"numpy", "rich", "cattrs"}),
     "help of a command": (MAIN.format(["run", "--help"]), HEAVY),
-    "run": (f"import tempfile; {MAIN.format(['run', ARTICLE, '--out'])[:-2]}, tempfile.mkdtemp()])", PICTURES),
+    "run": (f"import tempfile; {MAIN.format(['run', ARTICLE, '--out'])[:-2]}, tempfile.mkdtemp()])", PICTURES | {"numba.cuda"}),
 } | {word: (MAIN.format([word, *scene]), HEAVY) for word, *scene in (
     ("check", ARTICLE), ("plan", ARTICLE), ("dev", "plugins",), ("dev", "schema",), ("dev", "cache",),
 )}  # fmt: skip

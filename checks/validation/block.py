@@ -137,7 +137,7 @@ class Block:
         fastest = (2.0 / self.operator.stable_step()) ** 2 + (spring / self.lumped[self.base]).max()
         return float(2.0 / np.sqrt(fastest))
 
-    def explicit(self, dt: float) -> None:
+    def explicit(self, dt: float, where: str) -> None:
         """No steps of its own."""
 
     def stiffened(self) -> bool:

@@ -6,6 +6,7 @@ chebyshev      interpolation of smooth functions between few points
 lanes          one number of each of four balls at a time
 signatures     types of the kernels that are passed as function pointers
 thermal        steady temperatures of a network of six nodes, and its conductances
+device         CUDA devices, and functions for their kernels of the sources of the CPU's
 threads        threads that share work, and how many there are
 contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping
 ratings        load ratings of ISO 281 and ISO 76, and the contact loads that they stand for

@@ -232,8 +232,9 @@ class Observation:
 class StepsAhead(Protocol):
     """``take(recorder, count)``: committed steps after the recorder's last; see ``Recorder.accept_steps``."""
 
-    #: Steps that one call may take, some tenths of a second.
+    #: Steps that one call may take, some tenths of a second; what takes them.
     most: int
+    device: str
 
     def take(self, recorder: Any, count: int) -> tuple[State, float, float, float]: ...
 
@@ -261,7 +262,8 @@ class SteppedSystem(Protocol):
        step, and cheap therefore.
     10. ``commit()``: the trial memory of the last ``internal`` becomes the committed one; ``rollback()``: it is forgotten.
     11. ``observe(u, v)``: what a record keeps of the step that was just committed; computes no forces anew.
-    12. ``explicit(dt)``: explicit steps of a system's own, many at a time (``raceway.core.fem.elastic.explicit.ExplicitSteps``), or None.
+    12. ``explicit(dt, where)``: explicit steps of a system's own, many at a time (``raceway.core.fem.elastic.explicit.ExplicitSteps``), or
+        None; ``where`` is "cpu", "gpu", which a ``SceneError`` refuses where no CUDA device can take them, or "auto": one where it can.
     13. ``threads``: a ``ThreadPool``, which is open during a run and shares the passes over long vectors; of one thread where
         vectors are short.  Results do not depend on how many there are.
 
@@ -290,7 +292,7 @@ class SteppedSystem(Protocol):
     def contacts(self) -> tuple[float, float, float]: ...
     def stable_step(self) -> float: ...
     def stiffened(self) -> bool: ...
-    def explicit(self, dt: float) -> StepsAhead | None: ...
+    def explicit(self, dt: float, where: str) -> StepsAhead | None: ...
     def commit(self) -> None: ...
     def rollback(self) -> None: ...
     def observe(self, u: np.ndarray, v: np.ndarray) -> Observation: ...

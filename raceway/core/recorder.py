@@ -44,13 +44,14 @@ class Recorder:
     Attributes
     ----------
     state : the last accepted ``State``
+    device : that takes the steps
     evaluations : of the internal forces, all steps together
     """
 
     def __init__(self, system: SteppedSystem, state: State, schedule: Schedule, on_chunk: OnChunk | None) -> None:
         self.system, self.state, self.schedule, self.evaluations = system, state, schedule, 0
         self._on_chunk, self._reported = on_chunk, time.perf_counter()
-        self.done = 0
+        self.done, self.device = 0, "cpu"
         self._rows: list[tuple[float, Observation]] = []
         self._penetration = self._peak = self._work = 0.0
         self._outer = self.load(self.time_of(0))
@@ -142,6 +143,7 @@ class Recorder:
                 "steps": self.schedule.steps,
                 "evaluations": self.evaluations,
                 "threads": self.system.threads.count,
+                "device": self.device,
                 "max_penetration_m": self._penetration,
                 "peak_contact_force_n": self._peak,
             },

@@ -199,6 +199,7 @@ class Integrator(attrs.AttrsInstance, Protocol):
        the continuation of that motion where several exist.
     6. May be left out: ``orbit`` = True says of a ``steady`` method that its motion is the steady orbit, to its stated error,
        however it finds it: many points are then solved for by compiled loops, not by its driver.
+    7. May be left out: ``device`` = "gpu" asks for a CUDA device, "auto" for one where the bodies' steps can be taken there.
     """
 
     name: ClassVar[str]
@@ -598,6 +599,7 @@ DEFAULTS: dict[str, Any] = {
     "ramp_turns": 0.0,
     **dict.fromkeys(("unused", "same_bodies", "why_no_columns"), None),  # of bodies
     **dict.fromkeys(("rows", "turn_samples", "table", "warnings"), None),  # of quantities
+    "device": "cpu",  # of integrators
 }
 
 

@@ -95,11 +95,16 @@ class CentralDifference:
         help="stable step that finite elements have at least, by added mass; None: no mass is added",
         rule=optional(positive()),
     )
+    device: str = option(
+        "cpu",
+        help="'gpu': a CUDA device steps elastic bodies, formulation 'one_point', contacts 'nodal'; 'auto': where it can",
+        rule=one_of("cpu", "gpu", "auto"),
+    )
 
     @property
     def scheme(self) -> Explicit:
         """Central differences."""
-        return Explicit()
+        return Explicit(self.device)
 
 
 @attrs.frozen

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from functools import partial
 from math import inf
 from pathlib import Path
+from typing import Any
 
 import attrs
 import numpy as np
@@ -102,7 +103,8 @@ def _run_band(scene: Scene, once: Callable[[Scene], Result]) -> Result:
     """The result at the low end of the band of time constants, with ``band`` from both ends; cost is that of both runs."""
     contacts = [attrs.evolve(scene.contact, damping=0.0, time_constant=tau) for tau in TIME_CONSTANTS]
     low, high = (once(attrs.evolve(scene, contact=contact)) for contact in contacts)
-    sums = {key: value + high.cost[key] for key, value in low.cost.items() if key not in ("peak_memory_bytes", "threads")}
+    of_one = ("peak_memory_bytes", "threads", "device")
+    sums = {key: value + high.cost[key] for key, value in low.cost.items() if key not in of_one}
     model = attrs.evolve(low.model, problem=resolve(scene))
     warnings = tuple(dict.fromkeys((*low.warnings, *high.warnings)))
     return attrs.evolve(low, model=model, cost={**high.cost, **sums}, band=band_table([low, high]), warnings=warnings)
@@ -276,14 +278,16 @@ def _quantities_of(scene: Scene, model: Model, equilibrium: Equilibrium, simulat
     return quantities
 
 
-def _work(motions: list[Simulation]) -> dict[str, int]:
+def _work(motions: list[Simulation]) -> dict[str, Any]:
     """Counts of the table ``cost``."""
     counts, unit = [motion.whole.counts for motion in motions], 1 if sys.platform == "darwin" else 1024
+    devices = [count["device"] for count in counts if count.get("device", "cpu") != "cpu"]
     return {
         "steps": sum(count["steps"] for count in counts),
         "newton_iterations": sum(count["evaluations"] for count in counts),
         "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit,
         "threads": max((count.get("threads", 1) for count in counts), default=1),
+        **({"device": devices[0]} if devices else {}),
     }
 
 

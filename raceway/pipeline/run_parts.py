@@ -1,6 +1,7 @@
 """Rows of ``raceway run``, section by section, from the content of result.json."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from raceway.answers.quantities import HEADLINE, K_ERROR, KXX, KYY, KYY_TILTS_FOLLOW, STIFFNESSES, K, Quantity, X
 from raceway.answers.table import Row, number, tilt_words
@@ -209,7 +210,7 @@ def orbit_rows(orbits: Sequence[ReadTables]) -> list[Row]:
     return rows
 
 
-def cost_row(cost: Mapping[str, float]) -> Row:
+def cost_row(cost: Mapping[str, Any]) -> Row:
     """Time and memory; of a run that compiled, which happens once, time alone."""
     compile_s, digits = cost["compile_s"], 2 if cost["compile_s"] else 3
     words = [number(cost["cpu_s"], "CPU-s", digits)] if "cpu_s" in cost else []
@@ -220,6 +221,7 @@ def cost_row(cost: Mapping[str, float]) -> Row:
         words += [f"{cost['steps']} steps"] if cost["steps"] else []
         words += [f"{cost['peak_memory_bytes'] / 2**20:.0f} MiB"]
         words += [f"{cost['threads']} threads"] if cost["threads"] > 1 else []
+        words += [f"steps on {cost['device']}"] if "device" in cost else []
     return "wall time", number(cost["wall_s"], "s", 3), ", ".join(words)
 
 

@@ -8,6 +8,7 @@ import attrs
 
 from raceway.core.time.schemes import missing_driver
 from raceway.errors import Mistake, SceneError
+from raceway.framework.contracts import said
 from raceway.framework.duties import has_phase, renews, speed_rpm
 from raceway.framework.rules import Rule, mistakes, speaking
 from raceway.planning.resolve import GROWTH, MOMENTS, ROWS, Problem, recorded_per_turn
@@ -187,6 +188,10 @@ _MOTION: tuple[Rule[Problem], ...] = (
         "integrator.kind", lambda p: p.recorded and missing_driver(p.integrator.method.scheme, p.traits.compiled),
         lambda p: f"has no driver `{missing_driver(p.integrator.method.scheme, p.traits.compiled)}`, which {_slow(p)} needs: its "
         "forces are not compiled. Use 'newmark' or 'quasi_static', or contact resultants on rigid or condensed bodies",
+    ),
+    Rule(
+        "integrator.device", lambda p: p.recorded and said(p.integrator.method, "device") == "gpu" and not p.traits.every_node,
+        "is for bodies.kind = 'elastic', whose every node moves: use 'cpu', or 'auto' for scenes of both",
     ),
     Rule(
         "integrator.kind", lambda p: p.recorded and p.integrator.method.steady and p.unsteady,

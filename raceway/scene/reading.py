@@ -290,6 +290,8 @@ def _plugin_table(
         holders = [e.name for e in registry.of_kind(kind) if key in attrs.fields_dict(e.plugin)]
         if plugin is AutoIntegrator and holders:
             rule = f"belongs to a method, which kind 'auto' chooses: say kind = {' or '.join(map(repr, holders))} with it"
+        elif holders:
+            rule += f"; kind {' and '.join(map(repr, holders))} has it"
         mistakes.append(Mistake(f"{name}.{key}", options.pop(key), rule))
     method = structure(options, plugin, name, mistakes)
     if core is None:

@@ -99,7 +99,7 @@ class SteppedBearing:
         np.maximum(self._stiffest, np.diag(self._now.stiffness), out=self._stiffest)
         return float(self.system.damped_time_step(self._now.stiffness, self._now.damping))
 
-    def explicit(self, dt: float) -> None:
+    def explicit(self, dt: float, where: str) -> None:
         """No steps of its own."""
 
     def stiffened(self) -> bool:

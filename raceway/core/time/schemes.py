@@ -89,7 +89,9 @@ def integrate(
 
 @attrs.frozen
 class Explicit:
-    """Equations in ``raceway.core.time``."""
+    """Equations in ``raceway.core.time``; ``device``: "cpu", "gpu", or "auto": a CUDA device where it can take the steps."""
+
+    device: str = "cpu"
 
     def compiled(self, system: System, start: Motion, schedule: Schedule, on_chunk: OnChunk | None = None) -> Record:
         """Steps of a compiled ring."""
@@ -104,7 +106,7 @@ class Explicit:
         """Steps of any system, without matrices."""
         from raceway.core.time.stepped import central_difference
 
-        central_difference(system, recorder)
+        central_difference(system, recorder, self.device)
 
 
 @attrs.frozen

@@ -88,8 +88,8 @@ def _implicit_step(
     raise recorder.stalled(history)
 
 
-def central_difference(system: SteppedSystem, recorder: Recorder) -> None:
-    """Take all steps of the recorder's schedule.
+def central_difference(system: SteppedSystem, recorder: Recorder, device: str = "cpu") -> None:
+    """Take all steps of the recorder's schedule; ``device``: see ``SteppedSystem``.
 
     Raises
     ------
@@ -102,7 +102,8 @@ def central_difference(system: SteppedSystem, recorder: Recorder) -> None:
     limit = system.stable_step()
     system.rollback()
     compare(limit, system, recorder, "")
-    ahead, steps = system.explicit(schedule.dt), schedule.steps
+    ahead, steps = system.explicit(schedule.dt, device), schedule.steps
+    recorder.device = "cpu" if ahead is None else ahead.device
     while ahead is not None and recorder.done < steps:
         count = min(steps - recorder.done, schedule.stride - (schedule.first + recorder.done) % schedule.stride, ahead.most)
         recorder.evaluations += count

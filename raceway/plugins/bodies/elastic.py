@@ -9,7 +9,7 @@ from raceway.bodies.model import BuiltBearing
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
 from raceway.errors import Mistake
-from raceway.framework.contracts import Cost, Traits
+from raceway.framework.contracts import Cost, Traits, said
 from raceway.framework.duties import is_constraint, is_hertzian, is_swept
 from raceway.framework.options import one_of, option, positive
 from raceway.framework.rules import Rule, mistakes
@@ -43,6 +43,9 @@ _BUILD_S, _SETUP_S, _SOLVE_S = 2.0e-5, (2.0e-4, 1.5e-4), (4.0e-5, 2.2e-4)
 #: Processor seconds a cell of an explicit step: in compiled loops, of hexahedra of one point and others stepped from Python, and of
 #: the Python beside (``python -m checks.explicit_step`` has the first).
 _LOOP_S, _FORCE_S, _PYTHON_S = 8.5e-8, (1.5e-7, 4.9e-6), 1.0e-3
+#: Bytes that a device reads and writes in a step for an element with its node, twenty-four forces to and fro and eighteen vectors, gathered
+#: reads counted half more; least seconds of a step, whose threads wait for each other six times.  Estimates: no device is measured yet.
+_DEVICE_BYTES, _DEVICE_S = 1.0e3, 1.0e-4
 #: Thinnest element of a ball over the width of its cells under the patch; first layer of its cells over the finest length
 #: that is asked for.  Both from meshes of 1 cell to the semi-axis, whose steps are 8.5e-9 and 2.1e-8 s by elements.
 _THINNEST, _DEPTH = 0.43, 0.6
@@ -92,12 +95,50 @@ def elastic_cost(problem: Problem) -> _ElasticCost | None:
     if not method.inertial:
         return _ElasticCost(cells, unknowns, memory, 0.0, first, neighbour, neighbour)
     step = (
-        _STEP[resultants] * solve + 0.2 * (1 - resultants) * setup
-        if method.implicit
-        else cells * _FORCE_S[int(problem.bodies.formulation != "one_point")] + _PYTHON_S
+        _STEP[resultants] * solve + 0.2 * (1 - resultants) * setup if method.implicit else _step_s(problem, cells, unknowns)
     )
     start = 4.0 * neighbour + setup if problem.integrator.start == "orbit" else 0.0
     return _ElasticCost(cells, unknowns, memory, _stable_step(problem), first, start, step)
+
+
+def _not_compiled(problem: Problem) -> str:
+    """What keeps explicit steps out of compiled loops, the only ones that a device has; empty where nothing does."""
+    if problem.bodies.formulation != "one_point":
+        dearer = f"whose eight points take the processor {_FORCE_S[1] / _FORCE_S[0]:.0f} times as long"
+        return f"steps hexahedra of bodies.formulation = 'one_point', not '{problem.bodies.formulation}', {dearer}"
+    if problem.contact.discretisation != "nodal":
+        return "steps contacts of contact.discretisation = 'nodal': resultants are found by iterations"
+    if not problem.supports.inner_seat == problem.supports.outer_seat == "rigid":
+        return "steps bodies on rigid seats: set supports.inner_seat and supports.outer_seat 'rigid'"
+    return ""
+
+
+def device_of(problem: Problem, cells: int, unknowns: int) -> tuple[str, str]:
+    """CUDA device that takes the steps of a motion, empty where the processor does, and why."""
+    asked = said(problem.integrator.method, "device")
+    if asked == "cpu" or not problem.recorded:
+        return "", "integrator.device is 'cpu'"
+    from raceway.core.device import need_bytes, refusal, title
+    from raceway.core.signatures import LAW
+    from raceway.framework.probe import plugin_kernel
+
+    if reason := _not_compiled(problem):
+        return "", reason
+    law = plugin_kernel(problem.contact.law, "contact law", LAW, "LAW")
+    if reason := refusal(cells, unknowns // 3, law):
+        return "", reason
+    return title(), f"integrator.device is '{asked}', {need_bytes(cells, unknowns // 3) / 2**30:.2g} GiB of its memory"
+
+
+def _step_s(problem: Problem, cells: int, unknowns: int) -> float:
+    """Time of an explicit step [s]: of the processor, or of a device by how fast its memory is."""
+    if device_of(problem, cells, unknowns)[0]:
+        from raceway.core.device import bandwidth
+
+        return max(cells * _DEVICE_BYTES / bandwidth(), _DEVICE_S)
+    if _not_compiled(problem):
+        return cells * _FORCE_S[problem.bodies.formulation != "one_point"] + _PYTHON_S
+    return cells * _LOOP_S
 
 
 def _by_superelements(problem: Problem, mesh: Tables, cells: int, unknowns: int) -> _ElasticCost:
@@ -114,10 +155,7 @@ def _by_superelements(problem: Problem, mesh: Tables, cells: int, unknowns: int)
     if not method.inertial or problem.excitation is None:
         return _ElasticCost(cells, unknowns, int(memory), 0.0, first, solve, solve)
     start = 4.0 * solve if problem.integrator.start == "orbit" else 0.0
-    compiled = (
-        problem.bodies.formulation == "one_point" and "rigid" == problem.supports.inner_seat == problem.supports.outer_seat
-    )
-    step = cells * _LOOP_S if compiled else cells * _FORCE_S[problem.bodies.formulation != "one_point"] + _PYTHON_S
+    step = 0.0 if method.implicit else _step_s(problem, cells, unknowns)
     if method.implicit:
         memory += _FACTOR_BYTES * sum(n ** (4.0 / 3.0) for n in sizes.values())
         start, step = start + factor, _STEP_S * cells
@@ -262,6 +300,10 @@ class Elastic:
             )
             return [Mistake("integrator.least_step", wanted, why)]
         cost, most = elastic_cost(problem), _SHARE * allowed_bytes()
+        if cost is not None and problem.recorded and said(problem.integrator.method, "device") == "gpu":
+            device, why = device_of(problem, cost.cells, cost.unknowns)
+            if not device:
+                return [Mistake("integrator.device", "gpu", f"{why}, or use 'cpu' or 'auto'")]
         if cost is None or cost.bytes <= most:
             return []
         why = (
@@ -309,6 +351,9 @@ class Elastic:
             why = f"mesh.kind is {problem.mesh.name}: " if problem.mesh is not None else ""
             why += "each ring is factored completely unless its sectors are equal, and each ball that differs"
             parts.keep("factors of equal balls and sectors", why)
+        if cost is not None and said(problem.integrator.method, "device") != "cpu" and problem.recorded:
+            device, why = device_of(problem, cost.cells, cost.unknowns)
+            parts.decide("steps on a CUDA device", f"{why}: {device}", (not device, f"a device {why}"))
         why = "along the normals of the most loaded contacts, once, at rest; `raceway view` recovers the stresses of all elements"
         why_not = "contact resultants on coarse meshes have no stresses of contacts below them"
         parts.decide("stress recovery", why, (not nodal, why_not))

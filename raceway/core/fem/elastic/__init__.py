@@ -15,5 +15,6 @@ superelement   a body eliminated once, down to the nodes that contacts may touch
 interface   all bodies, seen from the nodes of their contacts;  superelement_solver: Newton's method in the contacts alone
 explicit    compiled explicit steps of one-point elements in contact at surface points
 bearing     the bodies of a ball bearing as one system, in equilibrium or stepped in time
+device_steps   explicit steps on a CUDA device, by the functions of ``explicit``
 ring        the bearing seen from its inner ring: the interface of all systems
 """

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from raceway.core import device
 from raceway.core.fem.elastic.assembly import Assembly, Body, Cage, Frame
 from raceway.core.fem.elastic.bearing_data import BearingData
 from raceway.core.fem.elastic.contact import CIRCLE, Contact, NodalContact
@@ -18,7 +19,7 @@ from raceway.core.fem.hexahedron.operator import HexOperator
 from raceway.core.fem.mesh.hex_mesh import HexMesh
 from raceway.core.record import Motion, Observation, State, divide
 from raceway.core.threads import ThreadPool
-from raceway.errors import ConvergenceError, MeshError
+from raceway.errors import ConvergenceError, MeshError, SceneError
 
 #: Relative residual of the linear solves of a time step: Newton's next iteration takes the rest.
 _LINEAR_TOLERANCE = 1e-4
@@ -213,8 +214,19 @@ class ElasticSystem:
         """Whether a contact is stiffer than at any ``stable_step`` before: elements stay as they are."""
         return self.contact is not None and self.contact.stiffened()
 
-    def explicit(self, dt: float) -> ExplicitSteps | None:
-        return ExplicitSteps(self, dt) if served(self) else None
+    def explicit(self, dt: float, where: str) -> ExplicitSteps | None:
+        a, able = self.assembly, served(self)
+        if where != "cpu":
+            reason = "steps only hexahedra of the formulation 'one_point' on rigid seats in contact at surface points"
+            if able and self.contact is not None:
+                reason = device.refusal(sum(len(body.operator.cells) for body in a.bodies), a.nodes, self.contact.law)
+            if not reason:
+                from raceway.core.fem.elastic.device_steps import DeviceSteps
+
+                return DeviceSteps(self, dt)
+            if where == "gpu":
+                raise SceneError.at("integrator.device", "gpu", f"{reason}, or use 'cpu' or 'auto'")
+        return ExplicitSteps(self, dt) if able else None
 
     def commit(self) -> None:
         if self.contact is not None:

@@ -136,7 +136,8 @@ WORK = 48 * WIDTH
 _W = float64[::1]
 
 
-_THREE, _FOUR, _SIX, _SEVEN, _EIGHT = (types.UniTuple(float64, count) for count in (3, 4, 6, 7, 8))
+_THREE, _FOUR, _SIX, _SEVEN = (types.UniTuple(float64, count) for count in (3, 4, 6, 7))
+_THREE_SEVEN = types.UniTuple(_SEVEN, 3)
 
 
 @jit(_SEVEN(_W, uint64), inline=True)
@@ -191,32 +192,43 @@ def _force(s, b, q):
     )  # fmt: skip
 
 
+@jit(_THREE_SEVEN(_THREE_SEVEN, _THREE_SEVEN, float64, float64, float64), inline=True)
+def element_force(x, u, lame, shear, hourglass):
+    """Modes of the nodal forces of one element along x, y and z, of those of its coordinates x [m] and displacements u [m].
+
+    lame, shear, hourglass : lambda, mu and hourglass (lambda + 2 mu), each over 64 [Pa]
+    """
+    b = gradient_modes(x[1], x[2]), gradient_modes(x[2], x[0]), gradient_modes(x[0], x[1])
+    r = 1.0 / mean_gradient(b[0], x[0])  # 1 / (64 V)
+    k = hourglass * r * (square(b[0]) + square(b[1]) + square(b[2]))  # kappa / 8, as B:B = squares / 512
+    gu, gv, gz = _gradient(r, b, u[0]), _gradient(r, b, u[1]), _gradient(r, b, u[2])
+    bulk, twice = lame * (gu[0] + gv[1] + gz[2]), 2.0 * shear
+    sxy, syz, szx = shear * (gu[1] + gv[0]), shear * (gv[2] + gz[1]), shear * (gu[2] + gz[0])
+    q = _hourglass(k, gu, u[0], x)
+    s = bulk + twice * gu[0] - _orthogonal(r, q, x[0]), sxy - _orthogonal(r, q, x[1]), szx - _orthogonal(r, q, x[2])
+    along_x = _force(s, b, q)
+    q = _hourglass(k, gv, u[1], x)
+    s = sxy - _orthogonal(r, q, x[0]), bulk + twice * gv[1] - _orthogonal(r, q, x[1]), syz - _orthogonal(r, q, x[2])
+    along_y = _force(s, b, q)
+    q = _hourglass(k, gz, u[2], x)
+    s = szx - _orthogonal(r, q, x[0]), syz - _orthogonal(r, q, x[1]), bulk + twice * gz[2] - _orthogonal(r, q, x[2])
+    return along_x, along_y, _force(s, b, q)
+
+
 @jit(void(_W, uint64, float64, float64, float64), inline=True)
 def _block(w, base, lame, shear, hourglass):
     """Replace the displacements of 16 elements by their nodal forces.
 
     w : coordinate c of node I of element l at ``base + (8 c + I) WIDTH + l`` [m]; the displacements follow likewise [m]
-    lame, shear, hourglass : lambda, mu and hourglass (lambda + 2 mu), each over 64 [Pa]
     """
     for i in range(WIDTH):
         at = base + uint64(i)  # unsigned: numba then checks for no index from the end
         x = _load(w, at), _load(w, at + uint64(128)), _load(w, at + uint64(256))
-        b = gradient_modes(x[1], x[2]), gradient_modes(x[2], x[0]), gradient_modes(x[0], x[1])
-        r = 1.0 / mean_gradient(b[0], x[0])  # 1 / (64 V)
-        k = hourglass * r * (square(b[0]) + square(b[1]) + square(b[2]))  # kappa / 8, as B:B = squares / 512
-        u, v, z = _load(w, at + uint64(384)), _load(w, at + uint64(512)), _load(w, at + uint64(640))
-        gu, gv, gz = _gradient(r, b, u), _gradient(r, b, v), _gradient(r, b, z)
-        bulk, twice = lame * (gu[0] + gv[1] + gz[2]), 2.0 * shear
-        sxy, syz, szx = shear * (gu[1] + gv[0]), shear * (gv[2] + gz[1]), shear * (gu[2] + gz[0])
-        q = _hourglass(k, gu, u, x)
-        s = bulk + twice * gu[0] - _orthogonal(r, q, x[0]), sxy - _orthogonal(r, q, x[1]), szx - _orthogonal(r, q, x[2])
-        _store(w, at + uint64(384), _force(s, b, q))
-        q = _hourglass(k, gv, v, x)
-        s = sxy - _orthogonal(r, q, x[0]), bulk + twice * gv[1] - _orthogonal(r, q, x[1]), syz - _orthogonal(r, q, x[2])
-        _store(w, at + uint64(512), _force(s, b, q))
-        q = _hourglass(k, gz, z, x)
-        s = szx - _orthogonal(r, q, x[0]), syz - _orthogonal(r, q, x[1]), bulk + twice * gz[2] - _orthogonal(r, q, x[2])
-        _store(w, at + uint64(640), _force(s, b, q))
+        u = _load(w, at + uint64(384)), _load(w, at + uint64(512)), _load(w, at + uint64(640))
+        f = element_force(x, u, lame, shear, hourglass)
+        _store(w, at + uint64(384), f[0])
+        _store(w, at + uint64(512), f[1])
+        _store(w, at + uint64(640), f[2])
 
 
 @jit(void(int64, _MESH, _W, _W, _W), releases=True)
@@ -272,14 +284,20 @@ def range_force(r, mesh, u, work, f):
                 f[n + uint64(2)] += work[at + uint64(256)]
 
 
-@jit(_EIGHT(uint32[:, ::1], int64, uint64, _W), inline=True)
-def _nodes(cells, e, k, a):
-    """Component k of the nodal values of an element."""
+@jit(_SEVEN(uint32[:, ::1], int64, uint64, _W), inline=True)
+def _component(cells, e, k, a):
+    """Modes of component k of the nodal values of an element."""
     e, three = uint64(e), uint64(3)
-    return (
+    return modes((
         a[three * cells[e, 0] + k], a[three * cells[e, 1] + k], a[three * cells[e, 2] + k], a[three * cells[e, 3] + k],
         a[three * cells[e, 4] + k], a[three * cells[e, 5] + k], a[three * cells[e, 6] + k], a[three * cells[e, 7] + k],
-    )  # fmt: skip
+    ))  # fmt: skip
+
+
+@jit(_THREE_SEVEN(uint32[:, ::1], int64, _W), inline=True)
+def corner_modes(cells, e, a):
+    """Modes of the three components of the nodal values of an element."""
+    return _component(cells, e, uint64(0), a), _component(cells, e, uint64(1), a), _component(cells, e, uint64(2), a)
 
 
 @jit(float64(int64, _MESH, _W), releases=True)
@@ -293,19 +311,12 @@ def range_hourglass_energy(r, mesh, u):
     ranges, cells, x, moduli = mesh
     total = 0.0
     for e in range(ranges[r, 0], ranges[r, 1]):
-        coordinates = (
-            modes(_nodes(cells, e, uint64(0), x)),
-            modes(_nodes(cells, e, uint64(1), x)),
-            modes(_nodes(cells, e, uint64(2), x)),
-        )
-        b = (
-            gradient_modes(coordinates[1], coordinates[2]), gradient_modes(coordinates[2], coordinates[0]), gradient_modes(coordinates[0], coordinates[1]),
-        )  # fmt: skip
-        over = 1.0 / mean_gradient(b[0], coordinates[0])
+        at, moved = corner_modes(cells, e, x), corner_modes(cells, e, u)
+        b = gradient_modes(at[1], at[2]), gradient_modes(at[2], at[0]), gradient_modes(at[0], at[1])
+        over = 1.0 / mean_gradient(b[0], at[0])
         squares = 0.0
         for k in range(3):
-            displacement = modes(_nodes(cells, e, uint64(k), u))
-            q = _hourglass(1.0, _gradient(over, b, displacement), displacement, coordinates)
+            q = _hourglass(1.0, _gradient(over, b, moved[k]), moved[k], at)
             squares += q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]
         total += 0.5 * (moduli[2] / 64.0) * over * (square(b[0]) + square(b[1]) + square(b[2])) * squares
     return total
