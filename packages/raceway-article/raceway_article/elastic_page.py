@@ -60,6 +60,7 @@ def drawings(content: ReadTables) -> list[Picture]:
         quantities = (("k", "K", 1e-6, "N/µm"), ("abs_z", "|Z|", 1e-6, "N/µm"), ("c", "C", 1.0, "N s/m"))
         panels = [_bars_panel(moving, *quantity) for quantity in quantities]
         pictures.append(Picture("article-elastic-stiffness", "K, |Z| and C of the operating point", tuple(panels)))
+    if any(row["from_condensed"] for row in moving):
         panels = [_cost_panel(case, of_case) for case, of_case in _by_case(moving).items()]
         pictures.append(Picture("article-elastic-cost", "Z against run time, from condensed bodies", tuple(panels)))
     return pictures
