@@ -82,13 +82,13 @@ COMMANDS = {
         *("--free", "load.axial", "--out", "OUT"),
     ),
     "study article": ("study", "article", *SMALL, "--out", "OUT"),
-    "catalogue --infer": ("catalogue", "--infer", "nmb_deep_groove"),
-    "catalogue --infer, one": ("catalogue", "--infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN:43 kN"),
+    "catalogue --infer, table": ("catalogue", "--infer", "nmb_deep_groove"),
+    "catalogue --infer": ("catalogue", "--infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN:43 kN"),
     "catalogue": ("catalogue", "7014C"),
     "catalogue, list": ("catalogue", "79*"),
     "catalogue, materials": ("catalogue", "--materials"),
     "dev law": ("dev", "law", "penalty", "--set", "contact.damping=300"),
-    "band": ("band", MINIMAL, "--tolerance", "load.axial=±10 %", "--samples", "2", "--processes", "0", "--out", "OUT"),
+    "band": ("band", MINIMAL, "--tolerance", "load.axial=±10 %", "--samples", "2", "--processes", "0", "--no-pictures", "--out", "OUT"),
     "band, derivatives": ("sensitivities", MINIMAL, "--by", "load.axial", "--by", "bearing.contact_angle_deg", "--out", "OUT"),
     "follow": ("follow", MINIMAL, "--over", "excitation.speed_rpm=9000:9500", "--points", "5", "--out", "OUT"),
     "view": ("view", MINIMAL, "--out", "OUT"),
@@ -104,8 +104,8 @@ COMMANDS = {
 QUICK = {"plan", "dev plugins", "dev new-plugin", "dev new-scene", "dev schema", "catalogue"}
 
 
-#: Commands with a scene of their own and those that write more than their answer: no run of theirs is repeated in quick tests.
-SLOW = {"study article", "fit, signals"}
+#: Commands with a scene of their own, those that write more than their answer, and what a quicker one does, too: no run of theirs is repeated in quick tests.
+SLOW = {"study article", "fit, signals", "catalogue --infer, table"}
 #: What a screen must name, whatever its words.
 TOLD = {
     "run": ("tangent kxx, kyy", "numerical error of K", "|Z|", "equivalent stiffness K", "equivalent damping C", "orbit"),
@@ -315,7 +315,7 @@ def full(*_given, **_named):
 
 
 @pytest.mark.parametrize(
-    "name", plain("view --mesh", "view", slow=("study rig", "stability", "catalogue --infer", "dev check-plugin"))
+    "name", plain("view --mesh", "view", slow=("study rig", "stability", "dev check-plugin"))
 )  # meshes and views are files alone, written by other libraries
 def test_json_is_all_there_is_and_a_full_disk_costs_the_file_alone(name, seen, folder, tmp_path, monkeypatch):
     given, out = words(name, seen, folder, tmp_path / "out"), place(name, folder)
@@ -355,7 +355,7 @@ def test_a_place_that_cannot_be_written_is_refused_before_anything_is_computed(n
         assert found.stderr.count("error: ") == 1
 
 
-@pytest.mark.parametrize("name", plain(*QUICK, slow=("study rig", "band", "catalogue --infer", "dev check-plugin")))
+@pytest.mark.parametrize("name", plain(*QUICK, slow=("study rig", "band", "dev check-plugin")))
 def test_ctrl_c_ends_a_command_with_130_one_line_and_whole_files(name, seen, folder, tmp_path, monkeypatch):
     def stop(*_given):
         raise KeyboardInterrupt
@@ -391,7 +391,7 @@ PATHS = {
 
 @pytest.mark.parametrize("name", plain())
 def test_a_value_of_a_wrong_type_is_refused_by_every_option(name, seen, folder, monkeypatch):
-    given = words("catalogue --infer, one" if name == "catalogue --infer" else name, seen, folder)
+    given = words(name, seen, folder)
     look("sweep", seen, folder)  # which a sweep that goes on has nothing to add to
     if name != "fit":  # columns are looked for in what was read
         monkeypatch.setattr(ProgressBar, "__call__", lambda *_: pytest.fail("computed"))
@@ -405,7 +405,7 @@ def test_a_value_of_a_wrong_type_is_refused_by_every_option(name, seen, folder, 
 
 
 #: How a command is told to work in two processes.
-TWO = {"sweep": ("--executor", "processes", "--workers", "2"), "band": ("--processes", "2", "--no-pictures")}
+TWO = {"sweep": ("--executor", "processes", "--workers", "2"), "band": ("--processes", "2")}
 
 
 @pytest.mark.parametrize("name", ["band", pytest.param("sweep", marks=pytest.mark.slow)])

@@ -67,6 +67,7 @@ def test_a_worker_killed_half_way_and_one_without_the_plugin_change_nothing(clus
     assert "contact law 'elsewhere' of law_elsewhere 1.0 is missing" in refused[0]
 
 
+@pytest.mark.slow
 def test_workers_of_another_version_are_refused_by_name(cluster, tmp_path):
     found = prepared(tmp_path / "store")
     wanted = {**found.facts["identity"], "raceway": "9.9"}
@@ -86,8 +87,8 @@ def test_a_scheduler_that_does_not_answer(tmp_path, listens):
         if listens:
             door.listen()
         with pytest.raises(PluginError) as told:
-            fill_store(prepared(tmp_path / "store"), Dask(scheduler=address, patience=1.0))
-    assert f"no dask scheduler answers at `{address}` within 1 s" in str(told.value)
+            fill_store(prepared(tmp_path / "store"), Dask(scheduler=address, patience=0.5))
+    assert f"no dask scheduler answers at `{address}` within 0.5 s" in str(told.value)
     assert "dask scheduler" in str(told.value) and ": ." not in str(told.value)  # every failure has a word
 
 

@@ -19,6 +19,8 @@ EXAMPLES = ROOT / "examples" / "plugins"
 BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 FILES = {match.group(1): text for _, text in BLOCKS if (match := re.match(r"# (\S+\.(?:py|toml))\n", text))}
 FILES |= {path.name: path.read_text(encoding="utf-8") for path in EXAMPLES.glob("*.py")}
+#: Each runs in a scene in test_every_kind.py, or in the tests below.
+DEAR = ("trapezoidal.py", "power_law.py", "radial_balls.py", "pressure_ratio.py", "damped.py")
 PLUGINS = [name for name, text in FILES.items() if re.search(r"@(rw\.)?hookimpl", text)]
 
 
@@ -55,9 +57,7 @@ def test_a_law_written_from_the_page_is_short_conforms_and_runs_in_a_scene(folde
     assert 0.75 < power.identification.equivalent_stiffness / hertz.identification.equivalent_stiffness < 0.95
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in ("trapezoidal.py", "power_law.py"))) for name in PLUGINS]
-)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name in DEAR)) for name in PLUGINS])
 def test_every_plugin_on_the_page_conforms(folder, name):
     registry = Registry(third_party=False)
     for entry in registry.load_file(folder / name):
@@ -84,6 +84,7 @@ def test_the_other_blocks_run_in_order(folder, capsys):
     assert "N/m" in told and "passed" in told
 
 
+@pytest.mark.slow
 def test_the_test_file_on_the_page_passes(folder):
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_power.py"]
     done = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)

@@ -150,6 +150,7 @@ def test_what_runs_away_is_not_meshed():
         Pool((None, None), wider=wider).widened(solve)
 
 
+@pytest.mark.slow
 def test_linearised_bearings_go_with_their_iteration():
     """Those of all iterations stayed in memory: each knew itself through what it keeps."""
     import gc

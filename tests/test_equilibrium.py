@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from checks.validation.equilibria import loose, random_scenes
+from checks.validation.equilibria import RESIDUAL, loose, random_scenes, solve
 from checks.validation.reference.ring import Ring
 from checks.validation.reference.statics import equilibrium
 from checks.validation.scenes import imbalance, static
@@ -24,6 +24,13 @@ def twin(model: Model) -> Ring:
         b.ball_diameter, b.pitch_diameter, b.ball_count, b.contact_angle, b.conformity_inner, b.conformity_outer,
         spin_speed=spin, first_azimuth=np.radians(b.first_ball_azimuth_deg),
     )  # fmt: skip
+
+
+@pytest.mark.parametrize("law", ["hertz", "penalty"])
+def test_scenes_at_random_are_solved_to_the_tolerance(law):
+    """The potential of loaded rings is convex: there is an equilibrium.  A tenth of those of evidence/test_rigid.py."""
+    tally = solve(random_scenes(law, 2026, 50))
+    assert not tally.unsolved and max(tally.residuals) < RESIDUAL
 
 
 @pytest.mark.parametrize("tilt", ["locked", "free"])

@@ -289,7 +289,7 @@ def test_neighbouring_curves_differ_in_grey_and_for_the_colour_blind():
     assert len({look["marker"] for look in looks}) == 8 and len({str(look["linestyle"]) for look in looks[:5]}) == 5
 
 
-def test_pictures_are_written_for_a_page_and_for_a_paper(tmp_path):
+def test_pictures_are_written_for_a_page_and_for_a_paper(tmp_path, all_pixels):
     """As PNG at 300 dots per inch; on request also with letters that publishers take."""
     for form in ("pdf", "svg"):
         found = invoke("run", MINIMAL, "--picture-format", form, "--out", tmp_path)

@@ -167,6 +167,7 @@ def test_an_orbit_of_two_turns_that_still_settles_is_no_quasi_periodic_motion():
     assert kind_of_section(np.stack([x, 0.3 * x], axis=1), 1.0) == (REPEATS, 2, None)
 
 
+@pytest.mark.slow
 def test_the_bearing_s_period_doubles_under_a_radial_load(tmp_path):
     """Near twice the radial natural frequency; the doubled orbit closes after two turns of the reference ring, not after one."""
     tables = {

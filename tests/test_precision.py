@@ -9,6 +9,7 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
+from rich.console import Console
 
 from checks.validation.command_line import ARTICLE, invoke
 from raceway import RacewayError, SceneError, precision, scene_from_dict
@@ -76,13 +77,23 @@ def test_the_front_falls_and_the_cheapest_are_on_it(ladder):
     assert all(place in content["front"] for place in content["cheapest"].values())
 
 
-def test_json_is_what_the_design_promises(ladder, tmp_path):
+def shown(renderable):
+    """Lines of a screen."""
+    console = Console(width=80)
+    with console.capture() as captured:
+        console.print(renderable, crop=False)
+    return [line.rstrip() for line in captured.get().splitlines()]
+
+
+def test_json_and_screen_are_what_the_design_promises(ladder, tmp_path):
     files = {path.name: path for path in ladder.save(tmp_path, pictures=True)}
     content = json.loads(files["precision.json"].read_text())
     assert {"value", "error", "how"} <= set(content["reference"])
     wanted = {"setting", "value", "error", "wall_s", "cpu_s", "compile_s", "steps", "status", "reason", "order", "cost"}
     assert all(wanted <= set(row) for row in content["rows"])
     assert {"z_real", "z_imag", "axial_displacement", "peak_ball_load", "p0"} <= set(content["rows"][0]["quantities"])
+    screen = " ".join(shown(ladder.screen(["precision.json"])))
+    assert "bound" in ladder.words[0] and all(text in screen for text in (*ladder.words, "written: precision.json"))
     page = files["precision.md"].read_text()
     assert "central_difference" in page and "| order |" in page
     assert files["precision.png"].stat().st_size > 10_000
@@ -110,7 +121,7 @@ def test_what_is_refused_or_fails_stays_in_the_table_with_its_reason():
 
 
 def test_finished_rows_survive_a_stop_and_are_reused(tmp_path):
-    seen = []
+    seen, steps = [], LADDER[1:]
 
     def stop(what, done, total):
         seen.append(what)
@@ -118,12 +129,12 @@ def test_finished_rows_survive_a_stop_and_are_reused(tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        precision(FEW, LADDER, repeats=1, kept=tmp_path, progress=stop)
+        precision(FEW, steps, repeats=1, kept=tmp_path, progress=stop)
     with written(tmp_path) as store:
         assert store.counts()["done"] == 2
-    found = precision(FEW, LADDER, repeats=1, kept=tmp_path)
-    assert [row["reused"] for row in found.judged] == [True, True, False, False, False, False]
-    again = precision(FEW, LADDER, repeats=1, kept=tmp_path)
+    found = precision(FEW, steps, repeats=1, kept=tmp_path)
+    assert [row["reused"] for row in found.judged] == [True, True, False]
+    again = precision(FEW, steps, repeats=1, kept=tmp_path)
     assert all(row["reused"] for row in again.judged)
     assert again.to_dict()["reference"] == found.to_dict()["reference"]
 
@@ -132,6 +143,7 @@ def full(*_):
     raise RacewayError("database or disk is full")
 
 
+@pytest.mark.slow
 def test_a_disk_that_takes_no_more_rows_does_not_stop_the_study(tmp_path, monkeypatch):
     monkeypatch.setattr(Store, "put", full)
     with pytest.warns(UserWarning, match="database or disk is full"):

@@ -206,6 +206,7 @@ def test_sweeps_and_tables_of_coefficients_have_them(tmp_path):
     assert [float(row[head.index("mean_load [N]")]) for row in rows] == expected
 
 
+@pytest.mark.slow
 def test_the_page_of_a_bearing_has_them(loads):
     page = rw.view(SCENE, page=True).pictures["view.html"].decode()
     expected = rw.run(SCENE).quantities["mean_load"]

@@ -56,6 +56,7 @@ def test_two_stable_motions_are_told(kind):
     assert "Steady motions" in words and "-7.548 + 7.854j" in words
 
 
+@pytest.mark.slow
 def test_without_damping_the_branch_leads_through_no_force():
     """The motion opposite in phase is the one that the branch meets at the opposite force, half a turn later."""
     result = run(heavy(82.0, damping=0.0, kind="periodic", tolerance=1e-9))
@@ -97,6 +98,7 @@ def test_a_branch_that_closes_leads_to_the_stable_motion():
     assert multiplier == pytest.approx(1.0, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_the_least_damping_does_not_hide_the_stable_motion():
     """800 N: a crossing of branches that any damping parts; the motion beyond it is the one that counts."""
     tables = article(800.0, kind="periodic", tolerance=1e-9)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from checks.validation.command_line import invoke, raceway
+from checks.validation.command_line import invoke
 from raceway import PluginError, hookimpl
 from raceway.testing import Registry
 
@@ -31,10 +31,10 @@ SAYS = 'return click.Command("mine", params=[click.Argument(["word"])], callback
 def test_a_study_of_ones_own_is_listed_and_run(tmp_path):
     file = tmp_path / "mine.py"
     file.write_text(STUDY.format(body=SAYS), encoding="utf-8")
-    shown = raceway("study", "--plugin", file, "--help").stdout
+    assert "mine" not in invoke("study", "--help").stdout
+    shown = invoke("study", "--plugin", file, "--help").stdout
     assert "What I look at." in shown and all(name in shown for name in ("article", "rig"))
-    assert raceway("study", "--plugin", file, "mine", "seen").stdout == "seen\n"
-    assert "mine" not in raceway("study", "--help").stdout
+    assert invoke("study", "--plugin", file, "mine", "seen").stdout == "seen\n"
 
 
 @pytest.mark.parametrize(
@@ -47,10 +47,10 @@ def test_a_study_of_ones_own_is_listed_and_run(tmp_path):
 def test_a_broken_study_is_told_in_one_line_and_takes_no_other_with_it(tmp_path, body, told):
     file = tmp_path / "mine.py"
     file.write_text(STUDY.format(body=body), encoding="utf-8")
-    found = raceway("study", "--plugin", file, "mine")
-    assert found.returncode == 2 and told in found.stderr and len(found.stderr.strip().splitlines()) == 1
-    assert "Example:" in raceway("study", "--plugin", file, "article", "--help").stdout
-    assert "What I look at." in raceway("study", "--plugin", file, "--help").stdout
+    found = invoke("study", "--plugin", file, "mine")
+    assert found.exit_code == 2 and told in found.stderr and len(found.stderr.strip().splitlines()) == 1
+    assert "Example:" in invoke("study", "--plugin", file, "article", "--help").stdout
+    assert "What I look at." in invoke("study", "--plugin", file, "--help").stdout
 
 
 class Broken:

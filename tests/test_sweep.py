@@ -140,19 +140,19 @@ def test_bad_designs_are_refused_before_anything_is_written(tmp_path):
 def test_values_are_those_of_single_runs_labelled_with_units(tmp_path):
     import xarray
 
-    design = grid(["excitation.speed_rpm=11000,14000", "load.axial=500,1000,2000"])
+    design = grid(["excitation.speed_rpm=11000,14000", "load.axial=500,1000"])
     found = swept(tmp_path / "s", design)
-    assert [status for _, status, _, _ in found] == ["run"] * 6
+    assert [status for _, status, _, _ in found] == ["run"] * 4
     for point, _, _, values in found:
         single = run(scene_from_dict(tables_at(SCENE, point, default_registry())))
         assert values == values_of(single)
     with open_store(tmp_path / "s") as store:
         data = store.to_xarray()
-        assert store.status() == {"waiting": 0, "done": 6, "failed": 0, "computed": 0, "total": 6}
-    assert dict(data.sizes) == {"excitation.speed_rpm": 2, "load.axial": 3, "dof": 5, "dof2": 5}
+        assert store.status() == {"waiting": 0, "done": 4, "failed": 0, "computed": 0, "total": 4}
+    assert dict(data.sizes) == {"excitation.speed_rpm": 2, "load.axial": 2, "dof": 5, "dof2": 5}
     one = data.sel({"excitation.speed_rpm": 14000, "load.axial": 500})
-    assert one["z_real"] == found[3][3]["z_real"] and one["z_real"].attrs["units"] == "N/m"
-    assert one["stiffness"].sel(dof="y", dof2="y") == found[3][3]["stiffness"][1][1]
+    assert one["z_real"] == found[2][3]["z_real"] and one["z_real"].attrs["units"] == "N/m"
+    assert one["stiffness"].sel(dof="y", dof2="y") == found[2][3]["stiffness"][1][1]
     assert data["load.axial"].attrs["units"] == "N" and data["excitation.speed_rpm"].attrs["units"] == "r/min"
     assert all(data[name].attrs.get("long_name") for name in data.variables if name not in ("dof", "dof2"))
     assert json.loads(data.attrs["scene"])["rotor"]["mass"] == 2.0
@@ -177,15 +177,15 @@ def test_a_static_scene_and_a_list_have_what_they_have(tmp_path):
 
 
 def test_what_is_finished_survives_a_stop_and_is_not_computed_again(tmp_path):
-    design = grid(["excitation.speed_rpm=10980:15000:32"])
+    design = grid(["excitation.speed_rpm=10980:15000:8"])
     whole = swept(tmp_path / "whole", design)
     with pytest.raises(KeyboardInterrupt):
         swept(tmp_path / "s", design, Stopping())
     with open_store(tmp_path / "s") as store:
         states = store.status()
-    assert states == {"waiting": 29, "done": 3, "failed": 0, "computed": 0, "total": 32}
+    assert states == {"waiting": 5, "done": 3, "failed": 0, "computed": 0, "total": 8}
 
-    with pytest.raises(RacewayError, match=r"3 of 32 points done: go on with --resume"):
+    with pytest.raises(RacewayError, match=r"3 of 8 points done: go on with --resume"):
         prepare(SCENE, design, tmp_path / "s")
     assert swept(tmp_path / "s", design, Stopping(after=100), resume=True) == whole
 
@@ -323,14 +323,14 @@ def test_a_disk_that_is_full_before_the_first_block_is_written_holds_nothing_and
 
 
 def test_a_full_disk_keeps_what_is_finished(tmp_path):
-    design = grid(["excitation.speed_rpm=10980:15000:48"])
+    design = grid(["excitation.speed_rpm=10980:15000:24"])
     with (
         small_files(),
         pytest.raises(RacewayError, match=r"Finished points are stored: free .*again, a sweep with --resume"),
     ):
         swept(tmp_path / "s", design)
     with open_store(tmp_path / "s") as store:
-        assert 0 < store.status()["done"] < 48
+        assert 0 < store.status()["done"] < 24
     assert swept(tmp_path / "s", design, resume=True) == swept(tmp_path / "whole", design)
 
 
@@ -423,7 +423,7 @@ def test_a_worker_without_the_plugin_or_of_another_version_refuses(tmp_path):
 
 
 def test_processes_give_the_same_rows(tmp_path):
-    design = grid(["excitation.speed_rpm=10980:15000:16"])
+    design = grid(["excitation.speed_rpm=10980:15000:6"])
     assert swept(tmp_path / "a", design) == swept(tmp_path / "b", design, Processes(workers=2))
 
 

@@ -84,6 +84,7 @@ def test_their_own_tests_pass(installed, name):
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.slow
 def test_installed_plugins_conform(installed):
     code = """
 import json

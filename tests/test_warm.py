@@ -66,7 +66,7 @@ def test_functions_and_sweeps_are_what_runs_give():
         "temperature_inner_k", "temperature_oil_k", "heat_w", "heat_to_housing_w", "torque_nm", "l10r_hours",
         "kyy_tilts_follow",
     ]  # fmt: skip
-    scene, speeds = published.warm_pair(supports={"tilt": "free"}), np.array([2000.0, 9000.0, 20_000.0])
+    scene, speeds = published.warm_pair(supports={"tilt": "free"}), np.array([2000.0, 20_000.0])
     columns = rw.function(scene, ["kinematics.spin_speed_rpm"], names)(speeds)
     swept = rw.sweep(scene, {"kinematics.spin_speed_rpm": speeds})
     assert (columns["status"] == rw.PointStatus.COMPUTED).all() and (swept["status"] == "computed").all()
@@ -210,6 +210,7 @@ def test_a_motion_says_that_the_heat_gives_its_k_no_band():
     assert "not_computed" not in rw.run(published.warm_pair()).to_dict()["heat"]["band"]
 
 
+@pytest.mark.slow
 def test_oil_by_the_flow_warns_beyond_the_speeds_of_its_measurements():
     runs = [
         rw.run(
@@ -273,7 +274,8 @@ def test_temperatures_are_no_inputs_and_models_want_them():
         rw.build_model(rw.Scene.from_dict(published.warm_pair()))
 
 
-@pytest.mark.parametrize("preload", [100.0, pytest.param(500.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("preload", [100.0, 500.0])
 def test_a_rigid_pair_runs_away_where_a_hand_calculation_says(preload):
     """Within 2 %: the hand takes the contact angle, and the part of the heat at either race, as constants."""
     rpm = published.runaway_speed(preload)
@@ -298,7 +300,11 @@ def test_a_bearing_that_its_own_heat_closes_is_an_answer():
     assert "mounting." not in str(fault.value) and "heat.oil_flow" in str(fault.value)
 
 
-@pytest.mark.parametrize(("bore", "rpm", "flow", "watt"), published.HEATS)
+#: A third of the table, of each bearing some.
+@pytest.mark.parametrize(
+    ("bore", "rpm", "flow", "watt"),
+    [pytest.param(*row, marks=[pytest.mark.slow] * (k % 3 > 0)) for k, row in enumerate(published.HEATS)],
+)
 def test_measured_heat_is_within_the_band_and_the_factors_that_it_stands_on(bore, rpm, flow, watt):
     """Factors have two decimals."""
     _, low, high = published.heat_and_band(bore, rpm, flow)

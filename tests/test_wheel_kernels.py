@@ -49,11 +49,13 @@ def test_a_first_run_compiles_nothing(wheel, tmp_path):
     assert use(placed(wheel), tmp_path, **LEVEL) == (1, 0)
 
 
-@pytest.mark.parametrize("cpu", [pytest.param("generic", marks=pytest.mark.slow), "nehalem"])
+@pytest.mark.slow
+@pytest.mark.parametrize("cpu", ["generic", "nehalem"])
 def test_a_processor_without_avx2_compiles(wheel, tmp_path, cpu):
     assert use(placed(wheel), tmp_path, NUMBA_CPU_NAME=cpu, NUMBA_CPU_FEATURES="") == (0, 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     ["; wheel_kernels.version = lambda name: '0.1'", "; wheel_kernels.source_digest = lambda: 'another source'"],

@@ -40,15 +40,22 @@ def plug_ins_leave_with_their_test():
     registry.entries.update(entries)
 
 
+@pytest.fixture
+def all_pixels():
+    """Pictures are written with the dots per inch that users get."""
+
+
 @pytest.fixture(autouse=True)
-def nothing_is_drawn_outside_its_axes(monkeypatch):
-    """Every figure that a test draws is looked at, whatever the test is about."""
-    found, draw = list[str](), Figure.draw
+def nothing_is_drawn_outside_its_axes(monkeypatch, request):
+    """Every figure that a test draws is looked at, whatever the test is about; it has few pixels, which are half of its time."""
+    found, draw, set_dpi = list[str](), Figure.draw, Figure.set_dpi
 
     def looked_at(self: Figure, renderer: Any) -> None:
         draw(self, renderer)
         found.extend(outside(self))
 
     monkeypatch.setattr(Figure, "draw", looked_at)
+    if "all_pixels" not in request.fixturenames:
+        monkeypatch.setattr(Figure, "set_dpi", lambda figure, dpi: set_dpi(figure, min(dpi, 80.0)))
     yield
     assert not found, found[:5]

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import re
 
+from click.testing import CliRunner
+
 from checks import documents
 from checks import reports as files
 from checks.documents import commands, drawing, packages, promises
 from checks.documents.versions import with_versions
+from raceway.cli.main import main
 from raceway.scene.schema import keys
 from raceway.scene.tables import TABLES
 
@@ -16,7 +19,7 @@ def test_the_scene_page_is_what_the_declarations_say():
     assert documents.SCENE.read_text(encoding="utf-8") == documents.scene_page(), "run python -m checks.documents"
 
 
-def test_the_readme_shows_the_answer_of_the_scene_that_it_shows():
+def test_the_readme_shows_the_answer_of_the_scene_that_it_shows(tmp_path):
     # Geometry and K to every character; after it stand rounding, times and memory of one machine, among the same words.
     def exact(text: str) -> str:
         return text.partition("numerical error")[0]
@@ -28,7 +31,12 @@ def test_the_readme_shows_the_answer_of_the_scene_that_it_shows():
     scene, example, shown = documents.shown_parts(text)
     assert scene == documents.SHOWN.read_text(encoding="utf-8"), "run python -m checks.documents"
     assert example == documents.EXAMPLE.read_text(encoding="utf-8"), "run python -m checks.documents"
-    now = documents.answer(documents.screen())
+    ran = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"}).invoke(
+        main, ["run", str(documents.SHOWN), "--out", str(tmp_path)]
+    )
+    now = documents.answer(
+        "\n".join(line.rstrip() for line in ran.stdout.splitlines() if not line.startswith("written:")) + "\n"
+    )
     assert "equivalent stiffness K" in exact(shown) and "balls of" in exact(shown)
     assert exact(shown) == exact(now), "run python -m checks.documents"
     assert words(shown) == words(now), "run python -m checks.documents"

@@ -33,7 +33,9 @@ def at_rest(**changes):
         ({"tilt": "locked"}, {0: 28.691, 1: 1.957}, (65.00, 254.8, 255.5)),
         ({"tilt": "free"}, {0: 26.921, 1: 13.676, 4: 1544.7}, (65.60, 267.5, 253.8)),
         # That program sees displacements along the contacts' normals only, 1.3 % of kxx on this bed.
-        ({"tilt": "locked", "outer_seat": 500e9}, {0: 32.191, 1: 2.598}, (None, 191.7, None)),
+        pytest.param(
+            {"tilt": "locked", "outer_seat": 500e9}, {0: 32.191, 1: 2.598}, (None, 191.7, None), marks=pytest.mark.slow
+        ),
     ],
 )
 def test_whole_bearing(supports, displacement, diagonal):
@@ -131,6 +133,7 @@ def test_a_bearing_without_dimensions_is_refused_by_name():
     assert {m.path for m in caught.value.mistakes} == {"bearing.bore", "bearing.outer_diameter", "bearing.width"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("speed_rpm", "told"), [(6000.0, False), (30000.0, True)])
 def test_rings_that_lag_by_more_than_the_stated_error_are_told(speed_rpm, told):
     """On beds of 1e10 N/m3 the inner ring's first frequency is 2.1 kHz: (w / w1)^2 is 0.2 % and 5.5 %, the stated error 0.1 %."""

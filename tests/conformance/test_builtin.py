@@ -7,7 +7,7 @@ from raceway.testing import check
 
 ENTRIES = list(Registry(third_party=False).all())
 #: Whose own tests are quick.
-DEAR = ("dask", "processes", "film", "elastic", "condensed", "cylindrical_rollers", "structured", "pictures")
+DEAR = ("dask", "processes", "film", "elastic", "condensed", "cylindrical_rollers", "structured", "pictures", "periodic")
 MARKS = {"gmsh": pytest.mark.needs("gmsh"), **dict.fromkeys(DEAR, pytest.mark.slow)}
 
 

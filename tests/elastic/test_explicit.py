@@ -30,7 +30,7 @@ def model():
     return settled(tables | {name: tables.get(name, {}) | table for name, table in CASE.items()})[0]
 
 
-def moved(model, threads: int = 1, steps: int = 24):
+def moved(model, threads: int = 1, steps: int = 12):
     assembly = model.bearing.bearing.system.assembly
     kept, assembly.threads = assembly.threads, ThreadPool(threads)
     start = standstill(model.system, False)

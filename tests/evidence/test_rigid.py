@@ -196,6 +196,7 @@ def at_random():
     return tallies, f"{sum(tally.count for tally in tallies)} random scenes, 1 N to 100 kN, to 100 000 r/min, 3 to 60 balls"
 
 
+@pytest.mark.slow
 def test_random_scenes(claim, at_random):
     tallies, where = at_random
     unsolved = [words for tally in tallies for words in tally.unsolved]
@@ -214,6 +215,7 @@ def test_time_of_random_scenes(claim, at_random):
     claim(f"{where}: median time of an equilibrium", median, at_most=5.0, unit="ms", basis="regression", source=source)
 
 
+@pytest.mark.slow
 def test_extreme_scenes(claim):
     """One in thirty of each family, drawn by a fixed seed; refusals of free motions are checked by rank."""
     found = [

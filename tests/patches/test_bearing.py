@@ -106,6 +106,7 @@ def test_balls_go_along_with_their_grooves_before_newton(free, monkeypatch):
     assert np.abs(after - guess).max() < 0.1 * np.abs(after - before).max()
 
 
+@pytest.mark.slow
 def test_balls_at_cage_speed_press_the_outer_race():
     case, found = at_rest(
         excitation={"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 300.0}
@@ -134,6 +135,7 @@ def test_without_more_points_it_is_a_failure_that_says_where(free):
         alone.solve_equilibrium(case.guess)
 
 
+@pytest.mark.slow
 def test_the_edge_of_the_groove_is_told_with_the_load():
     case, found = at_rest(bearing={"shoulder_height": 0.9e-3}, load={"axial": 3000.0, "radial": [0.0, 0.0]})
     said = case.bearing.warnings(case, found)

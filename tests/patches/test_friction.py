@@ -138,6 +138,7 @@ def test_a_bearing_with_friction_has_exact_tangents_and_a_history():
     assert SlipHistory.of(now.memory, 12).lost.sum() > 0.0
 
 
+@pytest.mark.slow
 def test_points_that_get_more_neighbours_keep_their_memory():
     """A ring that moves further than its patches reach: the same force as on patches that were wide from the beginning."""
     light = {"axial": 300.0, "radial": [0.0, 0.0]}
@@ -164,6 +165,7 @@ def test_what_a_plan_says_of_friction_and_inertia():
     assert any("stick_stiffness" in one and "compliance of rings and balls" in one for one in unused(found))
 
 
+@pytest.mark.slow
 def test_gyroscopic_moments_turn_contacts_as_they_do_with_resultants():
     """Angles of contact at 40 000 r/min to 0.3 degrees (2 points along a semi-axis; the moments move them by degrees); tangents exact."""
     spinning = {"kinematics": {"gyroscopic": "shared", "spin_speed_rpm": 40000.0}, "supports": {"tilt": "free"}}

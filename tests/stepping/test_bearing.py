@@ -66,7 +66,10 @@ def test_records_equal_the_compiled_loops(kind, changes):
         assert found.counts[name] == pytest.approx(wanted.counts[name], rel=1e-9)
 
 
-@pytest.mark.parametrize("method", [m() for m in METHODS], ids=[m.name for m in METHODS])
+@pytest.mark.parametrize(
+    "method",
+    [pytest.param(m(), marks=[pytest.mark.slow] * (m.name not in ("newmark", "quasi_static")), id=m.name) for m in METHODS],
+)
 def test_loops_conform(method):
     """The suite of integrators holds for the loops in Python as for the compiled ones."""
     suite = IntegratorSuite()

@@ -50,7 +50,7 @@ def moved(case: str, threads: int, steps: int = STEPS, step: float = STEP, on_ch
         assembly.threads = kept
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("case", ["friction", pytest.param("seats", marks=pytest.mark.slow)])
 def test_the_digits_do_not_depend_on_the_number_of_threads(case):
     alone = moved(case, 1)
     assert np.abs(alone.displacement[-1, 1:3]).max() > 0.0

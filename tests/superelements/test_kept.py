@@ -42,12 +42,13 @@ def test_what_was_kept_gives_the_same_digits_without_a_factorisation_and_serves_
     settled(built(mesh=mesh, load={"axial": 200.0, "radial": [100.0, 160.0]}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
-        pytest.param({"bodies": {"formulation": "full"}}, marks=pytest.mark.slow),
-        pytest.param({"mesh": {"azimuth_cells": 30}}, marks=pytest.mark.slow),
-        pytest.param({"bearing": {"rings": {"young": 205e9}}}, marks=pytest.mark.slow),
+        {"bodies": {"formulation": "full"}},
+        {"mesh": {"azimuth_cells": 30}},
+        {"bearing": {"rings": {"young": 205e9}}},
         {"supports": {"outer_seat": 1e13}},
     ],
     ids=["formulation", "mesh", "material", "seat"],
@@ -73,6 +74,7 @@ def test_making_is_told_with_its_end():
     assert any(what.startswith("equilibrium, residual") for what, *_ in told)
 
 
+@pytest.mark.slow
 def test_a_contact_that_comes_to_other_nodes_widens_the_superelements():
     """Bodies reduced to the nodes of one contact alone: the others are added when they press."""
     whole = settled(built())

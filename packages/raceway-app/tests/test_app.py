@@ -86,6 +86,7 @@ def test_two_excitation_models_stand_side_by_side(tab):
     assert "B" not in tab.text('[data-test="numbers"] thead')
 
 
+@pytest.mark.slow
 def test_a_second_scene_that_is_taken_away_at_once_leaves_nothing(tab):
     for count in (2, 1) * 3:
         tab.press_any("Compare two scenes")
@@ -97,6 +98,7 @@ def test_a_second_scene_that_is_taken_away_at_once_leaves_nothing(tab):
     assert readings and all(text.startswith("A") for text in readings)
 
 
+@pytest.mark.slow
 def test_a_reload_and_a_second_tab_show_the_same(tab, browser, application):
     tab.set("load.axial", "1700")
     first = tab.values(0)
@@ -116,6 +118,7 @@ def test_a_reload_and_a_second_tab_show_the_same(tab, browser, application):
     shown_is_run(tab)
 
 
+@pytest.mark.slow
 def test_a_server_that_has_stopped_is_seen(browser, tmp_path):
     with Application(tmp_path, SCENE) as served:
         Tab(browser, served.address)
@@ -140,6 +143,7 @@ def test_keys_undo_and_redo(tab):
         assert tab.scene(0)["load"]["axial"] == axial
 
 
+@pytest.mark.slow
 def test_a_slider_is_moved_by_the_keyboard(tab):
     from selenium.webdriver import Keys
 
@@ -182,6 +186,7 @@ def test_files_are_written_into_the_folder(tab, folder):
     assert rows[0] == "scene,axis,x,quantity,unit,value" and len(rows) > 300
 
 
+@pytest.mark.slow
 def test_long_work_is_stopped(browser, tmp_path):
     with Application(tmp_path, SCENE) as served:
         tab = Tab(browser, served.address)
@@ -201,7 +206,8 @@ def test_long_work_is_stopped(browser, tmp_path):
         shown_is_run(tab)
 
 
-@pytest.mark.parametrize("width", [1280, *(pytest.param(width, marks=pytest.mark.slow) for width in (1024, 400))])
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [1280, 1024, 400])
 def test_the_page_is_whole_and_fit_for_screen_readers(browser, application, width):
     tab = Tab(browser, application.address, width)
     tab.press("Compare two scenes")
@@ -211,6 +217,7 @@ def test_the_page_is_whole_and_fit_for_screen_readers(browser, application, widt
     tab.press("Compare two scenes")
 
 
+@pytest.mark.slow
 def test_two_models_stand_side_by_side_above_the_fold_with_their_difference(tab):
     tab.press("Compare two scenes")
     tab.settle()
@@ -230,6 +237,7 @@ def test_two_models_stand_side_by_side_above_the_fold_with_their_difference(tab)
     tab.press("Compare two scenes")
 
 
+@pytest.mark.slow
 def test_the_curves_that_a_reader_has_chosen_are_shown_again(tab, browser):
     last = tab.browser.run("return [...document.querySelectorAll('.chart')].map((e) => e.dataset.test)")
     tab.browser.run("document.querySelector('[data-curve=\"speed.pressure p0\"]').click()")
@@ -251,6 +259,7 @@ def test_a_bearing_is_chosen_by_its_designation(tab):
         shown_is_run(tab)
 
 
+@pytest.mark.slow
 def test_speeds_without_a_steady_orbit_are_named_and_can_be_run(tab):
     tab.press("Compare two scenes")
     tab.settle()

@@ -159,6 +159,7 @@ def test_another_kind_takes_the_keys_that_it_lacks_with_it(tmp_path):
     assert set(paths) <= fields
 
 
+@pytest.mark.slow
 def test_a_worker_that_was_killed_is_replaced(tmp_path):
     session, news, ended = Session((as_given(SCENE),), tmp_path), [], threading.Event()
 

@@ -118,6 +118,7 @@ def test_page_of_invented_numbers_has_every_figure_and_every_verdict(made_page):
     assert not re.search(r"\bnan\b", re.sub(r'src="[^"]+"', "", text))
 
 
+@pytest.mark.slow
 def test_the_page_says_friction_first_or_that_there_is_none(made_page):
     def k(setting, load, w):
         return 1e8 * (1.0 + {"none": 0.076, "standing": -0.055, "orbiting": 0.027}[setting.friction] * w)

@@ -141,6 +141,7 @@ def test_the_slope_of_the_stored_energy_is_the_load_that_a_sum_over_balls_misses
     assert along.sum() / 1e5 - 1.0 > 0.02
 
 
+@pytest.mark.slow
 def test_a_traceback_a_hang_and_a_crash_cost_one_case_each():
     (row,) = case_rows(case("answer"), REGISTRY)
     assert row.verdict == FAILED and row.note.startswith("KeyError in stability_cases.py")
@@ -173,7 +174,7 @@ def test_energy_of_symplectic_steps_has_no_trend(integrator):
     cases = [one for one in CASES if one.name == "undamped steps" and one.quick and one.setting["integrator"] == integrator]
     assert len(cases) == 2 * len(laws_with(REGISTRY, "resultant"))
     for one in cases:
-        (row,) = case_rows(attrs.evolve(one, arguments={**one.arguments, "steps": 20_000}), REGISTRY)
+        (row,) = case_rows(attrs.evolve(one, arguments={**one.arguments, "steps": 5_000}), REGISTRY)
         # The catalogue holds a million steps to the same bounds.
         assert row.verdict == AS_EXPECTED, row
 
@@ -209,7 +210,7 @@ def test_what_rattling_misses_its_result_tells():
 
 #: Cases whose expectations depend on the law, with one that decides them; others by night.
 FOREIGN = {
-    "60 balls": "cubic", "rubber balls in ceramic rings": "film", "chatter": "cubic", "impact": "hunt_crossley",
+    "60 balls": "cubic", "rubber balls in ceramic rings": "", "chatter": "", "impact": "hunt_crossley",
     "steps around the limit, small motions of the bearing": "film",
 }  # fmt: skip
 

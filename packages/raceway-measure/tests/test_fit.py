@@ -192,6 +192,7 @@ def test_force_and_displacement_give_stiffness_damping_and_mass_back(mass, free,
         assert found["mass"] == pytest.approx(2.0, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_intervals_of_a_record_hold_what_they_state():
     """30 records with 40 dB of noise: 95 % of 60 intervals within what chance leaves, 50 at least (p = 1e-4)."""
     inside = 0

@@ -62,6 +62,7 @@ def test_k_of_a_frequency_response_lies_within_its_interval(form, tmp_path):
         assert abs(fitted[name] - truth) < fitted.half_width(name) < 0.01 * truth
 
 
+@pytest.mark.slow
 def test_intervals_of_frequency_responses_hold_what_they_state():
     random, inside = np.random.default_rng(11), 0
     for _ in range(60):
@@ -93,7 +94,7 @@ def history(values, kind, unit="NONE", **more):
 RESPONSES = {"displacement": (8, 0, "um", 3, 1e6), "acceleration": (12, 2, "g", -3, -0.1019716)}
 
 
-@pytest.mark.parametrize("response", ["displacement", "acceleration"])
+@pytest.mark.parametrize("response", ["displacement", pytest.param("acceleration", marks=pytest.mark.slow)])
 def test_k_of_time_histories_lies_within_its_interval(response, tmp_path):
     kind, order, unit, direction, size = RESPONSES[response]
     random, inside, time = np.random.default_rng(2), [], record()[0]
