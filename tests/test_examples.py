@@ -13,6 +13,7 @@ from checks.validation.command_line import invoke
 from checks.validation.scenes import built_in
 from raceway import SceneError, load_scene, make_plan
 from raceway.testing import run
+from tests.test_screens import assert_one_screen
 
 Condensed = built_in("bodies", "condensed")
 
@@ -29,15 +30,16 @@ RUNNING = [path for path in sorted(FOLDER.glob("*.toml")) if path.stem not in ME
 @cache
 def ran(name):
     """What an example answers."""
-    return run(load_scene(FOLDER / f"{name}.toml")).to_dict()
+    return run(load_scene(FOLDER / f"{name}.toml"))
 
 
 #: The patches with fewer points run below.
 @pytest.mark.parametrize(
     "path", [pytest.param(path, id=path.stem, marks=[pytest.mark.slow] * (path.stem == "b7206_patches")) for path in RUNNING]
 )
-def test_example_runs(path):
-    result = ran(path.stem)
+def test_example_runs_and_fits_one_screen(path):
+    result = ran(path.stem).to_dict()
+    assert_one_screen(ran(path.stem))
     json.dumps(result, allow_nan=False)
     assert result["stability"]["status"] == "completed"
     found = result["identification"]
@@ -67,7 +69,7 @@ def test_the_elastic_examples_answer_what_condensed_bodies_do():
     """
     coarse = load_scene(FOLDER / "b7206_elastic_coarse.toml")
     condensed = attrs.evolve(coarse, bodies=Condensed(), mesh=None)
-    elastic, other = ran("b7206_elastic_coarse"), run(condensed).to_dict()
+    elastic, other = ran("b7206_elastic_coarse").to_dict(), run(condensed).to_dict()
     for i in range(3):
         assert elastic["equilibrium"]["stiffness"][i][i] == pytest.approx(other["equilibrium"]["stiffness"][i][i], rel=0.018)
     assert elastic["warnings"] == []

@@ -311,6 +311,7 @@ def test_meshes_follow_the_natural_frequencies_along_the_branch():
     assert found.end == "" and {row.verdict for row in found.rows} == {"stable"} and not found.labels
 
 
+@pytest.mark.slow
 def test_a_mesh_that_an_orbit_needs_is_not_given_up():
     """800 N, tilt free: the mesh that is fit for the ring's vibrations alone shifts the orbit by 3 r/min."""
     tables = article(800.0, kind="periodic")

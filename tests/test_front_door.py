@@ -342,7 +342,7 @@ def documented(name):
 
 
 #: Names whose examples draw with pyvista: the same.
-DRAWN = {"view": [pytest.mark.needs("pyvista")], "View": [pytest.mark.needs("pyvista"), pytest.mark.slow]}
+DRAWN = {"view": [pytest.mark.needs("pyvista"), pytest.mark.slow], "View": [pytest.mark.needs("pyvista"), pytest.mark.slow]}
 
 
 @pytest.mark.parametrize("name", [pytest.param(one, marks=DRAWN.get(one, ())) for one in rw.__all__])

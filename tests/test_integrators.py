@@ -209,7 +209,7 @@ def scene(bodies, integrator):
 
 #: Points take seconds: once.
 WAYS = [(bodies, way) for bodies in BODIES for way in ("stepped", "by_numbers")]
-DEAR = {("nodal", "stepped"), ("elastic", "stepped"), ("elastic", "by_numbers")}
+DEAR = {("nodal", "stepped"), ("nodal", "by_numbers"), ("elastic", "stepped"), ("elastic", "by_numbers")}
 
 
 @pytest.mark.parametrize(

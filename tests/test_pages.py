@@ -19,6 +19,7 @@ MARKS = {
     "view": [pytest.mark.slow, pytest.mark.needs("pyvista")],
     "study article": [pytest.mark.slow],
     "study rig": [pytest.mark.slow],
+    "article of elastic bodies": [pytest.mark.slow],
 }
 
 

@@ -94,6 +94,7 @@ def test_orbiting_balls_by_their_own_pitch():
     assert pair[0] == pytest.approx(pair[1], rel=1e-4)
 
 
+@pytest.mark.slow
 def test_condensed_bodies():
     """Structural approaches have rates and pitches too; the coarse mesh is the same on both sides."""
     tables = scene(bodies={"kind": "condensed"}, mesh={"element_size": 1.5e-3}, contact={"damping": 500.0})

@@ -48,6 +48,7 @@ def test_recorded_samples_divide_the_turn(turns, steps_per_turn):
     assert steps_per_turn // stride >= min(steps_per_turn, samples_per_turn(turns))
 
 
+@pytest.mark.slow
 def test_a_long_run_and_its_run_with_half_the_steps_keep_whole_turns():
     short, long = (computed(integrator={"turns": turns, "steps_per_turn": 60}) for turns in (12, 1300))
     assert len(long.simulation.whole.time) == 1300 * 60 // recording_stride(60, 1300)

@@ -177,6 +177,7 @@ def test_the_two_constants_differ_by_three_percent_in_displacement():
     assert iso / palmgren == pytest.approx(1.034, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_energy_of_laminae_balances_along_a_motion():
     """The residual is Newmark's and that of kinks where laminae open: 1.0e-3 with 90 steps per turn, 2.9e-4 with 360."""
     bodies = {"kind": "cylindrical_rollers", "roller_length": LENGTH}

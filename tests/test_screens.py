@@ -117,30 +117,27 @@ KINDS = {
     "at rest": {"bearing": {"preset": "6205"}, "load": {"axial": 300.0, "radial": [1000.0, 0.0]}, "supports": {"tilt": "free"}},
     "along a line": {"bearing": {"preset": "B7206C"}, "load": {"axial": 400.0}, "excitation": {**TURNING, "kind": "unidirectional"}},
     "film and friction": FILM, "warm": WARM, "sliding": {**FILM, "bearing": {**PAIR, "preload": 2.0}, "load": {}},
-    **{file: EXAMPLES / f"{file}.toml" for file in (
-        "minimal", "duplex_db", "set_tbt", "gyroscopic", "orbiting", "cylindrical_rollers", "run_up", "measured", "folds",
-        "b7206_condensed", "b7206_patches", "b7206_elastic_coarse",
-    )},
 }  # fmt: skip
-#: Their meshes take seconds.
-MESHED = {"b7206_condensed", "b7206_patches", "b7206_elastic_coarse"}
 
 
 @cache
 def ran(kind):
-    scene = KINDS[kind]
-    return rw.run(scene if isinstance(scene, dict) else rw.load_scene(scene))
+    return rw.run(KINDS[kind])
 
 
-@pytest.mark.parametrize("kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind in MESHED)) for kind in KINDS])
-def test_every_kind_of_scene_fits_one_screen(kind):
+def assert_one_screen(result):
     """The answer on the fourth line at the latest, 28 lines with the file's name, warnings a line each; numbers keep their units."""
-    result = ran(kind)
     told = lines(result.screen(["raceway-out/title/result.json"]))
     answer = next(k for k, line in enumerate(told, 1) if re.match("  (equivalent stiffness K|tangent kxx) ", line))
     assert answer <= 4 and len(told) <= 28 and max(map(len, told)) <= 80
     assert sum(line.startswith("warning: ") for line in told) == len(result.warnings)
     assert not any(re.search(r"[+-] …$", line) for line in told) and told[-1].startswith("written: ")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_of_scene_fits_one_screen(kind):
+    """Those of examples too: test_examples.py."""
+    assert_one_screen(ran(kind))
 
 
 def test_what_a_screen_has_no_room_for_is_told_when_it_is_asked_for(caplog):

@@ -65,6 +65,7 @@ def test_kernels_of_other_versions_are_left_alone(wheel, tmp_path, change):
     assert use(placed(wheel, change), tmp_path, **LEVEL) == (0, 1)
 
 
+@pytest.mark.slow
 def test_an_altered_kernel_is_not_read(wheel, tmp_path):
     (path,) = [path for path in (wheel / "kernels").rglob("*") if path.is_file()]
     content = path.read_bytes()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import time
 
@@ -116,6 +117,19 @@ def test_a_reload_and_a_second_tab_show_the_same(tab, browser, application):
     tab.settle()
     assert tab.values(0) == other != first
     shown_is_run(tab)
+
+
+def test_a_script_in_a_title_is_text(browser, tmp_path):
+    title = "<img src=x onerror='window.hacked=1'><script>window.hacked=1</script>{{constructor.constructor('window.hacked=1')()}}"
+    path = tmp_path / "scene.toml"
+    path.write_text(f"title = {json.dumps(title)}\n[bearing]\npreset = 'B7206C'\n[load]\naxial = 1000.0\n")
+    with Application(tmp_path / "files", str(path)) as served:
+        tab = Tab(browser, served.address)
+        tab.set("rotor.mass", "<script>window.hacked=1</script>")
+        assert "<script>" in tab.text('[data-fault="rotor.mass"]')
+        tab.press("Undo")
+        assert title in tab.text('[data-test="title"]')
+        assert browser.run("return window.hacked ?? null") is None
 
 
 @pytest.mark.slow

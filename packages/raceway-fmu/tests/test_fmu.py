@@ -106,7 +106,7 @@ def test_no_number_is_discarded(maps: dict[int, Path], forces: dict[int, Path], 
 
 
 #: A hypothesis of moments, one with growth, another law, a pair; others by night.
-QUICK = ("shared", "traction", "penalty", "DB")
+QUICK = ("shared", "traction", "penalty")
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name not in QUICK)) for name in FORCES])
@@ -178,7 +178,7 @@ def test_heavy_loads_are_flagged(forces: dict[int, Path]) -> None:
     assert instance(30e-6, *[0.0] * 4, 1e4, 0.0)[5] > 0.0 and not instance.in_range
 
 
-@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize("version", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_sources_alone_where_no_compiler_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, version: int) -> None:
     scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
     with monkeypatch.context() as patch:

@@ -26,6 +26,7 @@ def test_without_noise_the_difference_is_the_bearing_at_any_number_of_shared_poi
     np.testing.assert_allclose(example.less(assembly, first), second, rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_intervals_of_the_difference_hold_what_they_state(tmp_path):
     inside = dict.fromkeys(TRUTH, 0)
     for seed in range(60):
