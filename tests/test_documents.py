@@ -63,7 +63,7 @@ SLOW = {
 }  # fmt: skip
 SLOW |= {"film", "fit", "follow", "measurements", "ross", "sensitivities", "stability", "sweep", "view", "warm_spindle"}
 #: Pages of seconds: the site's job runs them, the quick tests have the others.
-SITE = {"README", "catalogue", "fmu", "plugins", "points", "sets"}
+SITE = {"README", "catalogue", "elastic_dynamics", "fmu", "friction", "leaving_out", "periodic", "plugins", "points", "sets"}
 #: Listings of Python in other hands: tests/test_docs.py; ROSS is in the environment of make docs, whose tutorial does the same.
 ELSEWHERE = {"plugins": "", "ross": "ross"}
 #: Languages of listings that nothing runs: text, and what the site reads.

@@ -14,6 +14,7 @@ import pytest
 from fmpy.build import build_platform_binary
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
+from raceway_fmu import unit
 
 import raceway as rw
 from checks.validation.fmu import FORCES, MAP, RANGES, Instance, exported, force_difference, jeffcott, map_difference
@@ -23,6 +24,14 @@ from raceway.extend import as_scene
 #: `checks fmu` has the map over the speed, too.
 TWO = {key: RANGES[key] for key in ("load.axial", "excitation.force")}
 TURNING = MAP | {"contact": {}, "excitation": MAP["excitation"] | {"force": 400.0}}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compiled_in_haste():
+    """Half of the compiler's time; tests/test_commands.py exports with the flags that users get."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(unit, "_FLAGS", ("-std=c99", "-O1", "-fPIC", "-shared"))
+        yield
 
 
 @pytest.fixture(scope="module")
