@@ -160,7 +160,7 @@ def test_a_motion_on_an_orbit_starts_as_it_goes_on():
     assert start.a[1:3] == pytest.approx([-(w**2) * y, -(w**2) * z], abs=0.2 * w**2 * radius)
 
 
-@pytest.mark.parametrize("kind", ["newmark", "generalized_alpha"])
+@pytest.mark.parametrize("kind", ["newmark", pytest.param("generalized_alpha", marks=pytest.mark.slow)])
 def test_implicit_steps_run_from_the_scene(kind):
     """Series of equilibria and the tangent run in the matrix."""
     found = run(scene(**EXCITED, integrator={"kind": kind, "turns": 1, "steps_per_turn": 8, "tolerance": 1e-5})).to_dict()

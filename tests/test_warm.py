@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -14,13 +16,19 @@ from raceway.extend import open_store
 Temperatures = built_in("quantity", "heat")
 
 
+@cache
+def usual():
+    """The answer of the pair as it is."""
+    return rw.run(published.warm_pair())
+
+
 def test_infinite_conductances_give_the_isothermal_bearing():
     assert published.isothermal_difference() < 1e-9
 
 
 def test_energy_is_balanced_and_temperatures_are_those_computed_with():
     assert published.energy_imbalance() < 1e-9
-    result = rw.run(published.warm_pair())
+    result = usual()
     heat = result.to_dict()["heat"]
     mounting = result.model.problem.mounting
     for node, key in (("inner", "inner"), ("outer", "outer"), ("balls", "ball")):
@@ -101,7 +109,7 @@ def test_more_oil_and_less_speed_are_colder():
 
 
 def test_the_band_holds_the_answer():
-    table = rw.run(published.warm_pair()).to_dict()["heat"]
+    table = usual().to_dict()["heat"]
     for node, kelvin in table["temperatures_k"].items():
         low, high = table["band"]["temperatures_k"][node]
         assert low < kelvin < high
@@ -179,7 +187,7 @@ def test_a_fold_and_the_hottest_temperature_are_told_apart():
 
 
 def test_a_temperature_beside_heat_has_no_effect_and_says_so():
-    given, plain = rw.run(published.warm_pair(lubricant={"temperature_c": 80.0})), rw.run(published.warm_pair())
+    given, plain = rw.run(published.warm_pair(lubricant={"temperature_c": 80.0})), usual()
     assert given.stiffness.tolist() == plain.stiffness.tolist()
     assert any("`lubricant.temperature_c` has no effect: [heat] computes it" in text for text in given.warnings)
     assert not any("has no effect" in text for text in plain.warnings)
@@ -207,7 +215,7 @@ def test_a_motion_says_that_the_heat_gives_its_k_no_band():
     moving = {"excitation": {"kind": "bidirectional", "speed_rpm": 12_000.0, "unbalance": 1e-4}, "load": {"axial": 500.0}}
     still = published.warm_pair(bearing={"arrangement": "single", "preload": 0.0}, **moving)
     assert "at one set of temperatures" in rw.run(still).to_dict()["heat"]["band"]["not_computed"]
-    assert "not_computed" not in rw.run(published.warm_pair()).to_dict()["heat"]["band"]
+    assert "not_computed" not in usual().to_dict()["heat"]["band"]
 
 
 @pytest.mark.slow

@@ -106,8 +106,9 @@ ORBIT = ("integrator.kind=periodic", "load.axial=400", "excitation.amplitude=con
         ((), {"force": ("friction",)}, 1e-10),
         (("kinematics.spin_speed_rpm=0",), {"force": ("centrifugal force of the balls",)}, 1e-10),
         ((), {"cage": 1e-290}, 1e-10),  # azimuths are computed anew each step, and stay
-        (("integrator.kind=quasi_static",), {"force": ("other turns",)}, 1e-10),
-        (ORBIT, {"changes": (*ORBIT, "integrator.symmetry=none")}, 1e-6),  # both orbits are known to 1e-7
+        pytest.param(("integrator.kind=quasi_static",), {"force": ("other turns",)}, 1e-10, marks=pytest.mark.slow),
+        # Both orbits are known to 1e-7.
+        pytest.param(ORBIT, {"changes": (*ORBIT, "integrator.symmetry=none")}, 1e-6, marks=pytest.mark.slow),
         # 1e9 N m/rad lets the ring tilt by a thousandth of what its contacts would.
         ((), {"changes": ("supports.tilt=1e9",)}, 1e-4),
     ],

@@ -7,8 +7,11 @@ from raceway.testing import check
 
 ENTRIES = list(Registry(third_party=False).all())
 #: Whose own tests are quick.
-DEAR = ("dask", "processes", "film", "elastic", "condensed", "cylindrical_rollers", "structured", "pictures", "periodic")
-MARKS = {"gmsh": pytest.mark.needs("gmsh"), **dict.fromkeys(DEAR, pytest.mark.slow)}
+DEAR = (
+    "dask", "processes", "film", "elastic", "condensed", "cylindrical_rollers", "structured", "pictures", "periodic", "line", "hertz",
+    "generalized_alpha", "central_difference", "measured", "unidirectional", "sine_fit", "impedance_fit", "order_tracking",
+)  # fmt: skip
+MARKS = {"gmsh": [pytest.mark.slow, pytest.mark.needs("gmsh")], **dict.fromkeys(DEAR, pytest.mark.slow)}
 
 
 @pytest.mark.parametrize(

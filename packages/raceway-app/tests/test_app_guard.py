@@ -51,7 +51,13 @@ def test_condensed_bodies_have_all_curves_and_the_stiffness_of_their_run():
 
 
 @pytest.mark.parametrize(
-    "change", ["load.axial=700", "excitation.unbalance=3e-4", "bearing.contact_angle_deg=18", "rotor.mass=3"]
+    "change",
+    [
+        "load.axial=700",
+        pytest.param("excitation.unbalance=3e-4", marks=pytest.mark.slow),
+        "bearing.contact_angle_deg=18",
+        pytest.param("rotor.mass=3", marks=pytest.mark.slow),
+    ],
 )
 def test_curves_after_a_change_are_those_of_the_changed_scene(change):
     drawn, changed = picture.Curves(), rw.load_scene(SCENE, [change])
@@ -216,7 +222,8 @@ def flood(application, requests: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("first", "count", "bound"), [(300, 1000, 5e6), pytest.param(1000, 100_000, 10e6, marks=pytest.mark.night)]
+    ("first", "count", "bound"),
+    [pytest.param(300, 1000, 5e6, marks=pytest.mark.slow), pytest.param(1000, 100_000, 10e6, marks=pytest.mark.night)],
 )
 def test_many_requests_are_refused_and_cost_no_memory(application, first, count, bound):
     flood(application, first)

@@ -210,6 +210,7 @@ def test_options_that_contradict_each_other_or_make_no_sense(tmp_path):
         assert found.exit_code == 2 and words in found.stderr
 
 
+@pytest.mark.slow
 def test_signals_that_no_such_bearing_gives(tmp_path, rig, held, state):
     quiet = attrs.evolve(quiet_signals(Signals()), duration=0.1)
     own = record(rig, response(rig, held, state, quiet), quiet, 1)
