@@ -146,9 +146,9 @@ TWO_WAYS = [
 
 @pytest.mark.parametrize(("tables", "tolerances"), TWO_WAYS)
 def test_compiled_loops_give_what_samples_one_by_one_give(tables, tolerances, monkeypatch):
-    looped = rw.band(LOADED | tables, tolerances, count=8)
+    looped = rw.band(LOADED | tables, tolerances, count=4)
     monkeypatch.setattr("raceway.points.band._loop_rows", lambda scene, paths, numbers, nominal: [{}] * len(numbers))
-    single = rw.band(LOADED | tables, tolerances, count=8)
+    single = rw.band(LOADED | tables, tolerances, count=4)
     assert (looped.samples, looped.lost, looped.why) == (single.samples, single.lost, single.why)
     for name in ("nominal", "low", "high", "first", "total"):
         a, b = (getattr(one, name) for one in (looped, single))

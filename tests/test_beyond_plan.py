@@ -53,6 +53,7 @@ def test_a_motion_that_is_complete_is_kept_without_its_error():
     assert not any("exceeded its plan" in text for text in whole.warnings)
 
 
+@pytest.mark.slow
 def test_a_stepped_motion_keeps_its_state(monkeypatch):
     """Elastic bodies are stepped from Python; the allowance is spent at the first report after the equilibrium."""
     monkeypatch.setattr("raceway.core.recorder._REPORT_S", 0.0)

@@ -199,8 +199,8 @@ def test_a_refused_combination_is_kept_with_its_reason():
 
 def test_static_scenes_are_compared_by_tangents_and_displacement(tmp_path):
     static = {name: table for name, table in SCENE.items() if name != "excitation"}
-    found = compare(static, ["load.axial=400,800,1200", "contact.kind=hertz,penalty"])
-    first, last = (row.result["equilibrium"] for row in (found.rows[0], found.rows[4]))
+    found = compare(static, ["load.axial=400,1200", "contact.kind=hertz,penalty"])
+    first, last = (row.result["equilibrium"] for row in (found.rows[0], found.rows[2]))
     by_load = next(e for e in found.effects if e["quantity"] == "kxx" and e["term"] == ("load.axial",))
     hertz = math.log(last["stiffness"][0][0] / first["stiffness"][0][0])
     assert {e["quantity"] for e in found.effects} == {"kxx", "kyy", "x"} and by_load["log_change"] > 0.5 * hertz > 0.0

@@ -240,7 +240,7 @@ DRAWN: dict[object, Callable[[], list[Figure]]] = {
 
 
 #: Of the drawn: the article's study takes seconds, and its own tests draw it.
-MARKS = {of_stresses: [pytest.mark.needs("pyvista")], of_the_article: [pytest.mark.slow]}
+MARKS = {of_stresses: [pytest.mark.slow, pytest.mark.needs("pyvista")], of_the_article: [pytest.mark.slow]}
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,8 @@ CASES = {
     ("check", ARTICLE), ("plan", ARTICLE), ("dev", "plugins",), ("dev", "schema",), ("dev", "cache",),
 )}  # fmt: skip
 #: Mistakes in a study are told before the compiler is loaded.
+#: Others are near them: the check and the plan, a mistake.
+NEAR = ("scene", "check", "plan", "help of a command", "dev")
 MISTAKES = {
     "precision": MAIN.format(["precision", ARTICLE, "--vary", "no.key=1,2"]),
     "stability": MAIN.format(["stability", "--only", "no such case"]),
@@ -46,7 +48,10 @@ def loaded(code: str, status: int = 0) -> set[str]:
     return set(json.loads(found.stderr.splitlines()[-1]))
 
 
-@pytest.mark.parametrize(("code", "without"), CASES.values(), ids=CASES)
+@pytest.mark.parametrize(
+    ("code", "without"),
+    [pytest.param(*case, id=name, marks=[pytest.mark.slow] * (name in NEAR)) for name, case in CASES.items()],
+)
 def test_packages_stay_out(code, without):
     packages = loaded(code)
     assert "raceway" in packages and not packages & without

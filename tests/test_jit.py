@@ -437,6 +437,7 @@ print(json.dumps(rows))
 """
 
 
+@pytest.mark.slow
 def test_one_process_waits_for_what_another_compiles(tmp_path):
     """Billed as compiled; what a process that ends early leaves is compiled here; what is there is not asked for."""
     done = python("-c", BESIDE, RACEWAY_CACHE_DIR=tmp_path)

@@ -99,6 +99,7 @@ def test_json_and_screen_are_what_the_design_promises(ladder, tmp_path):
     assert files["precision.png"].stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_model_error_and_numerical_error_are_told_apart():
     found = precision(FEW, ["contact.kind=hertz,penalty"], repeats=1)
     base, other = found.models

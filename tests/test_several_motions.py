@@ -25,6 +25,7 @@ def by_own_turn(result, damping=0.0):
     return z, multiplier
 
 
+@pytest.mark.slow
 def test_the_stable_motion_beyond_a_fold():
     """82 kg: the motion that grows out of rest turns back below the whole force; no transient of 12 turns finds the other."""
     result = run(heavy(82.0, kind="periodic", tolerance=1e-9))

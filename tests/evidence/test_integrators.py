@@ -26,6 +26,7 @@ def test_order_on_a_linear_oscillator(claim, integrator):
     claim(f"order on a linear oscillator, {integrator}", found, **ORDER, basis="closed form", source=source)
 
 
+@pytest.mark.slow
 def test_order_on_hertz_contacts_against_independent_code(claim):
     wanted = [(tilt, coarsest, independent(tilt, 60)) for tilt, coarsest in (("locked", 360), ("free", 720))]
     source = "DOP853 on the reference's own equations; sudden load, no damping, tilt locked and free"

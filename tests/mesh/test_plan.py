@@ -112,7 +112,7 @@ def test_balls_of_another_size_are_warned_of_once(tmp_path):
     # Transfinite volumes are counted exactly; tetrahedra fill a solid as they please, fewer than three a cube of the size.
     [
         ("box", "transfinite", 1e-3, 1.0, 1.0),
-        ("box", "subdivision", 0.5e-3, 1.0, 1.4),
+        pytest.param("box", "subdivision", 0.5e-3, 1.0, 1.4, marks=pytest.mark.slow),
         ("ball", "subdivision", 3e-4, 1.0, 1.4),
     ],
 )

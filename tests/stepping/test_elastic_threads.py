@@ -28,7 +28,7 @@ CASES = {
         "supports": {"inner_seat": 1e14, "outer_seat": 2e14, "tilt": 3000.0},
     },
 }
-STEPS, STEP = 12, 2e-9
+STEPS, STEP = 6, 2e-9
 
 
 @cache

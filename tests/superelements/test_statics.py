@@ -106,6 +106,7 @@ def test_the_stiffness_of_the_ring_is_that_of_equilibria_nearby(settled):
     assert np.abs(compliance - compliance.T).max() < 1e-9 * np.abs(compliance).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "bodies", "groups"),
     [pytest.param("on beds", (0, 1), [[0, 1, 2]], marks=pytest.mark.slow), ("one_point", (3,), [[0, 2], [1]])],

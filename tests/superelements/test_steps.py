@@ -132,19 +132,19 @@ def assert_solved(system, rng, dt, first=1e-3):
     "tables", [pytest.param({}, id="fastened"), pytest.param(SEATS, id="on beds", marks=pytest.mark.slow)]
 )
 def test_steps_with_friction_are_those_of_the_unreduced_system(method, tables):
-    """A step after a force that acts at once; 1e-10 of the forces, times a softness of some hundred."""
+    """Two steps after a force that acts at once; 1e-10 of the forces, times a softness of some hundred."""
     found = []
     for reduced in (True, False):
         model, system = stepped(reduced, **tables)
         ring = model.system
         start = standstill(ring, ramped=False)
-        record = integrate(method, ring.stepped(), start, Schedule(STEP, 1, 1))
+        record = integrate(method, ring.stepped(), start, Schedule(STEP, 2, 1))
         found.append((record, start, system.contact.friction))
     (new, start, friction), (old, _, _) = found
     assert friction.slipping.any()
     assert not friction.slipping.all()
     # Contacts balance at every evaluation: the first solution, and refinements by five digits.
-    assert new.counts["evaluations"] <= 4
+    assert new.counts["evaluations"] <= 2 * 4
     moved = {name: np.abs(old.final.full_state[name] - start.full_state[name]).max() for name in ("u", "v", "a")}
     for name, size in moved.items():
         assert np.abs(new.final.full_state[name] - old.final.full_state[name]).max() < 1e-5 * size, name

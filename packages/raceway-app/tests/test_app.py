@@ -144,6 +144,7 @@ def test_a_server_that_has_stopped_is_seen(browser, tmp_path):
         assert "equivalent stiffness" not in words  # no numbers of a scene that nobody computes
 
 
+@pytest.mark.slow
 def test_keys_undo_and_redo(tab):
     from selenium.webdriver import ActionChains, Keys
 
@@ -187,6 +188,7 @@ def test_axes_of_the_curves_can_be_set(tab):
     assert tab.browser.run("return document.querySelector('.charts input[type=number]').value") == "2000"
 
 
+@pytest.mark.slow
 def test_files_are_written_into_the_folder(tab, folder):
     tab.rest()
     for words, name in (("Save scene", ".toml"), ("Curves as CSV", "curves.csv"), ("PNG", ".png"), ("ROSS", "bearing.toml")):
@@ -262,6 +264,7 @@ def test_the_curves_that_a_reader_has_chosen_are_shown_again(tab, browser):
     tab.browser.run("document.querySelector('[data-curve=\"speed.pressure p0\"]').click()")
 
 
+@pytest.mark.slow
 def test_a_bearing_is_chosen_by_its_designation(tab):
     script = "const f = document.getElementById('designation'); f.value = arguments[0]; f.dispatchEvent(new Event('change'))"
     assert "7014C" in tab.browser.run("return [...document.getElementById('designations').options].map((o) => o.value)")

@@ -172,6 +172,7 @@ def test_motions_far_from_linear_are_continued_from_the_next_speed_not_searched_
     assert len(searched) == 2 and first["k"] == pytest.approx(alone["k"], rel=1e-7)
 
 
+@pytest.mark.slow
 def test_page_says_what_failed(made_page):
     text = made_page(lambda s, load, w: None if s.tilt == "locked" else (1e8,) if w == 1.0 else 1e8)
     assert "no motion was found" in text and "the steady motion is unstable" in text

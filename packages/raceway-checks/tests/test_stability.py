@@ -179,6 +179,7 @@ def test_energy_of_symplectic_steps_has_no_trend(integrator):
         assert row.verdict == AS_EXPECTED, row
 
 
+@pytest.mark.slow
 def test_newmark_chatters_and_generalized_alpha_or_finer_steps_do_not():
     rows = rows_named("chatter", law="hertz")
     assert all(row.verdict == AS_EXPECTED for row in rows)

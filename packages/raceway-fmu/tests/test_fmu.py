@@ -64,6 +64,7 @@ def test_map_is_the_run(maps: dict[int, Path]) -> None:
         assert stiffness == pytest.approx(result.K, rel=errors[0]) and damping == pytest.approx(result.C, rel=errors[1])
 
 
+@pytest.mark.slow
 def test_stated_error_of_loads_at_which_balls_lift_off(tmp_path: Path) -> None:
     """Derivatives jump there: more terms, a larger error, which is stated."""
     scene, ranges = rw.evolve(MAP, "excitation.force=800"), {"load.axial": (400.0, 2000.0)}
@@ -79,7 +80,7 @@ def test_map_says_that_its_tolerance_is_not_reached() -> None:
     assert "(kyy), above the tolerance 1e-14. Narrow its ranges with --range." in fmu.unit.words
 
 
-@pytest.mark.parametrize(("damping", "relative"), [(1e-3, True), (0.0, False)])
+@pytest.mark.parametrize(("damping", "relative"), [(1e-3, True), pytest.param(0.0, False, marks=pytest.mark.slow)])
 def test_error_of_little_damping_is_relative_to_it_or_absolute(tmp_path: Path, damping: float, relative: bool) -> None:
     scene, ranges = MAP | {"contact": {"damping": damping}}, {"load.axial": (400.0, 2000.0)}
     instance = Instance(exported(tmp_path, scene, ranges=ranges)[2])

@@ -55,6 +55,7 @@ def test_the_study_finds_the_bearing_and_says_what_the_printed_formula_finds(fol
     assert (out / "rig.html").stat().st_size < 5e6
 
 
+@pytest.mark.slow
 def test_identify_on_the_rig_s_own_file_gives_the_same_numbers(folder):
     out, content = folder
     signals, slow = (out / f"{name}-13000rpm-2000N.csv" for name in ("signals", "slow-roll"))
