@@ -31,7 +31,10 @@ KINDS = [{}, MOVING, SOFT, MOVING | {"tolerances": {"load.axial": "±5 %"}}, {"b
 #: Elastic rings of every other bearing than B7206C take seconds, and their parts come by the same lines.
 #: Each bearing and each kind once and more; all pairs by night.
 SCENES = [
-    pytest.param({"bearing": bearing, "load": {"axial": 400.0}, **kind}, marks=[pytest.mark.slow] * ((k + n) % 4 > 0))
+    pytest.param(
+        {"bearing": bearing, "load": {"axial": 400.0}, **kind},
+        marks=[pytest.mark.slow] * ((k + n) % 4 > 0 or "bodies" in kind and k > 0),
+    )
     for (k, bearing), (n, kind) in product(enumerate(BEARINGS), enumerate(KINDS))
 ]
 
