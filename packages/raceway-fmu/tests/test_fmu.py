@@ -116,7 +116,7 @@ def test_no_number_is_discarded(maps: dict[int, Path], forces: dict[int, Path], 
 
 
 #: A hypothesis of moments, one with growth, another law, a pair; others by night.
-QUICK = ("shared", "traction", "penalty")
+QUICK = ("shared", "traction")
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name not in QUICK)) for name in FORCES])
