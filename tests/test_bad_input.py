@@ -11,7 +11,7 @@ import sys
 import numpy as np
 import pytest
 
-from checks.validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, install, invoke, raceway
+from checks.validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, install, invoke, raceway, several
 from raceway import SceneError
 from raceway.extend import read_toml
 
@@ -124,13 +124,14 @@ def test_a_file_that_is_no_scene(case, tmp_path):
 def test_a_plug_in_that_fails_to_import(tmp_path):
     """It is told beside what does not need it, and never on standard output."""
     install(tmp_path, "broken", "import sys; sys.exit(3)")
-    found = raceway("check", MINIMAL, "--json", PYTHONPATH=tmp_path)
-    assert found.returncode == 0 and json.loads(found.stdout)["errors"] == []
-    assert "warning: plug-in `broken (broken)`: fails to import: SystemExit: 3" in found.stderr
-    listed = raceway("dev", "plugins", PYTHONPATH=tmp_path)
-    assert listed.returncode == 2 and "SystemExit: 3" in listed.stderr and "newmark" in listed.stdout
-    used = raceway("check", MINIMAL, "--set", "contact.kind=broken", PYTHONPATH=tmp_path)
-    assert used.returncode == 2 and "Not loaded: plug-in `broken (broken)`" in used.stderr
+    check = ["check", MINIMAL, "--json"]
+    found, listed, used = several(
+        [check, ["dev", "plugins"], [*check[:2], "--set", "contact.kind=broken"]], PYTHONPATH=tmp_path
+    )
+    assert found[0] == 0 and json.loads(found[1])["errors"] == []
+    assert "warning: plug-in `broken (broken)`: fails to import: SystemExit: 3" in found[2]
+    assert listed[0] == 2 and "SystemExit: 3" in listed[2] and "newmark" in listed[1]
+    assert used[0] == 2 and "Not loaded: plug-in `broken (broken)`" in used[2]
 
 
 def test_a_traceback_is_shown_where_it_is_asked_for():

@@ -37,6 +37,7 @@ def walked(branch, first, start, until, size=0.1, sense=1.0):
     raise AssertionError("the branch does not come to its end")
 
 
+@pytest.mark.slow
 def test_folds_of_a_weak_duffing_oscillator():
     """Its first harmonic alone is the closed form: what that leaves out is (b A^2)^2 3/128 = 2e-8 of w."""
     one = Oscillator(damping=2e-4, factor=1e-3, force=2e-4)

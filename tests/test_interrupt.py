@@ -252,7 +252,7 @@ def threads(_points):
 
 
 def test_workers_watch_their_parent_from_the_start():
-    assert all(WATCH in names for _, names in Processes(workers=2).compute(threads, [(0, []), (1, [])]))
+    assert all(WATCH in names for _, names in Processes(workers=1).compute(threads, [(0, []), (1, [])]))
 
 
 class Deaf:

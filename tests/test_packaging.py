@@ -17,7 +17,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 import raceway
-from checks.validation.command_line import install, python
+from checks.validation.command_line import install, python, several
 from checks.validation.command_line import raceway as command
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -36,18 +36,16 @@ def test_one_version_everywhere():
         assert own and all(text.endswith(f"=={raceway.__version__}") for text in own)
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
+def test_what_is_in_a_package_that_is_missing_is_told():
+    rows = [
         (["fit", "k.csv"], "no command 'fit' (in raceway-measure, which RACEWAY_DISABLE leaves out"),
         (["export", "--fmu", "x.toml"], "`raceway export --fmu` is in raceway-fmu, which RACEWAY_DISABLE leaves out"),
         (["plan", "examples/minimal.toml", "--set", "mesh.kind=gmsh"], "mesher 'gmsh' is in raceway-meshing, which"),
         (["study", "rig", "x.toml"], "no command 'rig' (in raceway-measure, which RACEWAY_DISABLE leaves out"),
-    ],
-)
-def test_what_is_in_a_package_that_is_missing_is_told(words, told):
-    done = command(*words, RACEWAY_DISABLE="measure,fmu,meshing")
-    assert done.returncode == 2 and told in done.stderr
+    ]
+    found = several([words for words, _ in rows], RACEWAY_DISABLE="measure,fmu,meshing")
+    for (_, told), (code, _, errors) in zip(rows, found, strict=True):
+        assert code == 2 and told in errors
 
 
 def test_a_name_of_a_package_that_is_missing_is_told():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -34,6 +35,23 @@ def invoke(*words: Any) -> Result:
 def raceway(*words: Any, cwd: Any = None, **environment: Any) -> subprocess.CompletedProcess[str]:
     """A command in a process of its own."""
     return python("-m", "raceway", *words, cwd=cwd, **environment)
+
+
+#: Commands one after another, in one process.
+_SEVERAL = """
+import json, sys
+from click.testing import CliRunner
+from raceway.cli.main import main
+found = [CliRunner().invoke(main, words) for words in json.loads(sys.argv[1])]
+print(json.dumps([[one.exit_code, one.stdout, one.stderr] for one in found]))
+"""
+
+
+def several(commands: list[list[str]], **environment: Any) -> list[tuple[int, str, str]]:
+    """Exit code, output and errors of each of several commands in a process of their own, whose start takes as long as many."""
+    done = python("-c", _SEVERAL, json.dumps(commands), **environment)
+    assert done.returncode == 0, done.stderr
+    return [(code, out, err) for code, out, err in json.loads(done.stdout)]
 
 
 def python(*words: Any, cwd: Any = None, **environment: Any) -> subprocess.CompletedProcess[str]:
