@@ -149,7 +149,7 @@ def test_columns_have_the_derivatives_of_models(name):
     columns = gradients._by_columns(keys)
     assert len(columns) > 15
     numbers = {}
-    for key in keys:
+    for key in keys[::2]:  # a model takes a tenth of a second
         if key.path in columns:
             both = columns[key.path], gradients._by_models(key)
             numbers[key.path] = [
