@@ -72,6 +72,7 @@ def test_words_choose_among_the_faults(capsys):
     assert "raceway/core/ring/ring.py: " in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_fault_touches_what_imports_its_file_and_nothing_else():
     found = {str(path.relative_to(ROOT)) for path in touched("raceway/core/fem/hexahedron/stiffness.py")}
     assert {

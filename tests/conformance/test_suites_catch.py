@@ -320,7 +320,10 @@ def test_an_expected_failure_conforms_and_xfails_under_pytest(expecting):
         ("[contact_law.loose\n", "is not valid TOML"),
     ],
 )
-def test_the_list_is_honoured_strictly(expecting, listed, found):
+def test_the_list_is_honoured_strictly(expecting, listed, found, monkeypatch):
+    checks = ContactLawSuite.checks()
+    few = {name: checks[name] for name in ("declaration", "monotonic")}  # all of them take a second
+    monkeypatch.setattr(ContactLawSuite, "checks", classmethod(lambda _: few))
     conformity = ContactLawSuite.conformity(expecting("pass", listed))
     assert not conformity.conforms
     assert any(found in row.message for row in conformity.rows if not row.good)
