@@ -78,6 +78,24 @@ def test_a_transient_starts_with_the_orbit_s_acceleration():
     assert np.abs((start.a - orbit.acceleration[0]) * weight).max() < 1e-2 * size
 
 
+@pytest.mark.parametrize("orbiting", [False, True])
+def test_friction_starts_on_the_orbit_without_it_where_nothing_sticks(orbiting):
+    """By the kernel of balls without slips, whose places stand before the slips of those with friction."""
+    tables = rotating(1000.0, "free", 12000.0, True, "newmark")
+    tables["contact"] = {"friction": 0.03}
+    tables["kinematics"] = {"orbiting": orbiting, "gyroscopic": "none"}
+    model = model_of(tables)
+    still = model.system.at_standstill()
+    assert still.conservative and still.ball_columns == 2 and not model.system.conservative
+    orbit = steady_orbit(still, 5e-3, solve_equilibrium(model).displacement)
+    start = from_orbit(model.system, orbit, 1e-9)
+    now, plain = model.system.evaluate(start.q, start.v, ball=start.ball), still.evaluate(start.q, start.v)
+    assert np.abs(now.force - plain.force).max() < 1e-9 * np.abs(plain.force).max()
+    assert np.abs(start.ball[:, :2] - plain.ball).max() < 1e-9 * np.abs(plain.ball).max()
+    # A nanosecond before, places and slips were the same but for what they move meanwhile.
+    assert np.abs(start.ball_before - start.ball).max() < 1e-6 * np.abs(start.ball).max()
+
+
 @pytest.mark.parametrize("rpm", [1.0, 10.0, 100.0, 150.0])
 def test_a_slow_motion_starts_on_its_orbit(built, rpm):
     """No mesh holds vibrations that are 4e3 to 6e5 times as fast as the force; the orbit is then that of Fourier collocation,

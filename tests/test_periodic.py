@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from itertools import islice
-from types import SimpleNamespace
 
 import attrs
 import numpy as np
@@ -23,7 +22,7 @@ from raceway.core.periodic.search import Recorded, guess, highest_order, mesh_of
 from raceway.core.periodic.steady import find, static_equilibrium
 from raceway.core.periodic.turn import one_turn
 from raceway.extend import Motion, Schedule, integrate, steady_orbit
-from raceway.pipeline.simulate import steady_record
+from raceway.pipeline.simulate import last_turn, steady_record
 from raceway.testing import model_of, solve_equilibrium
 from raceway.testing.systems import PRELOAD, SPEED, along_x, contact_system, exact, linear_system, motion
 
@@ -321,11 +320,23 @@ def test_a_recorded_turn_leads_to_its_own_motion(which):
     lasting = [one.refined.solved for one in found.all if one.floquet.verdict != "unstable"]
     assert len(lasting) == 2
     turn = record(lasting[which], Schedule(period / 72, 72, 2), {})
-    settled = steady_record(model, equilibrium, SimpleNamespace(whole=turn))
+    settled = steady_record(model, equilibrium, last_turn(turn, period))
     there = settled.displacement[4::5] - turn.displacement[72:]
     assert np.abs(there[:, 1:3]).max() < 1e-6 * np.ptp(turn.displacement[:, 1])
     alone = steady_record(model, equilibrium)
     assert (np.abs(alone.displacement - settled.displacement).max() < 1e-9) == (which == 0)
+
+
+def test_an_unstable_motion_of_the_same_problem_is_not_searched_for_again():
+    """80 kg: the motion between the two stable ones stays what it is, at another speed it leads to one that lasts."""
+    model = model_of(heavy(80.0))
+    equilibrium, w = solve_equilibrium(model), 2.0 * np.pi / model.excitation.period_s
+    q, tangent = equilibrium.displacement, equilibrium.stiffness
+    problem, beside = (problem_of(model.system, speed, q) for speed in (w, 1.001 * w))
+    (unstable,) = (one for one in find(problem, q, tangent, 1e-8).all if one.floquet.verdict == "unstable")
+    again = find(problem, q, tangent, 1e-7, unstable.neighbour(q, tangent), True)
+    assert again.floquet.largest == pytest.approx(unstable.floquet.largest, rel=1e-5)
+    assert find(beside, q, tangent, 1e-7, unstable.neighbour(q, tangent), True).floquet.verdict != "unstable"
 
 
 @pytest.mark.parametrize("count", [8, 9])

@@ -33,7 +33,7 @@ def curves(k: Any, bodies: tuple[str, ...] = ("rigid",), friction: float | None 
     """Curves of ``k(setting, load, w*)`` [N/m]; None fails the run, a tuple (k,) makes its motion unstable."""
     made = design(article_tables(), SPEEDS, LOADS, None, bodies, friction)
     rows: dict[Any, list[dict[str, Any]]] = {}
-    for setting, load in made.tasks():
+    for setting, load in (at for group in made.curves() for at in group):
         rows[setting, load] = []
         for speed, w in zip(made.speeds_of(setting), made.relative(made.speeds_of(setting)), strict=True):
             value = k(setting, load, w)

@@ -236,8 +236,7 @@ def _motions(
         if "speeds" in needs:
             motions = simulate_speeds(model, progress)
         elif "record" in needs:
-            same = near is not None and near.model.problem.integrator.kind == model.problem.integrator.kind
-            follow = near.simulation if near is not None and same else None
+            follow = None if near is None else near.simulation
             motions = [simulate(model, equilibrium, progress, near=follow, stay=stay)]
     except (ConvergenceError, SceneError) as fault:
         if not automatic:

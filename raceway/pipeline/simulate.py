@@ -7,7 +7,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.model import Equilibrium, Model, model_of
-from raceway.core.periodic.search import Recorded
+from raceway.core.periodic.search import Neighbour, Recorded
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.system import compiled
@@ -68,6 +68,7 @@ class Simulation:
     critical_time_step : stable limit of explicit steps at the stiffest state known before the run [s]
     start : how it began
     warnings : what a user should know
+    near : the similar scene's that it was given
     """
 
     model: Model
@@ -77,6 +78,7 @@ class Simulation:
     critical_time_step: float | None
     start: Start
     warnings: tuple[str, ...]
+    near: "Simulation | None" = None
 
     @property
     def steps_per_turn(self) -> int:
@@ -103,8 +105,8 @@ def simulate(
     ----------
     steps_per_turn : instead of the scene's
     start : None: that of the scene
-    near : of a similar scene by the same integrator, for integrators that can start from it
-    stay : on the motion of ``near`` where several may exist
+    near : of a similar scene, for the search for an orbit, and for integrators of the same kind, that can start from it
+    stay : on the motion of ``near``, or else on the first that is not unstable, where several may exist
 
     Raises
     ------
@@ -114,12 +116,13 @@ def simulate(
     method, turns = model.problem.integrator.method, model.plan.turns
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
     watch = None if on_progress is None else (lambda: on_progress("the search for orbits", 0, 0))
-    start = start or start_of_motion(model, equilibrium, watch)
+    solution = None if near is None else near.whole.solution
+    start = start or start_of_motion(model, equilibrium, watch, solution if isinstance(solution, Neighbour) else None, stay)
     # Stable limit of explicit steps: the shortest of the states known before the run.
-    slopes = [(equilibrium.stiffness_rows_held, equilibrium.damping_rows_held)]
-    orbit = start.orbit
-    slopes += [] if orbit is None else zip(orbit.stiffness, orbit.damping, strict=True)
-    critical = min(model.system.damped_time_step(*slope) for slope in slopes) if method.inertial else None
+    orbit, K, C = start.orbit, equilibrium.stiffness_rows_held[None], equilibrium.damping_rows_held[None]
+    if orbit is not None:
+        K, C = np.concatenate([K, orbit.stiffness]), np.concatenate([C, orbit.damping])
+    critical = model.system.damped_time_step(K, C) if method.inertial else None
     steps = steps_per_turn or model.problem.integrator.steps_per_turn
     if not isinstance(steps, int):
         steps = STEPS_PER_TURN if method.implicit or critical is None else stable_steps_per_turn(period, critical)
@@ -130,7 +133,9 @@ def simulate(
     stride = recording_stride(steps_per_turn, turns, method.inertial)
     schedule = Schedule(period / steps_per_turn, steps_per_turn, turns, stride, ramp * period)
     motion = _motion(model, equilibrium, start, schedule.dt)
-    motion = attrs.evolve(motion, near=None if near is None else near.whole.solution, stay=stay)
+    if near is not None and near.model.problem.integrator.kind == model.problem.integrator.kind:
+        motion = attrs.evolve(motion, near=solution)
+    motion = attrs.evolve(motion, stay=stay)
     label = f"{model.problem.integrator.kind}, {schedule.steps} steps"
     progress = None if on_progress is None else (lambda step, total: on_progress(label, step, total))
     record = integrate(method, model.system, motion, schedule, progress)
@@ -138,7 +143,8 @@ def simulate(
     if start.kind == "static" and method.inertial and not method.steady:
         window = max(model.plan.turns // 3, 1)
     warnings = (*start.warnings, *step_warnings, *record.counts.get("warnings", ()))
-    return Simulation(model, equilibrium, record.last(max(window, 1)), record, critical, start, warnings)
+    near = near and attrs.evolve(near, near=None)
+    return Simulation(model, equilibrium, record.last(max(window, 1)), record, critical, start, warnings, near)
 
 
 def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list[Simulation]:
@@ -153,17 +159,19 @@ def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list
     return motions
 
 
-def start_of_motion(model: Model, equilibrium: Equilibrium, watch: Watch | None = None) -> Start:
-    """The scene's start; an orbit that cannot be found becomes a ramp, with a warning."""
+def start_of_motion(
+    model: Model, equilibrium: Equilibrium, watch: Watch | None = None, near: Neighbour | None = None, stay: bool = False
+) -> Start:
+    """The scene's start; an orbit that cannot be found becomes a ramp, with a warning.  ``near``, ``stay``: for the search for it."""
     problem, method = model.problem, model.problem.integrator.method
     if method.steady:
         return Start("static")
     kind = "ramp" if model.problem.ramped else problem.integrator.start
-    start = _orbit_start(model, equilibrium, watch) if kind == "orbit" and method.inertial else Start(kind)
+    start = _orbit_start(model, equilibrium, watch, near, stay) if kind == "orbit" and method.inertial else Start(kind)
     return attrs.evolve(start, warnings=(*start.warnings, _STICKS)) if problem.contact.friction > 0.0 else start
 
 
-def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None) -> Start:
+def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None, near: Neighbour | None, stay: bool) -> Start:
     """On the motion that the search for periodic motions takes, or on the collocated one where it does not search."""
     excitation, system = model.excitation, model.bearing.periodic_system(model.system.at_speed(0.0))
     if excitation.period_s is None:
@@ -175,27 +183,25 @@ def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None) ->
         excitation = steady
         system = attrs.evolve(system, force=excitation.kernel(), force_params=excitation.parameters())
     try:
-        ring = compiled(system)
-        if ring is None or not model.problem.searches_orbits:
-            return Start("orbit", steady_orbit(system, excitation.period_s, equilibrium.displacement))
-        from raceway.core.periodic.steady import starting_orbit
+        ring, found = compiled(system), None
+        if ring is not None and model.problem.searches_orbits:
+            from raceway.core.periodic.steady import starting_orbit
 
-        search = starting_orbit(ring, excitation.period_s, equilibrium.displacement, watch)
-        if search is None:
+            found = starting_orbit(ring, excitation.period_s, equilibrium.displacement, watch, near, stay)
+        if found is None:
             return Start("orbit", steady_orbit(system, excitation.period_s, equilibrium.displacement))
-        if not search.orbits:
-            return Start("orbit", search.orbit)
+        orbit, orbits, warnings = found
+        if not orbits:
+            return Start("orbit", orbit)
         # Orbits of another motion than that of the scene are stated in warnings only.
         differences = {
             "without friction": model.problem.contact.friction > 0.0,
             "with balls that do not orbit": model.problem.kinematics.orbiting,
             "at its first speed": model.excitation.period_s is None,
         }
-        prefix = ", ".join(words for words, differs in differences.items() if differs)
-        orbits, warnings = tuple(search.orbits), search.warnings
-        if prefix:
-            orbits, warnings = (), tuple(f"{prefix}: {text}" for text in warnings)
-        return Start("orbit", search.orbit, orbits, search.orbits[0]["stable"], warnings)
+        if prefix := ", ".join(words for words, differs in differences.items() if differs):
+            return Start("orbit", orbit, (), orbits[0]["stable"], tuple(f"{prefix}: {text}" for text in warnings))
+        return Start("orbit", orbit, tuple(orbits), orbits[0]["stable"], warnings)
     except ConvergenceError as why:
         return Start("ramp", repeats=False, warnings=(f"{why}: started with a ramp instead",))
 
@@ -272,7 +278,7 @@ class SteadyMotions:
         if model is None or self.missed >= _GIVEN_UP:
             return None
         near = None if self.last is None else self.last.solution
-        record = _steady(model, solve_equilibrium(model), near, self.on_progress)
+        record = steady_record(model, solve_equilibrium(model), near, self.on_progress)
         self.missed = self.missed + 1 if record is None else 0
         if record is None:
             return None
@@ -291,21 +297,9 @@ def model_at_speed(model: Model, speed: float) -> Model | None:
 
 
 def steady_record(
-    model: Model, equilibrium: Equilibrium, motion: Simulation | None = None, on_progress: OnProgress | None = None
+    model: Model, equilibrium: Equilibrium, near: Neighbour | Recorded | None = None, on_progress: OnProgress | None = None
 ) -> Record | None:
-    """One turn of the steady motion; None where there is none that can be solved for, or none is found.
-
-    Parameters
-    ----------
-    motion : that converges to it: where several exist, the one near its last turn is taken
-    on_progress : called in the search, which what it raises ends
-    """
-    period = model.excitation.period_s
-    near = None if motion is None or period is None else last_turn(motion.whole, period)
-    return _steady(model, equilibrium, near, on_progress)
-
-
-def _steady(model: Model, equilibrium: Equilibrium, near: Recorded | None, on_progress: OnProgress | None) -> Record | None:
+    """One turn of the steady motion, that near another one where several exist; None where none can be solved for or is found."""
     from raceway.core.periodic.steady import steady
 
     if model.excitation.period_s is None:
@@ -322,8 +316,6 @@ def _steady(model: Model, equilibrium: Equilibrium, near: Recorded | None, on_pr
 
 def last_turn(record: Record, period: float) -> Recorded | None:
     """The last turn of a record as ``steady`` starts from it; None where the record is no whole turns of equal samples."""
-    from raceway.core.periodic.search import Recorded
-
     steps, stride = record.schedule.steps_per_turn, record.schedule.stride
     n = steps // stride
     if n * stride != steps or len(record.time) < n or record.schedule.steps % steps:

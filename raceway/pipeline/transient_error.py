@@ -37,7 +37,7 @@ from raceway.framework.duties import ramp_turns
 from raceway.framework.estimate import Estimate, Note
 from raceway.framework.registry import default_registry
 from raceway.pipeline.identified import Identified
-from raceway.pipeline.simulate import OnProgress, Simulation, settles_elsewhere, simulate, steady_record
+from raceway.pipeline.simulate import OnProgress, Simulation, last_turn, settles_elsewhere, simulate, steady_record
 from raceway.plugins.identifiers.one_frequency import whole_turns
 
 #: Free vibrations below this share of the 1x power shift nothing that can be seen.
@@ -64,7 +64,8 @@ def settled_value(run: Identified) -> complex | None:
         return run.steady.value(run.identification.speed)
     records = []
     for motion in run.motions:
-        orbit = steady_record(motion.model, motion.equilibrium, motion, run.on_progress)
+        near = last_turn(motion.whole, motion.model.excitation.period_s)
+        orbit = steady_record(motion.model, motion.equilibrium, near, run.on_progress)
         if orbit is None or settles_elsewhere(motion.model, motion, orbit):
             return None
         records.append(orbit)
@@ -190,9 +191,8 @@ def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None
     for kind in kinds:
         other_problem = attrs.evolve(problem, integrator=attrs.evolve(problem.integrator, start=kind))
         try:
-            other_motion = simulate(
-                attrs.evolve(motion.model, problem=other_problem), motion.equilibrium, on_progress, run.steps
-            )
+            model = attrs.evolve(motion.model, problem=other_problem)
+            other_motion = simulate(model, motion.equilibrium, on_progress, run.steps, near=motion.near, stay=True)
         except (ConvergenceError, StabilityError) as error:
             failure = error
             continue

@@ -132,9 +132,13 @@ class Design:
         for friction, (direction, amplitude), tilt in product(self.frictions[1:], CLAIMED, TILTS):
             yield Setting(direction, amplitude, tilt, True, "rigid", friction)
 
-    def tasks(self) -> list[tuple[Setting, float]]:
-        """Every setting at each of its axial loads [N]: a curve over speed."""
-        return [(setting, load) for setting in self.settings() for load in self.loads_of(setting)]
+    def curves(self) -> list[list[tuple[Setting, float]]]:
+        """Every setting at each of its axial loads [N]: a curve over speed; together what differs in friction alone, first without."""
+        groups = dict[tuple[Setting, float], list[tuple[Setting, float]]]()
+        for setting in self.settings():
+            for load in self.loads_of(setting):
+                groups.setdefault((attrs.evolve(setting, friction="none"), load), []).append((setting, load))
+        return list(groups.values())
 
     def point(self, setting: Setting, load: float, speed: float, registry: Registry) -> Tables:
         """The scene's tables at one point."""

@@ -9,6 +9,7 @@ import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -197,14 +198,23 @@ def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
 
     Each motion is continued from that at the next speed where it stays beside it and is not unstable, else searched for. Where it is
     unstable, or none is found, ``instead`` states what a ring does, by time integration: from beside that motion, or from rest.
+    With friction the orbit of another start is the motion without it at the same point, where that was run.
 
-    points : tables of scenes that differ in axial load, speed and tilt stiffness
+    points : tables of scenes that differ in axial load, speed and tilt stiffness; those with friction last
     """
-    rows, near, last = list(_looped(points, registry)), None, None
-    order = sorted(range(len(points)), key=lambda k: (points[k]["load"]["axial"], points[k]["excitation"]["speed_rpm"], k))
-    for k in reversed(order):
-        near, last = near if points[k]["load"] == last else None, points[k]["load"]
-        rows[k], near = (rows[k], near) if rows[k] else _point_row(points[k], registry, near)
+    steady = [tables for tables in points if tables["integrator"]["kind"] == "periodic"]
+    rows: list[Tables | None] = [*(_looped(steady, registry) if steady else []), *[None] * (len(points) - len(steady))]
+
+    def place(k: int) -> tuple[float, float, bool, int]:
+        return points[k]["load"]["axial"], points[k]["excitation"]["speed_rpm"], k < len(steady), k
+
+    near, last, without_friction = None, None, dict[tuple[float, float], Result | None]()
+    for k in sorted((k for k, row in enumerate(rows) if row is None), key=place, reverse=True):
+        near, last, at = near if points[k]["load"] == last else None, points[k]["load"], place(k)[:2]
+        row, result = _point_row(points[k], registry, near if k < len(steady) else without_friction.get(at))
+        rows[k] = row
+        if k < len(steady):
+            without_friction[at], near = result, result if row["status"] == Status.COMPLETED else near
     return [row for row in rows if row]
 
 
@@ -239,7 +249,7 @@ def _loop_of(points: Sequence[Tables], registry: Registry) -> tuple[Function | N
 
 
 def _point_row(tables: Tables, registry: Registry, near: Result | None) -> tuple[Tables, Result | None]:
-    """The row of a run, and its result, or ``near`` where it is none to continue the next motion from."""
+    """The row of a run, continued from ``near``, and its result."""
     row: Tables = {"speed_rpm": tables["excitation"]["speed_rpm"], "axial_n": tables["load"]["axial"]}
     try:
         scene = scene_from_dict(tables, registry)
@@ -252,9 +262,9 @@ def _point_row(tables: Tables, registry: Registry, near: Result | None) -> tuple
             if motion.kind == FAILED:
                 raise
             reason = f"{' '.join(str(why).split()).partition(': ')[0]}; instead, from rest: {motion.words}"
-            return {**row, "status": Status.UNSTEADY, "reason": reason, "instead": _plain_row(motion)}, near
+            return {**row, "status": Status.UNSTEADY, "reason": reason, "instead": _plain_row(motion)}, None
     except RacewayError as why:
-        return {**row, **failure(why)}, near
+        return {**row, **failure(why)}, None
     identification, error, floquet = result.identification, result.error, result.stability["floquet"]
     assert identification is not None
     status, reason = Status.COMPLETED, ""
@@ -265,8 +275,7 @@ def _point_row(tables: Tables, registry: Registry, near: Result | None) -> tuple
         status, reason = Status.UNSTABLE, f"{grows}; instead: {motion.words}"
     numbers = {"k": K.of(result), "abs_z": abs(identification.dynamic_stiffness), "force_n": identification.force_amplitude}
     errors = {"error": without_mesh(error), "mesh_error": error["mesh"]}
-    row = {**row, "status": status, "reason": reason, "found": floquet and floquet["found"], **numbers, **errors}
-    return row, (result if floquet is not None and status == Status.COMPLETED else near)
+    return {**row, "status": status, "reason": reason, "found": floquet and floquet["found"], **numbers, **errors}, result
 
 
 def _plain_row(motion: Attractor) -> Tables:
@@ -454,9 +463,9 @@ def _items(design: Design, registry: Registry) -> list[Item]:
     tasks += [
         ("the rig's speeds", rows_of_curve, points(setting, RIG_LOADS, RIG_SPEEDS)) for setting in _rig_settings(design)
     ]
-    for setting, load in design.tasks():
-        curve = "curves over speed" if setting.friction == "none" else "curves over speed, friction"
-        tasks.append((curve, rows_of_curve, points(setting, [load], design.speeds_of(setting))))
+    for group in design.curves():
+        inputs = [tables for setting, load in group for tables in points(setting, [load], design.speeds_of(setting))]
+        tasks.append(("curves over speed", rows_of_curve, inputs))
     for name, compute, inputs in tasks:
         key = tables_key({"function": compute.__qualname__, "inputs": inputs}, registry, program=program)
         items.append(Item(key, name, (name, compute, inputs)))
@@ -465,14 +474,14 @@ def _items(design: Design, registry: Registry) -> list[Item]:
 
 def workload(design: Design, processes: int, kept: Path | None, registry: Registry) -> Workload:
     """Points of the curves over speed, which take nearly all of the time."""
-    curves = design.tasks()
-    items = _items(design, registry)[-len(curves) :]
-    left = [curve for curve, item in zip(curves, items, strict=True) if not stored_rows(kept, [item.key])]
+    groups = design.curves()
+    items = _items(design, registry)[-len(groups) :]
+    left = [at for group, item in zip(groups, items, strict=True) if not stored_rows(kept, [item.key]) for at in group]
     points = [(setting, load, speed) for setting, load in left for speed in design.speeds_of(setting)]
     starts = {setting: design.point(setting, load, speed, registry) for setting, load, speed in points}
     loops = [setting for setting, start in starts.items() if _loop_of([start], registry)[0] is not None]
     looped = sum(setting in loops for setting, _, _ in points)
-    size = sum(len(design.speeds_of(setting)) for setting, _ in curves)
+    size = sum(len(design.speeds_of(setting)) for group in groups for setting, _ in group)
     seconds, refusal = run_times(len(points), lambda n: design.point(*points[n], registry), registry)
     remark = "Points of the loop that are unstable or far from linear are run in addition; the time counts all as runs."
     counts = size, seconds / max(processes, 1), looped, max(len(points) - looped - refusal, 0), refusal, size - len(points)
@@ -507,7 +516,9 @@ def solve_curves(
     trends = [trend(case, next(results)) for case in TRENDS]
     scan = {load: next(results) for load in _scan_loads(design)}
     rig = [{"tilt": s.tilt, "bodies": s.bodies, **row} for s in _rig_settings(design) for row in next(results)]
-    curves = Curves(design, dict(zip(design.tasks(), results, strict=True)))
+    of_groups = zip(design.curves(), map(iter, results), strict=True)
+    rows = {at: list(islice(row, len(design.speeds_of(at[0])))) for group, row in of_groups for at in group}
+    curves = Curves(design, rows)
     costs = time.monotonic() - start, processor_time() - cpu, time.process_time() - own_cpu
     numbers = title, curves, tuple(rig), tuple(static), tuple(trends), scan
     return Article(*numbers, *costs, len(items), reused, store.fault, command)

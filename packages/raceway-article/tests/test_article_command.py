@@ -172,6 +172,21 @@ def test_motions_far_from_linear_are_continued_from_the_next_speed_not_searched_
     assert len(searched) == 2 and first["k"] == pytest.approx(alone["k"], rel=1e-7)
 
 
+def test_the_orbit_that_another_start_with_friction_is_on_is_searched_for_once(monkeypatch):
+    """1000 N, tilt free: found without friction, it is what the runs with friction compare their start with."""
+    searched, made, registry = [], design(article_tables()), default_registry()
+    chosen = branches.chosen
+    monkeypatch.setattr(branches, "chosen", lambda *given: searched.append(1) or chosen(*given))
+    settings = [Setting("unidirectional", "constant", "free", True, "rigid", friction) for friction in FRICTIONS]
+    points = [made.point(setting, 1000.0, 15000.0, registry) for setting in settings]
+    rows = driver.rows_of_curve(points, registry)
+    assert len(searched) == 1 and [row["found"] for row in rows] == ["from rest", None, None]
+    (alone,) = driver.rows_of_curve(points[1:2], registry)
+    # The orbit is known to 1e-7 both times, and the start on it to that.
+    assert len(searched) == 2 and rows[1]["k"] == pytest.approx(alone["k"], rel=1e-9)
+    assert rows[1]["error"] == pytest.approx(alone["error"], abs=1e-7)
+
+
 @pytest.mark.slow
 def test_page_says_what_failed(made_page):
     text = made_page(lambda s, load, w: None if s.tilt == "locked" else (1e8,) if w == 1.0 else 1e8)

@@ -155,8 +155,8 @@ class Branch:
         path, dp = solution.path, size * here.tangent[-1] * self.unit
         # Predictor: the last linearised problem carries the tangent at the start through the span; the last correction, which it
         # adds once more, is far below the tolerance.
-        trial, _ = _shifted_path(path, solution.problem.free, solution.eliminated, size * self.displacement(here), dp)
-        trial = attrs.evolve(trial, ball=path.ball.copy(), rate=path.rate.copy())
+        own = attrs.evolve(path, ball=path.ball.copy(), rate=path.rate.copy())
+        trial, _ = _shifted_path(own, solution.problem.free, solution.eliminated, size * self.displacement(here), dp)
         at = here.parameter + dp
         parameter, tangent, last, error = self._correct(trial, at, here.tangent, (trial, at))
         for _ in range(4):
@@ -243,12 +243,9 @@ class Branch:
         self, path: Path, parameter: float, across: np.ndarray, prediction: tuple[Path, float] | None
     ) -> tuple[float, np.ndarray, Solved, Estimate]:
         """Newton across the predictor; without one, the parameter stays.  Parameter, tangent, motion, error."""
-        worst = np.inf
-        lagging = stiff(self.problem_at(parameter), path)
+        worst, problem = np.inf, self.problem_at(parameter)
+        free, n, lagging = problem.free, len(problem.free), stiff(problem, path)
         for sweeps in range(1, _LIMIT + 1):
-            problem = self.problem_at(parameter)
-            free = problem.free
-            n = len(free)
             linearisation = self._linearise(problem, path, parameter)
             if linearisation is None:
                 raise ConvergenceError("the balls have no equilibrium between the races")
@@ -283,6 +280,7 @@ class Branch:
                 tangent = solution[:, 1] / np.linalg.norm(solution[:, 1])
                 solved = Solved(problem, path, linear, size, True, sweeps, correction)
                 return parameter, tangent, solved, self._estimate(solved, tangent)
+            problem = self.problem_at(parameter)
         raise ConvergenceError("the corrector does not converge")
 
 
@@ -290,7 +288,7 @@ def _shifted_path(path: Path, free: np.ndarray, linear: Eliminated, first: np.nd
     """A path after changes of its first state (2 n,) and of the parameter, and its change."""
     change = Change(np.zeros_like(path.q), np.zeros_like(path.v), np.zeros_like(path.a))
     spread(free, linear, first, dp, change)
-    return attrs.evolve(path, q=path.q + change.q, v=path.v + change.v, a=path.a + change.a), change
+    return Path(path.nodes, path.q + change.q, path.v + change.v, path.a + change.a, path.ball, path.rate), change
 
 
 def _two_spans(problem: Problem) -> Problem:

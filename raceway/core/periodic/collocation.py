@@ -56,7 +56,7 @@ class Problem:
 
     @closing.default
     def _closing(self) -> np.ndarray:
-        part = self.symmetry.rotation[np.ix_(self.free, self.free)]
+        part = self.symmetry.rotation[self.free[:, None], self.free]
         n = len(part)
         out = np.zeros((2 * n, 2 * n))
         out[:n, :n] = out[n:, n:] = part
@@ -162,15 +162,14 @@ def renew(problem: Problem, path: Path, solved: bool) -> None:
     after every sweep. Where lag times the largest entry of D is no longer small that diverges, in the finest modes of the
     mesh first, and Newton's iteration takes over: (I - D T) dr = D b - r with T = db/dr of each ball, by differences.
     """
-    rate_columns = problem.system.rated_columns
     columns = np.array(problem.system.rated_columns)
-    closure, path_rate = newton.Closure(problem.closing, problem.symmetry.order, columns), path.rate.copy()
-    newton.renew_rates(problem.mesh(path.nodes), closure, problem.speed, path.ball, path_rate)
-    rates = path_rate[:, :, columns]
+    closure, rate = (
+        newton.Closure(problem.closing, problem.symmetry.order, columns),
+        path.rate.copy() if solved else path.rate,
+    )
+    newton.renew_rates(problem.mesh(path.nodes), closure, problem.speed, path.ball, rate)
     if solved:
-        old = path.rate[:, :, rate_columns]
-        rates = old + _solve_places(problem, path, rates - old)
-    path.rate[:, :, rate_columns] = rates
+        path.rate[:, :, columns] += _solve_places(problem, path, (rate - path.rate)[:, :, columns])
 
 
 @cache
@@ -330,7 +329,7 @@ def newton_iteration(
     """The compiled iteration; ``rate_columns``: columns of the balls whose rates are put in after every sweep."""
     elimination, report = problem.eliminated(path.nodes), np.zeros(newton.REPORT)
     q, v, a, ball, rate = path.q.copy(), path.v.copy(), path.a.copy(), path.ball.copy(), path.rate.copy()
-    solution = attrs.evolve(path, q=q, v=v, a=a, ball=ball, rate=rate)
+    solution = Path(path.nodes, q, v, a, ball, rate)
     closure = newton.Closure(problem.closing, problem.symmetry.order, rate_columns)
     limits = newton.Limits(tolerance, problem.system.force_rounding(path.q[0]), limit, patience)
     samples = solution.samples(problem.push(path.nodes))

@@ -11,6 +11,7 @@ from raceway.core.periodic.floquet import Floquet, floquet
 from raceway.core.periodic.intervals import forces
 from raceway.core.periodic.refinement import Refined, motion_at, refine
 from raceway.core.periodic.turn import one_pitch, one_turn
+from raceway.core.ring.orbit import at_time
 from raceway.core.ring.system import System
 
 #: Samples a turn of the force: enough for eight harmonics.
@@ -150,6 +151,14 @@ class Neighbour:
         """Whether the motion is so close to its linear response that no other one is near."""
         return self.share <= MOST_NONLINEAR
 
+    def solves(self, problem: Problem) -> bool:
+        """Whether this is a motion of the problem itself."""
+        mine, theirs = self.problem.system, problem.system
+        names = ("scalars", "table", "law_params", "load", "force_params", "stiffness", "damping", "mass")
+        kernels = mine.kernel is theirs.kernel and mine.law is theirs.law and mine.force is theirs.force
+        same = kernels and self.problem.speed == problem.speed and self._alike(problem)
+        return same and all(np.array_equal(getattr(mine, name), getattr(theirs, name)) for name in names)
+
     def _alike(self, problem: Problem) -> bool:
         mine, theirs = self.problem, problem
         same = (mine.system.ball_count, mine.system.ball_columns) == (theirs.system.ball_count, theirs.system.ball_columns)
@@ -174,21 +183,10 @@ class Recorded:
 
     def first_guess(self, problem: Problem, q: np.ndarray, tangent: np.ndarray, nodes: np.ndarray) -> Path:
         """The same motion on a mesh; parameters as of ``Neighbour``'s."""
-        w, inner = problem.speed, problem.angles(nodes)
-        return attrs.evolve(
-            standing(problem, q, nodes),
-            q=self._at(self.displacement, nodes / w),
-            v=self._at(self.velocity, nodes / w) / w,
-            a=self._at(self.acceleration, inner / w) / w**2,
-        )
-
-    def _at(self, values: np.ndarray, times: np.ndarray) -> np.ndarray:
-        """By trigonometric interpolation."""
-        n = len(values)
-        lines = np.fft.rfft(values, axis=0) / n
-        lines[1 : (n + 1) // 2] *= 2.0  # but the line at half the sampling rate
-        waves = np.exp(2j * np.pi / self.period * times[:, None] * np.arange(len(lines)))
-        return np.ascontiguousarray((waves @ lines).real)
+        times, inner, w = nodes / problem.speed, problem.angles(nodes) / problem.speed, problem.speed
+        q, v = (at_time(values, self.period, times) for values in (self.displacement, self.velocity))
+        path, a = standing(problem, q[0], nodes), at_time(self.acceleration, self.period, inner)
+        return attrs.evolve(path, **{x: np.ascontiguousarray(y) for x, y in (("q", q), ("v", v / w), ("a", a / w**2))})
 
 
 def neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> Neighbour:

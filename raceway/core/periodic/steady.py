@@ -187,29 +187,22 @@ def _warnings(motion: PeriodicMotion, tolerance: float) -> tuple[str, ...]:
 _SAMPLES, _TOLERANCE = 65, 1e-7
 
 
-@attrs.frozen(eq=False)
-class _StartingOrbit:
-    """The motion that a transient starts on.
-
-    orbit : periodic motion at equidistant times
-    orbits : every motion that was found, as ``raceway.core.periodic.steady`` tells them; empty where nothing could be said
-    warnings : what a user should know
-    """
-
-    orbit: Orbit
-    orbits: list[Tables] = attrs.field(factory=list)
-    warnings: tuple[str, ...] = ()
-
-
 def starting_orbit(
-    system: System, period: float, q: np.ndarray, watch: Callable[[], None] | None = None
-) -> _StartingOrbit | None:
-    """The motion to start on; None where it is not searched for, because each try would take seconds.
+    system: System,
+    period: float,
+    q: np.ndarray,
+    watch: Callable[[], None] | None = None,
+    near: Neighbour | None = None,
+    stay: bool = False,
+) -> tuple[Orbit, list[Tables], tuple[str, ...]] | None:
+    """The motion to start on at equidistant times, the tables of every one that was found, and warnings.
+
+    None where it is not searched for, because each try would take seconds; no motions where nothing could be said.
 
     Parameters
     ----------
     system : with compiled forces, without friction, memory and orbiting balls;  q : (5,) static equilibrium
-    watch : called in the search, which what it raises ends
+    watch : called in the search, which what it raises ends;  near, stay : see ``find``
 
     Raises
     ------
@@ -229,7 +222,7 @@ def starting_orbit(
     if watch is not None:
         problem = attrs.evolve(problem, watch=watch)
     try:
-        motion = find(problem, q, tangent, _TOLERANCE)
+        motion = find(problem, q, tangent, _TOLERANCE, near, stay)
     except ConvergenceError:
         orbit, highest = steady_orbit(system, period, q, _SAMPLES), search.highest_order(problem, tangent)
         try:
@@ -242,7 +235,7 @@ def starting_orbit(
         except ConvergenceError:
             if highest <= search.HIGHEST:
                 raise
-            return _StartingOrbit(orbit)  # so slow that no mesh holds the vibrations that it has none of
+            return orbit, [], ()  # so slow that no mesh holds the vibrations that it has none of
     warnings = _coexistence(motion.all)
     if motion.floquet.verdict == "unstable":
         warnings += (
@@ -257,7 +250,7 @@ def starting_orbit(
     now = responses(system, States(times, q, v, ball, rate), tangents=True)
     force = np.array([system.outer_force(t) for t in times])
     orbit = Orbit(period, q, v, a * problem.speed**2, force, ball, now.K, now.C, found.error, found.sweeps)
-    return _StartingOrbit(orbit, orbit_tables(motion.all), warnings)
+    return orbit, orbit_tables(motion.all), warnings
 
 
 #: Distance of a motion from its neighbour, over its size, up to which it is that one's continuation.
@@ -323,8 +316,9 @@ def find(
 def _continued(
     problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, near: Neighbour | Recorded
 ) -> PeriodicMotion | None:
-    """The motion that continues a neighbour, if it is close to it and not unstable."""
-    first = near.first_guess(problem, q, tangent, search.mesh_of(problem, highest))
+    """The motion that continues a neighbour, if it is close to it and not unstable, or the neighbour solves the same problem."""
+    known = near.excess.nodes if isinstance(near, Neighbour) and near.solves(problem) else None
+    first = near.first_guess(problem, q, tangent, search.mesh_of(problem, highest) if known is None else known)
     if first is None:
         return None
     try:
@@ -334,7 +328,7 @@ def _continued(
         motion = search.with_multipliers(refine(solved, tolerance), highest, "directly")
     except ConvergenceError:
         return None
-    return None if motion.floquet.verdict == "unstable" else motion
+    return None if motion.floquet.verdict == "unstable" and known is None else motion
 
 
 def _may_coexist(motion: PeriodicMotion, q: np.ndarray, tangent: np.ndarray) -> bool:

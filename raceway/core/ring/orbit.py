@@ -239,18 +239,20 @@ def _evaluate(system: Ring, states: States, out: Responses) -> int:
     return len(states.times)
 
 
-def at_time(values: np.ndarray, period: float, t: float) -> np.ndarray:
-    """Trigonometric interpolation of samples (N, ...) of a period at a time [s]."""
-    lines = np.fft.rfft(values, axis=0) / len(values)
-    harmonic = np.exp(2j * np.pi * np.arange(len(lines)) * t / period)
-    harmonic[1:] *= 2.0
-    return np.tensordot(harmonic, lines, axes=(0, 0)).real
+def at_time(values: np.ndarray, period: float, t: float | np.ndarray) -> np.ndarray:
+    """Trigonometric interpolation of samples (N, ...) of a period at a time [s], or at times (n,)."""
+    lines, n = np.fft.rfft(values, axis=0) / len(values), len(values)
+    lines[1 : (n + 1) // 2] *= 2.0  # but the line at half the sampling rate
+    waves = np.exp(2j * np.pi / period * np.multiply.outer(t, np.arange(len(lines))))
+    return np.tensordot(waves, lines, axes=(-1, 0)).real
 
 
 def from_orbit(system: Ring, orbit: Orbit, dt: float) -> Motion:
     """On a steady orbit, at the first of its times, moving with it."""
-    before = at_time(orbit.ball, orbit.period, -dt)
-    ball = orbit.ball[0].copy()
+    balls = orbit.ball
+    if balls.shape[2] < system.ball_columns:  # of a ring without friction: there are no slips behind the places
+        balls = np.insert(balls, [2, 2], 0.0, axis=2)
+    before, ball = at_time(balls, orbit.period, -dt), balls[0].copy()
     if not system.conservative:
         ball[:, 2:4] = before[:, 2:4] = system.stress_free_slip(orbit.displacement[0], ball)
     now = system.evaluate(orbit.displacement[0], orbit.velocity[0], ball=ball)

@@ -306,9 +306,9 @@ class Ring(ABC):
         return self.without(layout.FRICTION, layout.CAGE)
 
     def reduced(self, matrix: np.ndarray) -> np.ndarray:
-        """The part of a (5, 5) matrix that belongs to the unknowns."""
-        free = self.free > 0.0
-        return matrix[np.ix_(free, free)]
+        """The part of (..., 5, 5) matrices that belongs to the unknowns."""
+        free = np.flatnonzero(self.free > 0.0)
+        return matrix[..., free[:, None], free]
 
     def acceleration(self, q: np.ndarray, v: np.ndarray, outer: np.ndarray, now: Evaluation) -> np.ndarray:
         """(5,) acceleration from the balance of forces at one state."""
@@ -319,16 +319,16 @@ class Ring(ABC):
         return a
 
     def natural_frequencies(self, tangent: np.ndarray) -> np.ndarray:
-        """Undamped natural frequencies [rad/s], ascending, with a contact tangent (5, 5)."""
+        """Undamped natural frequencies [rad/s], ascending, with contact tangents (..., 5, 5)."""
         return np.sqrt(np.maximum(np.linalg.eigvalsh(self._per_mass(tangent, self.stiffness)), 0.0))
 
     def critical_time_step(self, tangent: np.ndarray) -> float:
         """2 / (largest natural frequency) [s]: the stable limit of central differences without damping."""
-        highest = self.natural_frequencies(tangent)[-1]
+        highest = float(self.natural_frequencies(tangent).max())
         return 2.0 / highest if highest > 0.0 else float("inf")
 
     def damped_time_step(self, tangent: np.ndarray, damping: np.ndarray) -> float:
-        """Stable limit of central differences [s] with tangent and dashpots (5, 5) of the contacts.
+        """Stable limit of central differences [s] with tangents and dashpots (..., 5, 5) of the contacts, the least of all.
 
         Contacts see the predicted velocity v0 + dt a0 (``raceway.core.time``).  At the limit a motion changes its
         sign each step, q1 = -q0, v = 0, a0 = -4 q0 / dt^2, so that dt = 2 / s with the largest root s of
@@ -339,14 +339,14 @@ class Ring(ABC):
         if not damping.any():
             return limit
         k, c = self._per_mass(tangent, self.stiffness), self._per_mass(damping)
-        identity = np.eye(len(k))
+        identity = np.broadcast_to(np.eye(k.shape[-1]), k.shape)
         fastest = float(np.linalg.eigvals(np.block([[0.0 * identity, identity], [k, 2.0 * c]])).real.max())
         return min(limit, 2.0 / fastest) if fastest > 0.0 else limit
 
     def _per_mass(self, matrix: np.ndarray, further: np.ndarray | float = 0.0) -> np.ndarray:
-        """The symmetric part of a matrix (5, 5), plus a further one, among the unknowns, for coordinates of unit mass."""
+        """The symmetric part of matrices (..., 5, 5), plus a further one, among the unknowns, for coordinates of unit mass."""
         root = np.linalg.inv(np.linalg.cholesky(self.reduced(self.mass)))
-        return np.asarray(root @ self.reduced(0.5 * (matrix + matrix.T) + further) @ root.T)
+        return np.asarray(root @ self.reduced(0.5 * (matrix + matrix.swapaxes(-1, -2)) + further) @ root.T)
 
     def stiffness_at(self, q: np.ndarray, now: Evaluation) -> np.ndarray:
         """Stiffness of the contacts (5, 5) at an equilibrium that was evaluated."""

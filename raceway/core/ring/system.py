@@ -64,6 +64,13 @@ class System(Ring):
             return ring
         return ring.running(ring.mounted_params, np.zeros_like(ring.reach))
 
+    def at_standstill(self) -> "System":
+        """Where nothing else is tangential, by the kernel whose forces have a potential."""
+        still = super().at_standstill()
+        return (
+            still if still.scalars[layout.GYROSCOPIC] else attrs.evolve(still.without(layout.STICK), kernel=self.base_kernel)
+        )
+
     @property
     def ball_columns(self) -> int:
         return (2 if self.conservative else 4) + elastic_columns(self.scalars)

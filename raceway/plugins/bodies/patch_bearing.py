@@ -284,7 +284,7 @@ def _first_reach(problem: Problem, basis: Basis, rigid: System, guess: np.ndarra
     loads: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
     still = rigid.at_standstill()
     for q, ball, t in states:
-        now = still.evaluate(q, ball=ball, t=t)
+        now = still.evaluate(q, ball=ball[:, : still.ball_columns], t=t)
         centre = still.centre_vectors(q, t)[0]
         z = still.ball_count
         centres = now.ball[:, :2] if rigid.table[:, CENTRIFUGAL].any() else 0.5 * centre
