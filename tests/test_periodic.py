@@ -350,6 +350,23 @@ def test_a_recorded_turn_is_met_at_its_samples(softening, count):
     assert np.abs(path.v[:-1] * problem.speed - values).max() < 1e-13
 
 
+def test_the_derivative_by_the_speed_is_that_of_differences():
+    """Of a ring with a damped rotor and dashpots in the contacts, whose force keeps its clock."""
+    model = model_of(scene(inertia=True, rotor={"mass": 1.5, "damping": 500.0}, contact={"damping": 100.0}))
+    q, w = solve_equilibrium(model).displacement, 2.0 * np.pi / model.excitation.period_s
+    problem = problem_of(model.system, w, q, False)
+    path = find(problem, q, model.system.evaluate(q).stiffness, 1e-6).refined.solved.path
+
+    def end(by_parameter):
+        branch = Branch(lambda part: attrs.evolve(problem, speed=part * w, clock=w, by_parameter=by_parameter), 0.1, 1e-6)
+        return branch.along(path, 1.0, np.zeros(2 * len(problem.free) + 1)).solved.eliminated.span_transfer[:, -1]
+
+    known, by_differences = end(w), end(0.0)
+    # Forces of some hundred newtons rounded to 1e-13, over a step of 1e-7 of the speed.
+    assert np.abs(known - by_differences).max() < 1e-5 * np.abs(known).max()
+    assert np.abs(known).max() > 0.0
+
+
 def test_the_linear_response_at_another_speed_has_the_lines_of_the_force():
     """A branch over the speed keeps the bodies' clock: one turn of the force is one of its own angle."""
     model = model_of(scene())

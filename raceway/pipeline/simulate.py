@@ -133,9 +133,8 @@ def simulate(
     stride = recording_stride(steps_per_turn, turns, method.inertial)
     schedule = Schedule(period / steps_per_turn, steps_per_turn, turns, stride, ramp * period)
     motion = _motion(model, equilibrium, start, schedule.dt)
-    if near is not None and near.model.problem.integrator.kind == model.problem.integrator.kind:
-        motion = attrs.evolve(motion, near=solution)
-    motion = attrs.evolve(motion, stay=stay)
+    same = near is not None and near.model.problem.integrator.kind == model.problem.integrator.kind
+    motion = attrs.evolve(motion, near=solution if same else None, stay=stay)
     label = f"{model.problem.integrator.kind}, {schedule.steps} steps"
     progress = None if on_progress is None else (lambda step, total: on_progress(label, step, total))
     record = integrate(method, model.system, motion, schedule, progress)

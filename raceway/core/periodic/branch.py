@@ -76,7 +76,7 @@ class Branch:
     problem_at : parameter -> Problem; unknown coordinates, span and balls' numbers stay the same
     unit : a typical change of the parameter;  length : a typical size of the motion [m]
     tolerance : error of the motion over its size that meshes are refined for;  most_intervals : that they may have
-    slope : (problem, path) -> (m s, 5) derivative of the balance of forces by the parameter; None for a difference quotient
+    slope : (problem, path) -> (m s, 5) derivative of the balance of forces by the parameter; None for a difference quotient, or none but that of the speed
     fastest : parameter -> highest natural frequency [rad/s], which multipliers are fit for; 0: as exact as the mesh
     aim : deviation that steps are chosen for; None: by the number of corrections
     widest : interval of the mesh that the branch began with [rad], of all where vibrations do not decide
@@ -214,7 +214,8 @@ class Branch:
     def _linearise(self, problem: Problem, path: Path, parameter: float) -> tuple[Eliminated, np.ndarray] | None:
         """The linearisation, with the derivative by the parameter, and its report."""
         push = problem.push(path.nodes)
-        by = self._difference(problem, path, parameter) if self.slope is None else self.slope(problem, path)
+        own = self.slope is None and problem.by_parameter == 0.0
+        by = self._difference(problem, path, parameter) if own else self.slope and self.slope(problem, path)
         out, report = problem.eliminated(path.nodes), np.zeros(3)
         success = condense(problem.equations, problem.mesh(path.nodes), path.samples(push, by), out, report)
         return (out, report) if success == path.intervals and np.isfinite(report).all() else None

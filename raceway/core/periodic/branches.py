@@ -186,7 +186,7 @@ def _by_homotopy(
         problem.watch()
         with suppress(ConvergenceError):
             candidate = _continued_to(  # the bodies' own speed and the force stay
-                lambda part: attrs.evolve(problem, speed=part * problem.speed, clock=problem.speed),
+                lambda part: attrs.evolve(problem, speed=part * problem.speed, clock=problem.speed, by_parameter=problem.speed),
                 q, tangent, tolerance, ratio, without_motion and ratio in _NEAR,
             )  # fmt: skip
             return candidate, "from a higher speed" if ratio > 1.0 else "from a lower speed"

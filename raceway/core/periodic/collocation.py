@@ -22,7 +22,7 @@ class Problem:
     ----------
     speed : of the force, w [rad/s]: a turn of theta is a turn of the force
     share : of the excitation that acts;  clock : speed that belongs to the excitation's own time, ``speed`` unless a branch
-        is followed over speed while the bodies keep theirs
+        is followed over speed while the bodies keep theirs: then ``by_parameter`` is the derivative of ``speed``
     free : (n,) numbers of the unknown coordinates
     weight : (5,) makes moments forces; lengths of tilts are tilts over it
     closing : (2 n, 2 n) rotation of an unknown state (q, v) by the span
@@ -35,6 +35,7 @@ class Problem:
     share: float = 1.0
     clock: float = attrs.field()
     rule: GaussRule = attrs.field(factory=gauss_rule)
+    by_parameter: float = 0.0
     watch: Callable[[], None] = lambda: None
 
     free: np.ndarray = attrs.field(init=False)
@@ -80,7 +81,8 @@ class Problem:
     def equations(self) -> Equations:
         """What compiled parts need of it."""
         system = self.system
-        return Equations(system.compiled_forces, system.linear, system.law_state, self.free, self.weight, self.speed)
+        memory, by_parameter = system.law_state, self.by_parameter
+        return Equations(system.compiled_forces, system.linear, memory, self.free, self.weight, self.speed, by_parameter)
 
     def mesh(self, nodes: np.ndarray) -> Mesh:
         """Nodes (m + 1,) with the rule inside the intervals."""

@@ -36,7 +36,7 @@ INDICES = int64[::1]
 
 
 class Equations(NamedTuple):
-    """Compiled forces, linear parts, the law's memory (2 Z, m), numbers of unknown coordinates (n,), weight (5,), w [rad/s].
+    """Compiled forces, linear parts, the law's memory (2 Z, m), numbers of unknown coordinates (n,), weight (5,), w [rad/s], dw/dp.
 
     The weight makes moments forces.
     """
@@ -47,6 +47,7 @@ class Equations(NamedTuple):
     free: np.ndarray
     weight: np.ndarray
     speed: float
+    by_parameter: float
 
 
 class Mesh(NamedTuple):
@@ -58,7 +59,7 @@ class Mesh(NamedTuple):
 
 class Samples(NamedTuple):
     """q, v (m + 1, 5) at nodes, a (m s, 5) at Gauss points; there also columns of the balls and their rates (m s, Z, c),
-    the outer forces ``push`` (m s, 5), and the derivative of the balance of forces by the parameter, ``slope`` (m s, 5).
+    the outer forces ``push`` (m s, 5), and the derivative of the balance of forces by the parameter at one speed, ``slope`` (m s, 5).
     """
 
     q: np.ndarray
@@ -86,7 +87,7 @@ class Change(NamedTuple):
     a: np.ndarray
 
 
-EQUATIONS = record(Equations, FORCES, LINEAR, MATRIX, INDICES, VECTOR, float64)
+EQUATIONS = record(Equations, FORCES, LINEAR, MATRIX, INDICES, VECTOR, float64, float64)
 MESH = record(Mesh, VECTOR, MATRIX)
 SAMPLES = record(Samples, MATRIX, MATRIX, MATRIX, CUBE, CUBE, MATRIX, MATRIX)
 ELIMINATED = record(Eliminated, MATRIX, MATRIX, MATRIX)
@@ -162,7 +163,7 @@ def _linearise(equations, mesh, samples, at, local, report):
     size, h, u = s * n, mesh.nodes[k + 1] - mesh.nodes[k], rule[2 * s + 2, i]
     for r in range(n):
         row, c = i * n + r, free[r]
-        total = _left_over(equations, samples, at, c, local.q, local.v, response.f)
+        total, slope = _left_over(equations, samples, at, c, local.q, local.v, response.f), samples.slope[at, c]
         if not np.isfinite(total):
             return False
         report[IMBALANCE] = max(report[IMBALANCE], abs(total) * equations.weight[c])
@@ -171,6 +172,7 @@ def _linearise(equations, mesh, samples, at, local, report):
             d = free[j]
             by_q, by_v = response.K[c, d] + linear.stiffness[c, d], speed * (response.C[c, d] + linear.damping[c, d])
             inertia = speed * speed * linear.mass[c, d]
+            slope += equations.by_parameter / speed * (2.0 * inertia * samples.a[at, d] + by_v * local.v[d] / speed)
             for p in range(s):
                 entry = h * rule[i, p] * by_v + h * h * rule[s + i, p] * by_q
                 if p == i:
@@ -179,7 +181,7 @@ def _linearise(equations, mesh, samples, at, local, report):
             block[row, size + j] = -by_q
             block[row, size + n + j] = -(by_v + u * h * by_q)
         block[row, size + 2 * n] = -total
-        block[row, size + 2 * n + 1] = -samples.slope[at, c]
+        block[row, size + 2 * n + 1] = -slope
     return True
 
 

@@ -188,13 +188,9 @@ _SAMPLES, _TOLERANCE = 65, 1e-7
 
 
 def starting_orbit(
-    system: System,
-    period: float,
-    q: np.ndarray,
-    watch: Callable[[], None] | None = None,
-    near: Neighbour | None = None,
+    system: System, period: float, q: np.ndarray, watch: Callable[[], None] | None = None, near: Neighbour | None = None,
     stay: bool = False,
-) -> tuple[Orbit, list[Tables], tuple[str, ...]] | None:
+) -> tuple[Orbit, list[Tables], tuple[str, ...]] | None:  # fmt: skip
     """The motion to start on at equidistant times, the tables of every one that was found, and warnings.
 
     None where it is not searched for, because each try would take seconds; no motions where nothing could be said.
@@ -258,13 +254,9 @@ _STAYS = 0.2
 
 
 def find(
-    problem: Problem,
-    q: np.ndarray,
-    tangent: np.ndarray,
-    tolerance: float,
-    near: Neighbour | Recorded | None = None,
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, near: Neighbour | Recorded | None = None,
     stay: bool = False,
-) -> PeriodicMotion:
+) -> PeriodicMotion:  # fmt: skip
     """The periodic motion of a ring about the equilibrium q (5,), to a relative tolerance, and others beside it.
 
     Parameters
