@@ -244,23 +244,22 @@ def tables(content: ReadTables) -> dict[str, list[Tables]]:
             })  # fmt: skip
             continue
         z = row["identified"]
+        # At a node where contacts have points, by Hertz where they have none.
+        peak = max(
+            ball.get(f"peak_pressure_nodal_{race}_pa") or ball[f"peak_pressure_{race}_pa"]
+            for ball in row["balls"]
+            for race in RACES
+        )
         moving_lines.append({
             "force": _case(row), "bodies": _way(row),
             "K N/µm": f"{1e-6 * z['k']:.3f}", "C N s/m": f"{z['c']:.0f}", "|Z| N/µm": f"{1e-6 * z['abs_z']:.3f}",
             "K": percent(differences.get("k")), "C": percent(differences.get("c")),
             "wC over |Z|": percent(differences.get("wc")), "|Z|": percent(differences.get("abs_z")),
-            "peak MPa": f"{1e-6 * _peak_pressure(row):.1f}", "CPU s": f"{row['cost']['cpu_s']:.1f}",
+            "peak MPa": f"{1e-6 * peak:.1f}", "CPU s": f"{row['cost']['cpu_s']:.1f}",
             "energy balance": shown(row["energy_balance"], ".1e"), "transient": shown(row["error"]["transient"], ".1e"),
             "stability": row["stability"]["status"],
         })  # fmt: skip
     return {_AT_REST.format(**content): lines, _IN_MOTION.format(**content): moving_lines}
-
-
-def _peak_pressure(row: ReadTables) -> float:
-    """Largest pressure of the equilibrium [Pa]: at a node where contacts have points, by Hertz where they have none."""
-    kinds = [f"peak_pressure_{kind}{race}_pa" for kind in ("nodal_", "") for race in RACES]
-    pairs = [(ball.get(kinds[k]), ball[kinds[k + 2]]) for ball in row["balls"] for k in range(2)]
-    return max(hertz if nodal is None else nodal for nodal, hertz in pairs)
 
 
 _AT_REST = (
@@ -290,13 +289,12 @@ def in_short(content: ReadTables) -> list[str]:
         if parts:
             name, value = max(parts, key=lambda part: abs(part[1]))
             points.append(f"Elastic from {reference} bodies {words}: at most {percent(value)}, in {_NAMES[name]}.")
-    stepped = [(row, _implicit(rows, row)) for row in elastic if row["integrator"] == "central_difference"]
-    apart = [
-        row["identified"][name] / other["identified"][name] - 1.0
-        for row, other in stepped
-        if other
-        for name in ("k", "abs_z")
+    moving = [row for row in elastic if row["phase"] == "motion"]
+    pairs = [(row, other) for row in moving for other in moving if row["case"] == other["case"]]
+    pairs = [
+        (row, other) for row, other in pairs if (row["integrator"], other["integrator"]) == ("central_difference", "newmark")
     ]
+    apart = [row["identified"][name] / other["identified"][name] - 1.0 for row, other in pairs for name in ("k", "abs_z")]
     if apart:
         points.append(f"Explicit from implicit steps of elastic bodies (K, |Z|): at most {percent(max(apart, key=abs))}.")
     balance = [row["energy_balance"] for row in elastic if row["phase"] == "motion" and row["energy_balance"] is not None]
@@ -309,12 +307,6 @@ def in_short(content: ReadTables) -> list[str]:
             f"{content['failed']} of {content['runs']} runs failed or were refused: the reasons stand under “Cost”."
         )
     return points
-
-
-def _implicit(rows: Sequence[ReadTables], explicit: ReadTables) -> ReadTables | None:
-    """The row of the same motion by implicit steps, if that came to an end."""
-    same = (row for row in rows if row["integrator"] == "newmark" and all(row[k] == explicit[k] for k in ("case", "bodies")))
-    return next((row for row in same if row["status"] == "completed"), None)
 
 
 def _case(row: ReadTables) -> str:

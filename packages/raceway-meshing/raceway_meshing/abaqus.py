@@ -49,7 +49,10 @@ class Abaqus:
                     )
         content = exchange.load(path, exchange.meshio().abaqus.read)
         cells, first = exchange.hexahedra(path, content)
-        members = {name.lower(): _members(blocks, first) for name, blocks in content.cell_sets.items()}
+        members = dict[str, np.ndarray]()  # (k,) hexahedra of an element set, which meshio gives block by block
+        for name, blocks in content.cell_sets.items():
+            parts = [np.asarray(b, dtype=int) + start for b, start in zip(blocks, first, strict=False) if start is not None]
+            members[name.lower()] = np.concatenate(parts) if parts else np.zeros(0, dtype=int)
         surfaces = list(_surfaces(Path(path).read_text(encoding="utf-8")))
         facets = {name: _facets(path, name, lines, members) for name, lines in surfaces}
         in_use = {line[0].lower() for _, lines in surfaces for line in lines}
@@ -88,12 +91,6 @@ def _entries(numbers: np.ndarray) -> Iterator[str]:
     """Lines of a set whose members (k,) are counted from 0."""
     for first in range(0, len(numbers), _ENTRIES):
         yield ", ".join(map(str, (numbers[first : first + _ENTRIES] + 1).tolist()))
-
-
-def _members(blocks: Sequence[np.ndarray], first: list[int | None]) -> np.ndarray:
-    """(k,) hexahedra of an element set, which meshio gives block by block."""
-    parts = [np.asarray(b, dtype=int) + start for b, start in zip(blocks, first, strict=False) if start is not None]
-    return np.concatenate(parts) if parts else np.zeros(0, dtype=int)
 
 
 def _surfaces(text: str) -> Iterator[tuple[str, list[tuple[str, str]]]]:

@@ -116,10 +116,11 @@ def _move_with_rates(n, order, derivative, block):
             put_pair(block.work[j * stride], PLACE_RATE, WIDTH * k, live, w * axial, w * radial)
 
 
-@jit(void(MATRIX, MATRIX, MATRIX))
-def _gap_rates(of_points, shared, work):
-    """Rates of the gaps, and the gaps that contacts with a time constant answer to, see ``layout.normal_forces``."""
-    live, w, tau = live_of(0, WIDTH), take(shared, SPEED, 0, live_of(0, WIDTH)), take(shared, TIME, 0, live_of(0, WIDTH))
+@jit(void(LAW_POINTER, MATRIX, BLOCK, MATRIX))
+def _damped_forces(law, of_points, block, work):
+    """Forces of contacts with dashpots or time constants and their derivatives, see ``layout.normal_forces``, of balls with known rates."""
+    live, shared, memory = live_of(0, WIDTH), block.shared, block.memory
+    c, tau, w = take(shared, DASHPOT, 0, live), take(shared, TIME, 0, live), take(shared, SPEED, 0, live)
     for k in range(0, work.shape[1] // 2, WIDTH):
         (ia, ir), (oa, orr) = pair_of(work, INNER, k, live), pair_of(work, OUTER, k, live)
         (ea, er), (pa, pr) = centre(seats(k, live, work), of_points, RATE, live), pair_of(work, PLACE_RATE, k, live)
@@ -129,12 +130,10 @@ def _gap_rates(of_points, shared, work):
         ahead_i = where(gap_i < 0.0, gap_i + larger(tau * rate_i, gap_i), gap_i)
         ahead_o = where(gap_o < 0.0, gap_o + larger(tau * rate_o, gap_o), gap_o)
         put_pair(work, AHEAD, k, live, ahead_i, ahead_o)
-
-
-@jit(void(MATRIX, MATRIX))
-def _add_dampers(shared, work):
-    """What dashpots and time constants change in the law's forces and derivatives, see ``layout.normal_forces`` and ``add_damping``."""
-    live, c, tau = live_of(0, WIDTH), take(shared, DASHPOT, 0, live_of(0, WIDTH)), take(shared, TIME, 0, live_of(0, WIDTH))
+    law(
+        work[AHEAD], work[ring_rows.GAP_RATE], block.params, memory, memory, 0.0,
+        work[ring_rows.CONTACT_FORCE], work[ring_rows.FORCE_BY_GAP], work[ring_rows.FORCE_BY_RATE],
+    )  # fmt: skip
     for k in range(0, work.shape[1], WIDTH):
         gap, rate = take(work, ring_rows.GAP, k, live), take(work, ring_rows.GAP_RATE, k, live)
         by_gap, by_rate = take(work, ring_rows.FORCE_BY_GAP, k, live), take(work, ring_rows.FORCE_BY_RATE, k, live)
@@ -188,17 +187,14 @@ def forces(law, damped, sense, n, block):
     rolls = any_of(~(rolling.scale == 0.0))
     for j in range(n):
         r, work = rows[j * stride], block.work[j * stride]
-        ahead = work[AHEAD] if damped else work[ring_rows.GAP]
         if damped:  # the balls are where their rates are known
-            _gap_rates(r, block.shared, work)
+            _damped_forces(law, r, block, work)
         else:
             move_balls(r, work)
-        law(
-            ahead, work[ring_rows.GAP_RATE], block.params, memory, memory, 0.0,
-            work[ring_rows.CONTACT_FORCE], work[ring_rows.FORCE_BY_GAP], work[ring_rows.FORCE_BY_RATE],
-        )  # fmt: skip
-        if damped:
-            _add_dampers(block.shared, work)
+            law(
+                work[ring_rows.GAP], work[ring_rows.GAP_RATE], block.params, memory, memory, 0.0,
+                work[ring_rows.CONTACT_FORCE], work[ring_rows.FORCE_BY_GAP], work[ring_rows.FORCE_BY_RATE],
+            )  # fmt: skip
         force, tangent, _, moving = ring_forces(rolls, rolling, none, work)
         moves = moves | moving
         for i, part in enumerate(force):

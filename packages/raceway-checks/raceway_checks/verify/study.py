@@ -242,23 +242,17 @@ def _article_pressures(case: Case, registry: Registry) -> Rows:
 
     for axial, radial in inputs["loads_n"]:
         where = f"{axial:g} N axial" + (f", {radial:g} N radial" if radial else "")
-        reference, nodal_pressures = _hertz(model(axial, radial)), _nodal(model(axial, radial, int(inputs["points"])))
-        for race in ("inner", "outer"):
-            quantity = f"peak pressure, {race} race, {where} [MPa]"
-            yield case.row(quantity, reference[race], nodal_pressures[race], tolerance["pressure"])
+        hertz, nodal_pressures = model(axial, radial), _nodal(model(axial, radial, int(inputs["points"])))
+        force, z = solve_equilibrium(hertz).contact_force, hertz.system.ball_count
+        for race, load in (("inner", force[:z].max()), ("outer", force[z:].max())):
+            quantity, reference = f"peak pressure, {race} race, {where} [MPa]", getattr(hertz, race).peak_pressure(load)
+            yield case.row(quantity, 1e-6 * float(reference), nodal_pressures[race], tolerance["pressure"])
     axial, radial = inputs["loads_n"][int(inputs["heaviest"])]
     most, fewer = inputs["independence_points"]
     fine, coarse = (_nodal(model(axial, radial, int(n))) for n in (most, fewer))
     for race in ("inner", "outer"):
         quantity = f"mesh independence: {race} race, {axial:g} N axial, {fewer} points per semi-axis against {most} [MPa]"
         yield case.row(quantity, fine[race], coarse[race], tolerance["mesh"])
-
-
-def _hertz(model: Model) -> dict[str, float]:
-    """Largest peak pressure of each race by exact Hertz [MPa]."""
-    force, z = solve_equilibrium(model).contact_force, model.system.ball_count
-    loads = {"inner": force[:z].max(), "outer": force[z:].max()}
-    return {race: 1e-6 * float(getattr(model, race).peak_pressure(load)) for race, load in loads.items()}
 
 
 def _nodal(model: Model) -> dict[str, float]:
