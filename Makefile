@@ -86,7 +86,7 @@ $(VENV)-docs/.installed: $(VENV)/.python pyproject.toml constraints.txt $(wildca
 
 constraints: $(VENV)/.python ## constraints.txt, kept where pyproject.toml allows; UPGRADE=--upgrade takes the newest versions
 	$(BIN)/python -m pip install -q uv
-	printf '%s\n' '.[pictures,sweep,elastic,dev,docs]' $(PACKAGES) | $(BIN)/uv pip compile -q $(UPGRADE) --universal --python-version 3.11 --no-annotate --custom-compile-command 'make constraints' - | grep -v '^\./\|^\.\[' > constraints.new
+	printf '%s\n' '.[pictures,sweep,elastic,gpu,dev,docs]' $(PACKAGES) | $(BIN)/uv pip compile -q $(UPGRADE) --universal --python-version 3.11 --no-annotate --custom-compile-command 'make constraints' - | grep -v '^\./\|^\.\[' > constraints.new
 	mv constraints.new constraints.txt
 
 apt-line: ## what installs the system libraries that some tests need, as root on Debian

@@ -48,7 +48,7 @@ def solved(loop, **changes) -> Orbits:
 
 
 def test_lanes_have_the_motions_of_balls_that_are_found_in_each_sample(loop):
-    """Steps end below 1e-10 of the motion; contact forces of a moderate one are some thousand times stiffer."""
+    """Steps end below 1e-11 of the motion; contact forces of a moderate one are some thousand times stiffer."""
     assert loop[0].lanes
     alone, together = solved(loop, lanes=False), solved(loop)
     np.testing.assert_array_equal(together.status, alone.status)

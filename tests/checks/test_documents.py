@@ -31,9 +31,9 @@ def test_the_readme_shows_the_answer_of_the_scene_that_it_shows(tmp_path):
     scene, example, shown = documents.shown_parts(text)
     assert scene == documents.SHOWN.read_text(encoding="utf-8"), "run python -m checks.documents"
     assert example == documents.EXAMPLE.read_text(encoding="utf-8"), "run python -m checks.documents"
-    ran = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"}).invoke(
-        main, ["run", str(documents.SHOWN), "--out", str(tmp_path)]
-    )
+    words_of_a_run = ["run", str(documents.SHOWN), "--out", str(tmp_path)]
+    # The first run may compile, and says so.
+    _, ran = (CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"}).invoke(main, words_of_a_run) for _ in range(2))
     now = documents.answer(
         "\n".join(line.rstrip() for line in ran.stdout.splitlines() if not line.startswith("written:")) + "\n"
     )

@@ -45,7 +45,7 @@ from raceway.core.signatures import CUBE, LINEAR, MATRIX, VECTOR, record
 #: Change of the stiffness along a motion, over its mean, beyond which no more samples are tried: balls leave their races.
 _WILD = 1.0
 #: Last step over the motion: of points, of neighbours whose differences are derivatives, and of samples that are doubled anyway.
-_CLOSE, _CLOSER, _NEAR = 1e-10, 1e-13, 1e-9
+_CLOSE, _CLOSER, _NEAR = 1e-11, 1e-13, 1e-9
 
 
 class Orbits(NamedTuple):
