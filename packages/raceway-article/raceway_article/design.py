@@ -41,6 +41,8 @@ SOLVER_SPEEDS = (10980.0, 12000.0, 13000.0, 14000.0, 15000.0)
 #: Tilt stiffness of the shaft [N m/rad], from next to free to next to locked.
 STIFFNESSES = tuple(float(f"{10.0 ** (2.0 + 0.25 * k):.4g}") for k in range(17))
 RACES = ("inner", "outer")
+#: Integrator of explicit steps, which elastic bodies of a scene that has it take beside the implicit ones.
+EXPLICIT = "central_difference"
 #: The rig's shaft: span between the bearings from section 3.3; the diameter is not printed, 30 mm is the bearing's bore.
 _SHAFT_DIAMETER, _SPAN, _YOUNG = 0.030, 0.175, 212e9
 #: Status of a run that is neither failed nor refused.

@@ -21,7 +21,7 @@ from raceway.extend import (
     C, Clocks, Fact, Item, K, OnProgress, Part, ReadTables, Registry, RemainingTime, Tables, Words, Workload, Z, local,
     row_key, rows_table, run, stored_rows, tables_at, with_value, without_nan, work_through, write_whole, written,
 )  # fmt: skip
-from raceway_article.design import CLAIMED, RACES, excitation_of, friction_of
+from raceway_article.design import CLAIMED, EXPLICIT, RACES, excitation_of, friction_of
 from raceway_article.study import failure
 
 if TYPE_CHECKING:
@@ -31,8 +31,6 @@ SCENE = Path(__file__).resolve().parent / "data" / "article_elastic.toml"
 #: Condensed bodies come first: the others are compared with them, and they show in seconds whether the scene is what was meant.
 BODIES = ("condensed", "rigid", "elastic")
 _REFERENCE = BODIES[0]
-#: Of a scene that has it, elastic bodies are stepped by it, too.
-_EXPLICIT = "central_difference"
 #: One operating point: turns and steps of a turn.
 TURNS, STEPS = 2, 40
 #: Stiffness of a contact that sticks [N/m], for all bodies alike: it gives way by 0.8 um before it slides, a tenth of the orbit.  The
@@ -112,7 +110,7 @@ class ElasticRun:
 
     @property
     def integrator(self) -> str | None:
-        return None if self.excitation is None else _EXPLICIT if self.explicit else "newmark"
+        return None if self.excitation is None else EXPLICIT if self.explicit else "newmark"
 
 
 @attrs.frozen
@@ -139,7 +137,7 @@ class ElasticDesign:
         """Those at rest first, motions last: they cost most."""
         static = [ElasticRun(bodies, axial, radial) for axial, radial in self.load_cases for bodies in BODIES]
         axial, ways = float(self.tables["load"]["axial"]), [(bodies, False) for bodies in BODIES]
-        if self.tables.get("integrator", {}).get("kind") == _EXPLICIT:
+        if self.tables.get("integrator", {}).get("kind") == EXPLICIT:
             ways.append(("elastic", True))
         return static + [ElasticRun(bodies, axial, 0.0, pair, explicit) for pair in CLAIMED for bodies, explicit in ways]
 

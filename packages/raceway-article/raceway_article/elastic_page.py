@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from raceway.extend import Cell, Page, ReadTables, Tables
-from raceway_article.design import RACES
+from raceway_article.design import EXPLICIT, RACES
 from raceway_article.figures import Panel, Picture, finish
 from raceway_article.page import percent, show_picture, shown
 
@@ -73,7 +73,7 @@ def _by_case(rows: list[Tables]) -> dict[str, list[Tables]]:
 
 def _way(row: ReadTables) -> str:
     """Bodies, and the steps where they are explicit."""
-    return f"{row['bodies']}, explicit" if row["integrator"] == "central_difference" else str(row["bodies"])
+    return f"{row['bodies']}, explicit" if row["integrator"] == EXPLICIT else str(row["bodies"])
 
 
 def _new(axes: Axes, row: Tables) -> str | None:
@@ -291,9 +291,7 @@ def in_short(content: ReadTables) -> list[str]:
             points.append(f"Elastic from {reference} bodies {words}: at most {percent(value)}, in {_NAMES[name]}.")
     moving = [row for row in elastic if row["phase"] == "motion"]
     pairs = [(row, other) for row in moving for other in moving if row["case"] == other["case"]]
-    pairs = [
-        (row, other) for row, other in pairs if (row["integrator"], other["integrator"]) == ("central_difference", "newmark")
-    ]
+    pairs = [(row, other) for row, other in pairs if (row["integrator"], other["integrator"]) == (EXPLICIT, "newmark")]
     apart = [row["identified"][name] / other["identified"][name] - 1.0 for row, other in pairs for name in ("k", "abs_z")]
     if apart:
         points.append(f"Explicit from implicit steps of elastic bodies (K, |Z|): at most {percent(max(apart, key=abs))}.")

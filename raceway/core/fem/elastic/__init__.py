@@ -13,8 +13,8 @@ newton      Newton's method with a line search; the last good state is kept
 fronts      elimination down to kept nodes, with fronts of dense matrices, in the order of nested dissection
 superelement   a body eliminated once, down to the nodes that contacts may touch: free copies, and sectors of a ring
 interface   all bodies, seen from the nodes of their contacts;  superelement_solver: Newton's method in the contacts alone
-explicit    compiled explicit steps of one-point elements in contact at surface points
+explicit    compiled explicit steps of one-point elements in contact at surface points;  explicit_kernels: the parts of a step
 bearing     the bodies of a ball bearing as one system, in equilibrium or stepped in time
-device_steps   explicit steps on a CUDA device, by the functions of ``explicit``
+device_steps   explicit steps on a CUDA device, by the functions of ``explicit_kernels``
 ring        the bearing seen from its inner ring: the interface of all systems
 """

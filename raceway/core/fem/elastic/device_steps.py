@@ -1,4 +1,4 @@
-"""Explicit steps of elastic bodies on a CUDA device: the functions of ``raceway.core.fem.elastic.explicit`` in one kernel.
+"""Explicit steps of elastic bodies on a CUDA device: the functions of ``explicit_kernels`` in one kernel.
 
 Notes
 -----
@@ -17,13 +17,13 @@ import numpy as np
 
 from raceway.core import device
 from raceway.core.device import device_source
-from raceway.core.fem.elastic.explicit import (
+from raceway.core.fem.elastic.explicit import ExplicitSteps
+from raceway.core.fem.elastic.explicit_kernels import (
     DONE,
     DT,
     LEFT,
     MOVED,
     STIFFENED,
-    ExplicitSteps,
     carry,
     field_at,
     find_peaks,
@@ -52,6 +52,7 @@ _Mesh = namedtuple("_Mesh", "cells material moduli x forces starts slots ball he
 _Corners = namedtuple("_Corners", "starts slots")
 
 
+# numba types what devices run by its arguments; no annotations stand beside these.
 def _put(out, e, c, f):  # type: ignore[no-untyped-def]
     """Component c of the forces of all corners of an element."""
     out[e, c], out[e, 3 + c], out[e, 6 + c], out[e, 9 + c] = f[0], f[1], f[2], f[3]
@@ -69,7 +70,7 @@ def _elements(first, stride, mesh, u):  # type: ignore[no-untyped-def]
 
 
 def _move(first, stride, onward, dt, mesh, nodes, corners, cage, points):  # type: ignore[no-untyped-def]
-    """As ``explicit.move``, of forces that each node gathers."""
+    """As ``explicit_kernels.move``, of forces that each node gathers."""
     for i in range(first, nodes.u.size, stride):
         n, c, f = i // 3, i % 3, 0.0
         for k in range(mesh.starts[n], mesh.starts[n + 1]):
@@ -90,7 +91,7 @@ def _move(first, stride, onward, dt, mesh, nodes, corners, cage, points):  # typ
 
 @cache
 def _kernel(law):  # type: ignore[no-untyped-def]
-    """As ``explicit.advance``, with a contact law."""
+    """As ``explicit_kernels.advance``, with a contact law."""
 
     def advance(first, begin, end, count, numbers, mesh, nodes, corners, cage, frame, points):  # type: ignore[no-untyped-def]
         """Steps ``begin`` to ``end - 1`` of those from ``first`` to ``count - 1``, fewer where points have moved or stiffened too far."""
