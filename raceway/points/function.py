@@ -201,7 +201,7 @@ class Function:
         n = len(next(iter(flat.values())))
         if self.why_slow:
             self.refuse_time(n)
-            return _chain([self._run_all(flat, np.arange(n), {})], self.outputs)
+            return self._run_all(flat, np.arange(n), {})
         # Runs of what the loop has left.
         answer = self.with_reasons(flat, self.looped(flat))
         left = np.flatnonzero(answer["status"] == PointStatus.FAILED)
@@ -218,16 +218,15 @@ class Function:
     def looped(self, flat: Mapping[str, np.ndarray]) -> Columns:
         """As ``columns``, of the compiled loop alone: what it leaves has the status FAILED or REFUSED, nan, and no reason."""
         n, size = len(next(iter(flat.values()))), BLOCK[self.moving]
-        blocks = [{key: column[k : k + size] for key, column in flat.items()} for k in range(0, n, size)]
-        answers: list[Columns] = [{}] * len(blocks)
+        blocks = [slice(k, k + size) for k in range(0, n, size)]
+        answer: Columns = {"status": np.full(n, PointStatus.FAILED), "reason": np.full(n, "", dtype=object)}
         compile_beside(*_KERNELS[0 if self.moving else 1 :])
-
-        def job(number: int) -> None:
-            answers[number] = self._block(blocks[number])
-
         with ThreadPool(min(self.threads, len(blocks))) as pool:
-            pool.do(len(blocks), job)
-        return _chain(answers, self.outputs)
+            pool.do(len(blocks), lambda number: self._put_block(flat, blocks[number], answer))
+        without = answer["status"] != PointStatus.COMPUTED
+        for name in self.outputs:
+            answer.setdefault(name, np.empty(n))[without] = np.nan
+        return {name: answer[name] for name in (*self.outputs, "status", "reason")}
 
     def with_reasons(self, flat: Mapping[str, np.ndarray], answer: Columns) -> Columns:
         """What the loop computed, with the reasons of rows that are refused."""
@@ -317,13 +316,12 @@ class Function:
         }
         return labelled_dataset(variables, coordinates, {"title": self.scene.title})
 
-    def _block(self, columns: Columns) -> Columns:
-        """One block of points in the compiled loop; rows that it cannot do have the status FAILED and no values."""
-        n = len(next(iter(columns.values())))
-        status, refusals = np.full(n, PointStatus.FAILED), self._refusals(columns)
+    def _put_block(self, flat: Mapping[str, np.ndarray], block: slice, answer: Columns) -> None:
+        """Compute one block of points in the compiled loop; rows that it cannot do keep the status FAILED and get no values."""
+        columns = {key: column[block] for key, column in flat.items()}
+        status, reason, refusals = answer["status"][block], answer["reason"][block], self._refusals(columns)
         fit = np.flatnonzero(~refusals)
-        status[refusals], reason = PointStatus.REFUSED, np.full(n, "", dtype=object)
-        values: Columns = {}
+        status[refusals] = PointStatus.REFUSED
         # A plan decides alike about rows whose balls turn, and about those whose balls stand.
         turns = np.full(len(fit), self._problem.spin_speed > 0.0)
         for key in ("excitation.speed_rpm", "kinematics.spin_speed_rpm"):
@@ -338,7 +336,7 @@ class Function:
             builder = self._builders.get(turning)
             if builder is None or not len(rows):
                 continue
-            inputs = {key: column[rows] for key, column in columns.items()}
+            inputs = columns if len(rows) == len(status) else {key: column[rows] for key, column in columns.items()}
             try:
                 if self.scene.heat is not None:
                     from raceway.pipeline.warm import RUNAWAY, warm
@@ -361,11 +359,12 @@ class Function:
                 part = (
                     QUANTITIES[name](numbers) if name in QUANTITIES else numbers.of_plugin(self._of_plugins[name][0], name)
                 )
-                if len(rows) == n and fine.all():
-                    values[name] = part.copy()
+                # All points' memory is asked for at once, and taken when a block is written to it.
+                values = answer.setdefault(name, np.empty((len(answer["status"]), *part.shape[1:])))[block]
+                if fine.all() and len(rows) == len(status):
+                    values[:] = part
                 else:
-                    values.setdefault(name, np.full((n, *part.shape[1:]), np.nan))[rows[fine]] = part[fine]
-        return {**values, "status": status, "reason": reason}
+                    values[rows[fine]] = part[fine]
 
     def _refusals(self, columns: Mapping[str, np.ndarray]) -> np.ndarray:
         """(n,) whether a number is none, or a rule of its key alone refuses it."""
@@ -421,7 +420,7 @@ class Function:
                     answer["reason"][row] = f"this scene has no {name}"
         for name in self.outputs:
             answer.setdefault(name, np.full(n, np.nan))
-        return answer
+        return {name: answer[name] for name in (*self.outputs, "status", "reason")}
 
     def _seconds(self, count: int) -> float:
         return count * max(make_plan(self.scene).predicted_wall_s, 2e-3)
@@ -452,15 +451,6 @@ def _as_floats(key: str, value: ArrayLike) -> np.ndarray:
         return np.asarray(array, dtype=float)
     except Exception:  # whatever a foreign object makes of being asked
         raise SceneError.at(key, None, "must be numbers") from None
-
-
-def _chain(answers: Sequence[Columns], outputs: Iterable[str]) -> Columns:
-    """Answers of blocks one after another; blocks without values have nan."""
-    out = {}
-    for name in outputs:
-        form = next((answer[name].shape[1:] for answer in answers if name in answer), ())
-        out[name] = np.concatenate([answer.get(name, np.full((len(answer["status"]), *form), np.nan)) for answer in answers])
-    return out | {name: np.concatenate([answer[name] for answer in answers]) for name in ("status", "reason")}
 
 
 @door
