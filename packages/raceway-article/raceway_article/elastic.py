@@ -33,8 +33,9 @@ BODIES = ("condensed", "rigid", "elastic")
 _REFERENCE = BODIES[0]
 #: One operating point: turns and steps of a turn.
 TURNS, STEPS = 2, 40
-#: Stiffness of a contact that sticks [N/m], for all bodies alike: it gives way by 0.8 um before it slides, a tenth of the orbit.  The
+#: Stiffness of a contact of elastic or rigid bodies that sticks [N/m]: it gives way by 0.8 um before it slides, a tenth of the orbit.  The
 #: default of surface points, as stiff as their penalty, has Newton's method change to and fro between points that stick and slide.
+#: C depends on it (rigid, 6 turns, N s/m): 65 with 1e7, 2400 with 3e7, 4860 with Mindlin's; of condensed bodies, which do not take it, 4600.
 _STICK = 1e7
 #: Residual of a step over the largest force: one solution with factors of elastic bodies reaches it, a second one costs as much.
 _TOLERANCE = 1e-5
@@ -70,7 +71,9 @@ _DIFFERENCES = (
     "Friction: in the motions only. At rest no point carries traction, so that loads, displacements and pressures are the same with it; "
     "but kyy of condensed and rigid bodies would be that of contacts which stick, of elastic ones not. Elastic bodies have "
     "friction in all directions of the contact's plane, condensed and rigid ones along the groove, in which balls do not roll. No "
-    "ball rolls or orbits in any of them: what sticks stays for as long as the motion repeats itself.",
+    "ball rolls or orbits in any of them: what sticks stays for as long as the motion repeats itself. C is what sliding takes: contacts of "
+    "elastic and rigid bodies stick with a stiffness of 1e7 N/m here, a tenth of Mindlin's, so that they hardly slide; those of condensed "
+    "bodies, with the compliance of rings and balls, slide in every turn, as rigid ones do without `contact.stick_stiffness`: ten times the C.",
     "The balance of energy is summed over all steps for elastic bodies; for rigid ones it is integrated from the samples, whose "
     "distance it then shows as well; for condensed bodies with contacts at surface points there is none.",
     "Explicit steps, of elastic bodies where the scene has `integrator.kind = 'central_difference'`: without iterations, below the "
