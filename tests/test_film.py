@@ -37,7 +37,17 @@ def test_thickness_is_that_of_the_formulas_written_out():
         best = max(range(4), key=lambda one: each[one][1])
         assert found.regime[i] == best
         # Both are a few powers in double precision.
-        assert (found.central[i], found.minimum[i]) == pytest.approx([4e-3 * one for one in each[best]], rel=1e-12)
+        assert (found.central[i], found.minimum[i]) == pytest.approx(4e-3 * np.max(each, axis=0), rel=1e-12)
+
+
+def test_a_film_thins_with_the_load_without_a_jump_from_regime_to_regime():
+    """Where it jumped, contacts of a light row had two loads that hold themselves up, and a set two equilibria, 7 % apart in kyy."""
+    load = np.geomspace(1e-3, 1e4, 4000)
+    same = (np.full(load.shape, number) for number in (2.3e11, 4e-3, 0.1))
+    films = film(np.full(load.shape, 0.05), 2e-8, *same, load, np.full(load.shape, 4.0))
+    assert {0, 2, 3} <= set(films.regime)
+    slope = np.diff(np.log(films.central)) / np.diff(np.log(load))
+    assert -2.0 - 1e-9 < slope.min() and slope.max() < 0.0
 
 
 def test_a_printed_exercise_comes_out_where_its_regime_holds():

@@ -23,7 +23,7 @@ KINDS = {
     "one direction, tilt free": {"excitation": {"kind": "unidirectional"}, "supports": {"tilt": "free"}},
     "tangent": {"identifier": {"kind": "tangent"}},
     "film": {"contact": {"kind": "film", "oil": "VG 32", "temperature_c": 60.0}},
-    # Films near two regimes have two equilibria: it is that of a run.
+    # Films near two regimes.
     "film on a spring": {
         "bearing": {**SPRUNG, "preload": 300.0},
         "load": {"axial": 0.0, "radial": [100.0, 0.0]},

@@ -2,7 +2,8 @@
 
 With the entraining speed u, the viscosity eta, the pressure-viscosity coefficient alpha, E' = 2 E*, the radii R_x along and R_y
 across the running direction, the load Q and the ellipticity k = a/b: U = eta u / (E' R_x), G = alpha E', W = Q / (E' R_x^2),
-H = h / R_x.  The four regimes, of which the one with the thickest minimum film is taken:
+H = h / R_x.  The four regimes, of which the one with the thickest minimum film is named; of either film the thickest is taken, so that
+both shrink with the load without a jump, and a bearing has one equilibrium:
 
 piezoviscous-elastic   H_c = 2.69 U^0.67 G^0.53 W^-0.067 (1 - 0.61 e^(-0.73 k)),  H_min = 3.63 U^0.68 G^0.49 W^-0.073 (1 - e^(-0.68 k))
 isoviscous-elastic     H_c = 7.32 (1 - 0.72 e^(-0.28 k)) U^0.64 W^-0.22,  H_min = 7.43 U^0.65 W^-0.21 (1 - 0.85 e^(-0.31 k))
@@ -39,7 +40,7 @@ class Film:
     Attributes
     ----------
     central, minimum : thickness [m];  regime : index of ``REGIMES``
-    by_load : d ln(central) / d ln(load), that of the regime
+    by_load : d ln(central) / d ln(load)
     """
 
     central: np.ndarray
@@ -57,7 +58,7 @@ def film(
     load: np.ndarray,
     k: np.ndarray,
 ) -> Film:
-    """Film of each contact by the regime that holds; no film where nothing entrains.
+    """Film of each contact by the regimes that hold; no film where nothing entrains.
 
     Parameters
     ----------
@@ -86,13 +87,11 @@ def film(
         isoviscous,
         rigid,
     ])  # fmt: skip
-    regime = np.argmax(minimum, axis=0)
     moves = viscous > 0.0
-    contact = np.arange(len(regime))
     return Film(
-        np.where(moves, central[regime, contact] * along, 0.0),
-        np.where(moves, minimum[regime, contact] * along, 0.0),
-        regime, _BY_LOAD[regime],
+        np.where(moves, central.max(axis=0) * along, 0.0),
+        np.where(moves, minimum.max(axis=0) * along, 0.0),
+        np.argmax(minimum, axis=0), _BY_LOAD[np.argmax(central, axis=0)],
     )  # fmt: skip
 
 
