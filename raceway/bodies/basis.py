@@ -168,12 +168,21 @@ def seat_of(problem: Problem, inner: bool) -> str | float:
     return "clamped" if isinstance(seat, str) else float(seat)
 
 
-def first_guess(problem: Problem, basis: Basis) -> np.ndarray:
-    """(..., 5) displacement to look for the equilibrium from [m, rad]."""
+def first_guess(problem: Problem, basis: Basis, shift: Number = 0.0) -> np.ndarray:
+    """(..., 5) displacement to look for the equilibrium from [m, rad].
+
+    shift : largest axial approach that the preload of a set builds in [m].  Its loaded rows approach beyond it; until the others have let
+        go, at twice that approach, these help with as much stiffness.
+    """
     geometry, x, axial, radial = basis.geometry, basis.axial, problem.load.axial, problem.load.radial
     rest_axial, rest_radial = geometry.rest
     touch, opposite = geometry.seat - rest_axial, -geometry.seat - rest_axial  # first touch either way
     size, guess = np.hypot(*radial), np.zeros((*problem.points, 5))
+    if np.any(shift):
+        guess[..., 0] = np.sign(axial) * np.where(
+            x > 2.0 * shift, x - shift, x * np.sqrt(x / np.maximum(shift, 1e-30)) / 3.0
+        )
+        return guess
     across = (axial == 0.0) & (size > 0.0)
     guess[..., 0] = where(axial > 0.0, touch + x, where(axial < 0.0, opposite - x, where(across, -rest_axial, touch)))
     reach = geometry.centre_distance - rest_radial + 1e-3 * geometry.centre_distance

@@ -102,7 +102,7 @@ class ColumnBearing:
         if preloaded and not np.all(params == self.points.params):
             return None
         scalars, table = (np.repeat(part, n, axis=0) for part in (self.points.scalars, self.points.table))
-        guess = np.zeros((n, 5)) if preloaded else first_guess(problem, basis)
+        guess = first_guess(problem, basis, table[..., ring.SHIFT].max(axis=-1))
         points, faults = Points(scalars, table, params, *_loads(problem), guess), np.repeat(self.faults, n)
         return attrs.evolve(self, problem=problem, basis=basis, points=points, faults=faults, unloaded=self)
 
@@ -236,6 +236,7 @@ class ColumnBearing:
             equilibria(self.kernels, self.linear._replace(free=_AXIAL), rows, states)
             points.table[:, balls, ring.SHIFT] = np.where(pressed[:, None], states.q[:, :1], 0.0)
             faults = np.where(pressed & (states.status != 0), states.status, faults)
+        points.guess[:] = first_guess(self.problem, basis, points.table[..., ring.SHIFT].max(axis=-1))
         return attrs.evolve(self, faults=faults)
 
     def contact_angles(self, states: States) -> tuple[np.ndarray, np.ndarray]:

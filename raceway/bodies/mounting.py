@@ -37,11 +37,10 @@ _AXIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
 
 def place_ring(problem: Problem, basis: Basis, system: Ring) -> np.ndarray:
     """(5,) first guess of the equilibrium; builds the preload of a set into the system, finds a held axial displacement."""
-    guess = first_guess(problem, basis)
-    growth, seek = basis.growth, None
+    guess, growth, seek = first_guess(problem, basis), basis.growth, None
     if problem.bearing.preloaded:
         system.table[:, ring.SHIFT] = _ground_shifts(problem, basis, system.standing(growth))
-        guess[0] = 0.0
+        guess = first_guess(problem, basis, system.table[:, ring.SHIFT].max())
     if problem.bearing.preloaded and problem.bearing.preload_kind == "spring":
         system.sliding = np.flatnonzero(system.table[:, ring.SIDE] != system.table[0, ring.SIDE])
         seek = partial(_follow_spring, problem, basis, float(system.table[system.sliding[0], ring.SHIFT]))

@@ -268,13 +268,30 @@ def offsets_of(k, scalars, table):
 
 @jit(PAIR(int64, float64, float64, VECTOR, MATRIX), inline=True)
 def first_place(k, ea, er, scalars, table):
-    """Where ball k begins with its inner groove centre at e: on the line of the groove centres, or on its seat on the outer race."""
+    """Where ball k begins with its inner groove centre at e: beside the line of the groove centres, or on its seat on the outer race.
+
+    By t out of the line the contacts, which press it back, approach by D + t^2 / 2h, 1/h = 1/l_i + 1/l_o; the centrifugal force pushes it
+    out: K (D + t^2 / 2h)^1.5 t / h = F_c sin a, by Newton's method from above.
+    """
     li, lo = offsets_of(k, scalars, table)
-    length = np.sqrt(ea * ea + er * er)
-    if length > li + lo:
-        scale = (lo + table[k, OUTER_SHARE] * (length - li - lo)) / length
-        return Pair(scale * ea, scale * er)
-    return Pair(0.0, lo + (table[k, CENTRIFUGAL] / table[k, OUTER_FACTOR]) ** (2.0 / 3.0))
+    length = max(np.sqrt(ea * ea + er * er), 1e-30)
+    push, factor, share = table[k, CENTRIFUGAL], table[k, OUTER_FACTOR], table[k, OUTER_SHARE]
+    deep, h, cosine, sine = length - li - lo, li * lo / (li + lo), er / length, abs(ea) / length
+    driven, t = push * sine * h / (factor * share * np.sqrt(share)), 0.0
+    if driven > 0.0:
+        t = np.sqrt(max(-2.0 * h * deep, 0.0)) + np.sqrt(np.sqrt(driven * 2.0 * h * np.sqrt(2.0 * h)))
+        if deep > 0.0:
+            t = min(t, driven / (deep * np.sqrt(deep)))
+        for _ in range(3):
+            closer = deep + 0.5 * t * t / h
+            third = np.sqrt(closer)
+            t -= (closer * third * t - driven) / (third * (closer + 1.5 * t * t / h))
+    turn, closer = t / lo, deep + 0.5 * t * t / h
+    along, beside = 1.0 - 0.5 * turn * turn, turn * (1.0 - turn * turn / 6.0)
+    axial, reach = sine * along - cosine * beside, lo + share * closer
+    if closer <= 0.0 or axial < 0.0:
+        return Pair(0.0, lo + (push / factor) ** (2.0 / 3.0))
+    return Pair(reach * (axial if ea > 0.0 else -axial), reach * (cosine * along + sine * beside))
 
 
 @jit(void(CONTACTS, VECTOR, MATRIX), inline=True)
