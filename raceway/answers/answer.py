@@ -138,8 +138,6 @@ class Answer(Shown):
 class Interrupted(KeyboardInterrupt):
     """Ctrl-C during long work, with what is finished.
 
-    Attributes
-    ----------
     partial : the answer so far; None: nothing is finished
     """
 

@@ -38,8 +38,6 @@ class ProgressBar:
     Called as ``bar(what, done, total)``; ``total`` 0 means that nobody knows.  A bar inside another one says what it does in
     that one: a screen has a single bar.
 
-    Parameters
-    ----------
     console : where to draw; standard error when None
     patience : seconds before anything is drawn
     remaining : show how many are done and the time left, too: for parts that take about the same time each

@@ -270,16 +270,7 @@ _REMEDY = "set contact.damping or contact.time_constant"
 
 
 def dry_damping_note(content: Mapping[str, object]) -> str | None:
-    """The sentence for one run.
-
-    Parameters
-    ----------
-    content : of result.json
-
-    Returns
-    -------
-    None where nothing is identified, or where C is not far below the rule of thumb.
-    """
+    """The sentence for one run (result.json); None where nothing is identified, or where C is not far below the rule of thumb."""
     if content["identification"] is None:
         return None
     error, damping = C_ERROR.of(content), C.of(content)

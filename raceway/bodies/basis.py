@@ -25,8 +25,6 @@ class Basis:
 
     Of n operating points all numbers may be columns (n,).
 
-    Attributes
-    ----------
     geometry : lengths of the first row;  geometries : of each row;  modulus : E* [Pa]
     inner, outer : Hertz contacts; of rows that differ those of all balls, with numbers (Z,)
     azimuth : (Z,) at time zero, rows one after the other [rad];  row : (Z,) to which row of the set each ball belongs

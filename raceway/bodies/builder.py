@@ -19,8 +19,6 @@ _BUILT = (*OF_PRELOAD, "kinematics")
 class Builder:
     """Bearings at columns of a scene's keys; what loads leave as it is, is built once.
 
-    Attributes
-    ----------
     plan : of the scene with the numbers of one point
     """
 

@@ -56,8 +56,6 @@ def impedance(force: np.ndarray, line: np.ndarray) -> np.ndarray:
 class ColumnBearing:
     """The bearing at n points.
 
-    Attributes
-    ----------
     linear : what all points share;  points : numbers of each;  kernels : of balls and law
     faults : (n,) status of the preload's own equilibria, 0 where it is built in
     unloaded : the same at one point, where nothing but loads differs from it
@@ -137,8 +135,6 @@ class ColumnBearing:
     ) -> Orbits:
         """The steady orbit of each point about its equilibrium under a periodic force.
 
-        Parameters
-        ----------
         tolerance : of the 1x component, relative;  near : whether all points are neighbours of the first one
         disturbed : whether ``transfer`` is computed, too;  times : of a turn at which contact forces are
         """
@@ -318,8 +314,6 @@ def ball_columns(
 ) -> ColumnBearing:
     """Balls in grooves, for ``raceway.bodies.builder``.
 
-    Parameters
-    ----------
     deformed : kernels and numbers of bodies that deform, from those of rigid ones; (n,) whether the law is too stiff for them
     """
     basis = make_basis(problem)

@@ -16,8 +16,6 @@ from raceway.storage.tables import Tables
 def contact_angles(centre: np.ndarray, placed: bool, ball: np.ndarray, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Inner and outer contact angles (..., Z) [rad]; nan where the contact carries nothing.
 
-    Parameters
-    ----------
     centre : (..., Z, 2) from the outer to the inner groove centres, axial and radial
     placed : whether ``ball[..., :2]`` are the balls' places; else they lie between the groove centres
     """
@@ -87,8 +85,6 @@ _HALVINGS = 80
 def law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Force (n,) [N] and stiffness (n,) [N/m] of the law at rest, for contacts of one race (0 inner, 1 outer).
 
-    Parameters
-    ----------
     approach : (n,) [m]
     """
     system, n = surrogate(ring), len(approach)

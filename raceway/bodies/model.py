@@ -304,8 +304,6 @@ class Equilibrium:
 def tilts_follow(stiffness: np.ndarray, tilt: float | str) -> float | None:
     """Static condensation of the tilts: kyy - k_yt (k_tt + k_shaft I)^-1 k_ty [N/m].
 
-    Parameters
-    ----------
     stiffness : (5, 5) tangent stiffness of the equilibrium
     tilt : the scene's ``supports.tilt``: "locked" (None is returned), "free", or the tilt stiffness of the shaft [N m/rad]
     """
@@ -322,8 +320,6 @@ def calibration_error(
 ) -> tuple[float | None, str]:
     """Relative error of a ball's stiffness by what its contacts' calibration leaves, the largest of all loaded balls; and how.
 
-    Parameters
-    ----------
     more : error of the compliance of each contact besides [m/N]
     """
     at_inner, at_outer = compliances.calibrations

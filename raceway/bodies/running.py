@@ -70,14 +70,9 @@ def renew(
 ) -> np.ndarray:
     """(5,) equilibrium with the law's parameters at the running speed, which are built into the system.
 
-    Parameters
-    ----------
     seek : finds the equilibrium of a sprung set, whose rows slide; None: rows stay
 
-    Raises
-    ------
-    ConvergenceError
-        No equilibrium, or loads and parameters that do not meet.
+    ConvergenceError: No equilibrium, or loads and parameters that do not meet.
     """
     law, q, before = problem.contact.law, guess, np.zeros(2 * system.ball_count)
     for trial in range(ITERATIONS):

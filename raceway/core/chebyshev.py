@@ -16,8 +16,6 @@ def interpolated(function: Callable[[np.ndarray], np.ndarray], points: np.ndarra
 
     Interpolation on the product of Chebyshev nodes of the variables that differ, as long as these are fewer than half of the points.
 
-    References
-    ----------
     Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, chapters 3 and 8.
     """
     distinct, index = np.unique(points, axis=1, return_inverse=True)

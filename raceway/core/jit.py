@@ -95,8 +95,6 @@ class Kernel(Dispatcher):
 
     That is a call from Python, its address being taken, or the compiling of a kernel that calls it.
 
-    Attributes
-    ----------
     signature : the numba signature
     """
 

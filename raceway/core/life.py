@@ -8,8 +8,6 @@ ball passes, and the risks of all points add up to that of the ring, (mean over 
 load a point of the standing ring has one load and a point of the turning ring sees all: the exponents 10/3 and 3 of ISO/TS 16281.  A
 load that turns with the inner ring exchanges the two.
 
-References
-----------
 Lundberg, Palmgren, Dynamic capacity of rolling bearings, Acta Polytechnica 7 (1947); ISO/TS 16281:2008, point contact;
 ISO 281:2007, sections 8.3 and 9.3; ISO/TR 1281-2:2008.
 """
@@ -37,13 +35,9 @@ def equivalent_loads(load: np.ndarray) -> np.ndarray:
 def equivalent_loads_of_turn(load: np.ndarray, follows: ArrayLike = True) -> np.ndarray:
     """Equivalent loads Q_ei, Q_ee (..., 2) [N] of inner and outer ring under contact loads that repeat themselves.
 
-    Parameters
-    ----------
     load : (..., T, 2, Z) at T equally spaced moments of the motion, T a multiple of Z, at Z places that stand: the azimuths 2 pi j / Z
     follows : whether the inner ring turns once while the loads repeat themselves; else each of its points meets all of them
 
-    Notes
-    -----
     The inner ring turns towards growing azimuths: its point at the place j of the first moment is at j + k after k of Z parts of a
     turn.  Of T = m Z moments each m-th one belongs to the same Z points of the inner ring.
     """
@@ -63,8 +57,6 @@ def equivalent_loads_of_turn(load: np.ndarray, follows: ArrayLike = True) -> np.
 def at_places(load: np.ndarray, travel: np.ndarray) -> np.ndarray:
     """Contact loads (..., T, 2, Z) of balls that travel, at the places where they started, straight between neighbours.
 
-    Parameters
-    ----------
     load : (..., T, 2, Z) of each ball [N];  travel : (..., T) of all balls towards growing azimuths, in pitches
     """
     pitches = np.floor(travel).astype(int)
@@ -118,18 +110,12 @@ def reference_viscosity(speed: ArrayLike, pitch_diameter: ArrayLike) -> np.ndarr
 def life_factor(viscosity_ratio: ArrayLike, load_ratio: ArrayLike) -> np.ndarray:
     """a_ISO of radial ball bearings: modified over basic life at 90 % reliability.
 
-    Parameters
-    ----------
     viscosity_ratio : kappa = nu / nu_1; above 4 it counts as 4, below 0.1 the standard has no answer: nan
     load_ratio : e_C C_u / P, contamination factor times fatigue load limit over equivalent load
 
-    Notes
-    -----
     a_ISO = 0.1 (1 - (2.5671 - c / kappa^p)^0.83 (e_C C_u / P)^(1/3))^-9.3, at most 50, with c, p = 2.2649, 0.054381 below
     kappa = 0.4, 1.9987, 0.19087 below 1, and 1.9987, 0.071739 from 1 on.
 
-    References
-    ----------
     ISO 281:2007, equations 31 to 33 (charts of figure 3).
     """
     kappa = np.minimum(viscosity_ratio, VISCOSITY_RATIOS[1])

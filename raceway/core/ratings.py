@@ -7,8 +7,6 @@ Below g = 0.1 the table of f_0 bends down, because it allows an outer groove of 
 Makers whose outer groove is as narrow as the inner one go on with the inner race (one prints f_0 up to 16.8 for bearings of
 g = 0.08): ``static_load_factor`` is the table from 0.1 on and the inner race's Hertz load at 4200 MPa below.
 
-References
-----------
 ISO 281:2007, table 2 and annex B, and ISO/TR 1281-1:2021 (closed form of f_c); ISO 76:2006, table 1, and ISO/TR 10657:2021
 (4200 MPa); ISO/TS 16281:2008 (ratings of single contacts).
 """

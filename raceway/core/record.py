@@ -115,8 +115,6 @@ class Record:
 def predict(first, last, dt, u, v, a, half, displacement, guess):  # type: ignore[no-untyped-def]
     """Entries ``first`` to ``last - 1`` of the velocity at half a step, the displacement and the guessed velocity at its end.
 
-    Parameters
-    ----------
     u, v, a : (size,) of the step before;  half, displacement, guess : (size,) out
     """
     for i in range(first, last):
@@ -211,8 +209,6 @@ class State:
 class Observation:
     """What a ``Record`` keeps of one step.
 
-    Attributes
-    ----------
     displacement, velocity : (5,) of the ring's reference point
     gap, contact_force : (2 Z,) inner races first [m, N]
     ball : (Z, 2 or 4) positions (and slips) of the balls [m]
@@ -307,15 +303,10 @@ def check_start(system: Any, start: Motion) -> None:
 def check_state(system: Any, who: str, **arrays: np.ndarray | None) -> None:
     """Refuse arrays that are not a system's; None is left out.
 
-    Parameters
-    ----------
     system : with ``ball_count``, ``ball_columns``, ``load`` and ``law_state``;  who : whose arrays they are, for the message
     arrays : by name: ``q``, ``v``, ``a``, ``net_force`` (5,), ``memory`` as ``law_state``, and any other (Z, columns) of balls
 
-    Raises
-    ------
-    PluginError
-        With the array, its shape, and the system's.
+    PluginError: With the array, its shape, and the system's.
     """
     for name, values in arrays.items():
         if name in ("q", "v", "a", "net_force"):

@@ -67,15 +67,10 @@ class Recorder:
     def accept(self, state: State, velocity: np.ndarray | None = None, outer: np.ndarray | None = None) -> None:
         """Commit a step, keep it in the record where its turn is, and report progress.
 
-        Parameters
-        ----------
         velocity : (size,) what the record shows; None for ``state.v``
         outer : (size,) what ``load`` gave for the step's end, where the loop has it still
 
-        Raises
-        ------
-        StabilityError
-            A displacement or rotation that no bearing makes, or that is no number.
+        StabilityError: A displacement or rotation that no bearing makes, or that is no number.
         """
         outer = self.load(self.time_of(self.done + 1)) if outer is None else outer
         step_work = self._outer_work(state, outer)

@@ -19,8 +19,6 @@ The terms are those of ``raceway.core.contact.losses``, a compiled loop.
 Not modelled: heat of the contact's own shear, which lowers traction at high slip; starvation; roughness; cage and lands.  What is missing
 by ``MEASURED`` bearings decides how far the friction is known (``measured_factors``).
 
-References
-----------
 Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapters 2 and 5 (spin, race control, R = 2 f D / (2 f + 1)).
 """
 
@@ -83,8 +81,6 @@ def measured_factors(
 class BallContacts:
     """Contacts of Z balls at n points, race 0 inner, 1 outer.
 
-    Attributes
-    ----------
     load, angle : (n, 2, Z) [N], [rad], the angle nan where open;  row : (Z,) of the balls
     semi_major, semi_minor : of the ellipse over the cube root of the load [m/N^(1/3)], major across the running direction
     ball_diameter, pitch_diameter : [m];  conformity : groove radius over ball diameter
@@ -137,8 +133,6 @@ class BallContacts:
 class Lubrication:
     """The oil in and around the contacts; numbers, or columns (n,); ``oil_fraction`` may be (n, 1, Z).
 
-    Attributes
-    ----------
     viscosity : dynamic, at the inlets [Pa s];  pressure_viscosity : alpha [1/Pa];  temperature_viscosity : beta [1/K]
     conductivity : [W/m/K];  density : [kg/m3]
     traction_limit : largest traction coefficient;  eyring_stress : [Pa]
@@ -177,8 +171,6 @@ class Lubrication:
 class Losses:
     """Torques on the shaft by source and place [N m], and powers [W] at its speed.
 
-    Attributes
-    ----------
     speed : (n,) of the shaft [rad/s]
     rolling, elastic_rolling, sliding : (n, 2, rows) of the contacts of both races
     drag : (n, rows) of the balls in the mixture;  seals : (n,) of seals and cage, as given
@@ -224,8 +216,6 @@ def losses(
 ) -> Losses:
     """Friction of all contacts and balls at n points.
 
-    Parameters
-    ----------
     speed : (n,) of the shaft [rad/s], 0 or more;  seals : torque of seals and cage [N m]
     outer_race : the outer race controls the spin and takes all of the gyroscopic moment; else the race that it costs less
     """

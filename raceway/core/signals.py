@@ -160,8 +160,6 @@ def synchronous_phasor(time: np.ndarray, signal: np.ndarray, frequency_hz: float
 class Line:
     """One line of the motion.
 
-    Attributes
-    ----------
     name : "1x", "2x", "ball pass" ...;  frequency_hz : float
     forward, backward, axial : amplitudes [m]: turning with and against the spin, and along the axis
     """

@@ -10,8 +10,6 @@ inlet.  Inner ring and balls give their heat to the mist.  The outer ring's film
 plug flow along a wall of one temperature, with N = G / (m c_p), the mean is T + (T_0 - T) (1/N - 1/(exp N - 1)), between
 (T_0 + T) / 2 of a short and T of a long way.
 
-References
-----------
 Harris & Kotzalas, Advanced Concepts of Bearing Technology, 5th ed., chapter 7 (networks of temperature nodes).
 """
 
@@ -51,8 +49,6 @@ _EMISSION, _LARGE_SEATS, _LARGE_POWER = 16_000.0, 0.05, -0.34
 class Network:
     """The network of a bearing at n operating points.
 
-    Attributes
-    ----------
     conductances : of all ``LINKS`` [W/K], numbers or columns (n,); ``inf`` gives both nodes one temperature
     heats : (n, 6) heat that arises in the ``NODES`` [W];  inlet, ambient : temperatures, numbers or columns (n,)
 
@@ -123,21 +119,15 @@ def rolling_contact(
 ) -> np.ndarray:
     """Conductance of each contact of a steel ball that rolls on a steel race [W/K], 0 of one that is open.
 
-    Parameters
-    ----------
     semi_major, semi_minor : a across and b along the motion [m];  speed : of both surfaces through the contact [m/s]
     film : thickness of the oil between them [m];  oil_conductivity : [W/m/K]
 
-    Notes
-    -----
     Two half-spaces of the effusivity e = sqrt(k rho c) that touch for the time t exchange e dT sqrt(t / pi) a unit of area.  A strip of the
     ellipse at y across the motion is t = 2 b sqrt(1 - (y/a)^2) / u in contact, so that with B(1/2, 5/4) = 1.748 the sum over strips is
     G_m = 1.748 a e sqrt(2 b u / pi).  At rest an isothermal ellipse between two half-spaces has G_s = pi k a / K(1 - b^2/a^2).
     Between the limits of high and low Peclet numbers u b / kappa: G = sqrt(G_s^2 + G_m^2).  The film, pi a b k_oil / h, is in
     series.  Holds where a spot of a race cools down between contacts: t much less than the time from ball to ball.
 
-    References
-    ----------
     Bejan, J. Heat Transfer 111 (1989) 257 (rolling contact heat transfer); Carslaw & Jaeger, Conduction of Heat in Solids, 2nd ed.,
     section 2.9 (two half-spaces); Muzychka, Yovanovich, J. Heat Transfer 123 (2001) 624 (limits of the Peclet number, joined);
     Greenwood, Wear 150 (1991) 153 (the sum of squares).  The first two formulas are derived anew; the sum of squares interpolates.
@@ -154,21 +144,15 @@ def oil_convection(
 ) -> Number:
     """Heat transfer coefficient between the oil in a bearing and rings or balls [W/m2/K].
 
-    Parameters
-    ----------
     shaft_speed : of the inner ring, the outer one stands [rad/s];  ratio : D cos(alpha) / d_m
     viscosity : kinematic [m2/s];  conductivity : [W/m/K];  capacity : heat of a volume, density times c_p [J/m3/K]
     ball_diameter : [m]
 
-    Notes
-    -----
     0.0986 (n (1 - D cos(alpha)/d_m) / nu)^(1/2) k Pr^(1/3), n in r/min, Pr = nu rho c_p / k: what a laminar boundary layer has on average
     (0.664 Re^(1/2) Pr^(1/3), Pohlhausen) at the speed of the cage over a length of 1.2 d_m.  Added is 2 k / D, of a sphere in oil at rest.
     For oil-lubricated bearings with Pr above 0.6; how much of a surface oil wets is not known, and published values for jets differ
     by a factor of two.
 
-    References
-    ----------
     Eschmann, Hasbargen, Weigand, Ball and Roller Bearings, 2nd ed. (1985), as papers on spindles use it.
     """
     prandtl = viscosity * capacity / conductivity
@@ -183,20 +167,14 @@ JET_SPEEDS = (1.3e6, 3.35e6)
 def jet_oil_fraction(flow: Number, speed: Number, pitch_diameter: Number) -> Number:
     """Volume of oil over that of the space around the balls of one row, 1 at most.
 
-    Parameters
-    ----------
     flow : through the row [m3/s];  speed : of the shaft [rad/s];  pitch_diameter : [m]
 
-    Notes
-    -----
     XCAV = 1e5 W^0.37 / (n d_m^1.7), in cm3/min, r/min and mm, empirical, of jet lubricated ball bearings: with it the program SHABERTH has
     their measured heat, with a law of drag as that of ``Lubricant.drag_coefficient``.  Heat of such bearings is no independent check of it.
     That it goes with 1/n means that oil stays for a number of turns, some 40.
     Its own range is not known here, for the paper was not seen.  Its bearing of 35 mm bore (d_m 46.5 mm) was run with jets of 303 to
     1894 cm3/min (Schuller) at 28 000 to 72 000 r/min: n d_m ``JET_SPEEDS``.
 
-    References
-    ----------
     Parker, NASA TP-2275 (1984), as others cite it; Schuller, Pinel, Signer, NASA TP-1732 (1980), summary.
     """
     turns = 30.0 / np.pi * np.maximum(speed, 1e-9)
@@ -206,18 +184,12 @@ def jet_oil_fraction(flow: Number, speed: Number, pitch_diameter: Number) -> Num
 def seat_emission(diameter: Number, seats: Number, width: Number) -> Number:
     """Conductance from a ring's seat through shaft or housing to the ambient [W/K].
 
-    Parameters
-    ----------
     diameter : of this seat [m];  seats : bore and outer diameter together [m];  width : of the ring [m]
 
-    Notes
-    -----
     16 W per 50 K and 1000 mm2 of both seats, pi B (d + D), of radial bearings in machines of no particular cooling; of seats
     beyond 50 000 mm2 less.  Shafts and housings with cooling, or none, differ by several times: ``shaft_ambient`` and ``housing_ambient``
     then have to be given.
 
-    References
-    ----------
     ISO 15312 (thermal speed ratings): reference heat flow density 0.016 W/mm2 at 70 and 20 degrees.
     """
     area = np.pi * width * seats

@@ -26,12 +26,8 @@ def usable_cores() -> int:
 class ThreadPool:
     """Threads that share numbered jobs while the pool is open; the caller is one of them, and works alone before and after.
 
-    Parameters
-    ----------
     count : threads, the caller's included
 
-    Notes
-    -----
     ``with pool:`` opens it, again inside too; the threads end where the outermost one ends, also by an exception.  Jobs are
     begun in their order by whoever is free: put long ones first.
     """

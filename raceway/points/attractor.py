@@ -4,8 +4,6 @@ The section holds the state once a turn.  It comes back after m turns: an orbit 
 multiples of one frequency, modulo one a turn, belong to a quasi-periodic motion, whose section is a closed curve; what else does
 not repeat is chaotic, or has not settled in the turns that were integrated.
 
-References
-----------
 Nayfeh, Balachandran, Applied Nonlinear Dynamics (1995), sections 4.1 and 4.2.
 """
 

@@ -84,12 +84,8 @@ class Axis:
 def places_of(axes: Sequence[Axis], most: int) -> tuple[Axis, list[Axis], list[Axis]]:
     """The axis of x, those of the curves and those of the panels of a picture.
 
-    Parameters
-    ----------
     most : panels; axes that do not find room in so many are further ones of the curves
 
-    Notes
-    -----
     x is the axis of numbers with most values, of several such that of speed, without such the last axis of words; of the others words
     come first.
     """
@@ -116,15 +112,10 @@ def shown(value: object) -> str:
 def parse_axes(definitions: Vary, option: str = "--vary", most: int = MOST_POINTS) -> tuple[Axis, ...]:
     """The axes of the texts of an option, or of a mapping.
 
-    Parameters
-    ----------
     definitions : texts ``KEY=...``; or key -> values: a list, an array (n,), one value, or the text "a,b,c" or "start:stop:count"
     most : points of all axes together
 
-    Raises
-    ------
-    SceneError
-        With every mistake: a malformed or doubled axis, an empty list, a bad range, too many points.
+    SceneError: With every mistake: a malformed or doubled axis, an empty list, a bad range, too many points.
     """
     axes: list[Axis] = []
     mistakes: list[Mistake] = []
@@ -326,8 +317,6 @@ _FILE_FORM = 'must be a TOML file with a table [grid], for instance "load.axial"
 class Design:
     """Points of a sweep.
 
-    Attributes
-    ----------
     axes : keys with their values, the last one running fastest in the numbering of points
     listed : whether the values of the axes belong together point by point, instead of all their combinations
     """
@@ -382,14 +371,9 @@ def grid(definitions: Vary) -> Design:
 def sampled(ranges: Vary, design: str, seed: int = 0) -> Design:
     """Points that fill a box of ranges: ``sobol:N``, of Sobol's sequence, scrambled, or ``lhs:N``, a Latin hypercube.
 
-    Parameters
-    ----------
     ranges : texts ``KEY=low:high``, or key -> (low, high) or "low:high";  seed : of the random numbers
 
-    Raises
-    ------
-    SceneError
-        Another kind of design or number of points, no ranges, or ends that are no numbers in their order.
+    SceneError: Another kind of design or number of points, no ranges, or ends that are no numbers in their order.
     """
     kind, _, number = design.partition(":")
     count = int(number) if number.isdecimal() else 0

@@ -54,8 +54,6 @@ class _Indices:
 def design(count: int, dimensions: int, seed: int) -> np.ndarray:
     """((d + 2) n, d) numbers in [0, 1): rows of A, of B, then of A with each column of B in turn; n a power of 2.
 
-    Parameters
-    ----------
     count : n;  dimensions : d
     """
     from scipy.stats import qmc

@@ -74,8 +74,6 @@ _COLUMNS: dict[str, tuple[str, str]] = {
 class Orbit:
     """Numbers of ``_COLUMNS``, the verdict "stable", "neutral" or "unstable", and how the orbit is left: "", "+1", "-1", "pair".
 
-    Attributes
-    ----------
     z : dynamic stiffness F/x of the 1x component [N/m];  mass : m of K = Re Z + m w^2 [kg]
     """
 
@@ -118,8 +116,6 @@ class Orbit:
 class Label:
     """A special point or a peak: its kind and its orbit.
 
-    Attributes
-    ----------
     kind : "fold", "branch point", "period doubling", "Neimark-Sacker", PEAK or OPENS
     angle : of the critical pair over a span [rad];  point : of the branch, of special points
     """

@@ -288,8 +288,6 @@ def jacobian(
 ) -> dict[str, Columns]:
     """Derivatives (n, ...) of each output by each input that has a unit: ``jacobian(...)[output][input]``.
 
-    Parameters
-    ----------
     columns : computes outputs from columns of all inputs;  allowed : whether a key's rule admits a number
     inputs : (n,) each, by their keys;  units : of those by which is derived
     """

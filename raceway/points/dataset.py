@@ -68,8 +68,6 @@ Labelled = tuple[tuple[str, ...], np.ndarray, dict[str, str]]
 class SweepStore(Store):
     """The store of a sweep: a row for each point of its design; ``open_store`` reads one.
 
-    Attributes
-    ----------
     design : points, in the order of their numbers
     facts : scene (all keys, at the first point), given (what of it was said), design, labels of plug-ins' quantities, identity (versions and plug-ins), files, schema, created
     """
@@ -137,8 +135,6 @@ _STATUS = np.array(["computed", "run", "refused", "waiting"], dtype=object)
 class Points:
     """What is stored of all points, by their numbers.
 
-    Attributes
-    ----------
     columns : quantity -> (n, ...), nan where a point has none;  status : (n,) words
     reasons, warnings : of points that have some;  damaged : number of points whose rows are
     """

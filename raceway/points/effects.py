@@ -14,8 +14,6 @@ y = mean + 1/2 sum_T e_T product of s_i holds at every corner.  The share of a t
 A quantity with a relative error r lies within y -+ d, d = -ln(1 - r).  No e_T is off by more than 2^(1 - k) times the sum of all d;
 an effect above that bound is resolved.
 
-References
-----------
 Box, Hunter, Hunter, Statistics for Experimenters (2nd ed., 2005), chapter 5 (definitions of effects and interactions).
 """
 
@@ -34,15 +32,9 @@ from raceway.storage.tables import Tables
 
 
 def factorial_effects(values: np.ndarray) -> np.ndarray:
-    """Effects of a two-level factorial.
+    """Effects (2,) * k of a two-level factorial: index 1 in the places of the axes of T holds e_T, [0, ..., 0] the mean.
 
-    Parameters
-    ----------
     values : (2,) * k array, y at the corners; index 0 is the first value of an axis, 1 the last
-
-    Returns
-    -------
-    effects : (2,) * k array; index 1 in the places of the axes of T holds e_T, [0, ..., 0] the mean
     """
     out = np.asarray(values, dtype=float)
     for axis in range(out.ndim):
@@ -57,8 +49,6 @@ def factorial_effects(values: np.ndarray) -> np.ndarray:
 class Effect:
     """One term.
 
-    Attributes
-    ----------
     term : keys of its axes;  log_change : e_T;  percent : 100 (exp(e_T) - 1)
     difference : mean at the last minus mean at the first value [N/m], main effects only
     share : of the variation of ln(quantity);  resolved : whether it exceeds what the corners' errors can make
@@ -76,8 +66,6 @@ class Effect:
 class Factorial:
     """One quantity at all corners.
 
-    Attributes
-    ----------
     keys : (k,) axes;  corners : (2,) * k, positive [N/m]
     errors : (2,) * k, the corners' relative errors, below 1; default: none
     """
@@ -137,12 +125,8 @@ class Factorial:
 def complete_factorial(usable: np.ndarray) -> tuple[int | None, ...] | None:
     """The largest factorial without holes: for each axis None (both ends) or the end it must be held at.
 
-    Parameters
-    ----------
     usable : (2,) * k of bool
 
-    Notes
-    -----
     As few axes as possible are held, and of those the last ones: people name what matters most first.  None when no two
     neighbouring corners are usable.
     """
@@ -247,8 +231,6 @@ class Row:
 class Course:
     """How a quantity runs along an axis, the others held.
 
-    Attributes
-    ----------
     axis : its key;  at : the other axes' values;  trend : "rises", "falls", "level", "not monotonic" or "unknown"
     percent : change from the first to the last value, None where one of them is no number;  doubtful : rows that are left out
     """

@@ -83,8 +83,6 @@ _FAULTS: dict[tuple[str, ...], str | None] = {}
 class Work:
     """Callable on a list of what ``function`` takes; answers with a list of what it gives, or ``Refused``.
 
-    Attributes
-    ----------
     function : called as ``function(task, registry)``
     plugins : one-off plug-in files, which each process loads
     required : identity that a process must have; None where all are of this machine

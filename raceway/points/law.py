@@ -56,8 +56,6 @@ _ROUNDING = 1e-13
 class LawContact:
     """One ball-race contact in its equilibrium, alone.
 
-    Attributes
-    ----------
     race : "inner" or "outer";  ball : its number, from 0
     load : normal force [N];  approach : minus the gap between the undeformed surfaces [m]
     reach : gap at which the contact begins to carry [m]: 0, or what a film puts between the surfaces
@@ -78,8 +76,6 @@ class LawContact:
     ) -> tuple[float, float, float, np.ndarray]:
         """Force [N], its derivatives by approach [N/m] and by the approach's rate [N s/m], and the law's memory (2, m).
 
-        Parameters
-        ----------
         approach, rate : [m, m/s]
         step : since the memory was committed; None: at rest, without a history
         """

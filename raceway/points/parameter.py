@@ -68,8 +68,6 @@ def _number(key: str, value: str | float, unit: str) -> float:
 class Parameter:
     """A key of a scene from ``first`` to ``last``.
 
-    Attributes
-    ----------
     base : the scene, which has a number at the key;  key : a continuous one, such as "load.axial"
     linear : parts of the system that change linearly, where nothing else does but the excitation; None where more changes
     """

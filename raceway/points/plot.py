@@ -167,17 +167,11 @@ def layout(
 ) -> _Layout:
     """Choose what was left open.
 
-    Parameters
-    ----------
     value : variable, with labels of its other dimensions after a colon: ``p0``, ``stiffness:y,y``, ``displacement:x``
     kind : "curves", "map" or "surface"
 
-    Raises
-    ------
-    SceneError
-        Unknown names, axes that do not vary or have no numbers, and axes left over, each with what to type.
-    RacewayError
-        Nothing varies, or nothing is finished.
+    SceneError: Unknown names, axes that do not vary or have no numbers, and axes left over, each with what to type.
+    RacewayError: Nothing varies, or nothing is finished.
     """
     if not names(selection.dataset):
         raise RacewayError("no point is done yet: compute them with raceway sweep ... --resume")

@@ -46,8 +46,6 @@ _REASON = 160
 class Setting:
     """One place of a study.
 
-    Attributes
-    ----------
     family : the question it belongs to
     values : key -> value, what it changes in the scene
     model : the part of ``values`` that changes the equations; ``inertia`` is among them, although an integrator sets it
@@ -80,15 +78,10 @@ class Design:
 def make_design(tables: ReadTables, vary: Vary, limit_s: float, registry: Registry) -> Design:
     """The settings of a study.
 
-    Parameters
-    ----------
     vary : axes whose product is run; the default design where there are none
     limit_s : settings whose predicted time is longer are left out
 
-    Raises
-    ------
-    SceneError
-        A mistake in the scene or in an axis.
+    SceneError: A mistake in the scene or in an axis.
     """
     axes_given, notes = vary if isinstance(vary, Mapping) else list(vary), list[str]()
     if axes_given:

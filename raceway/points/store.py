@@ -44,8 +44,6 @@ Key = int | str
 class Row(NamedTuple):
     """What is stored of one point or case.
 
-    Attributes
-    ----------
     key : number of a point, or hash of all that decides a case
     reason : why it failed or waits
     content : plain values, or arrays of many points; empty where it waits

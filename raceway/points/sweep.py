@@ -54,8 +54,6 @@ _SHARED = 4
 class Point:
     """Callable on ``(number, point)``; the row of a run, whose content is ``{"values", "warnings"}``.
 
-    Attributes
-    ----------
     tables : of the scene;  further : names of ``ENDS`` that are asked for
     """
 
@@ -153,8 +151,6 @@ def _alone(function: Function, tables: ReadTables, design: Design, registry: Reg
 class Sweep:
     """A sweep that was looked over: what is computed, where it goes, and what is there already.
 
-    Attributes
-    ----------
     function : that computes blocks of points; None where each point is a run
     further : names of ``ENDS`` that are asked for
     """
@@ -178,16 +174,10 @@ def prepare(
 ) -> Sweep:
     """Look over a sweep; nothing is computed or written.  Options that a change of kind leaves out are warned of.
 
-    Parameters
-    ----------
     plugins : one-off plug-in files;  resume : go on with a store that is there;  quantities : further ones, of ``ENDS``
 
-    Raises
-    ------
-    SceneError
-        Mistakes in the scene or in the values that are swept.
-    RacewayError
-        A store that is there already and is not to be gone on with, or that belongs to another scene, sweep or version.
+    SceneError: Mistakes in the scene or in the values that are swept.
+    RacewayError: A store that is there already and is not to be gone on with, or that belongs to another scene, sweep or version.
     """
     files, further = tuple(str(Path(file).resolve()) for file in plugins), tuple(quantities)
     for name in further:
@@ -275,17 +265,11 @@ def fill_store(
 ) -> SweepStore:
     """Compute what is not finished; the store, open to be read.
 
-    Parameters
-    ----------
     executor : follows ``raceway.framework.contracts.Executor``
     on_progress : called as ``on_progress(what, done, total)``; an exception stops the sweep
 
-    Raises
-    ------
-    PluginError
-        An executor that cannot work, or a worker that is not fit for it.
-    RacewayError
-        A disk that takes no more.  Whatever is raised, Ctrl-C too: finished points are stored.
+    PluginError: An executor that cannot work, or a worker that is not fit for it.
+    RacewayError: A disk that takes no more.  Whatever is raised, Ctrl-C too: finished points are stored.
     """
     design, length = task.design, int(task.facts["block"])
     edges = block_edges(design.size, length)

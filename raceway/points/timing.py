@@ -43,9 +43,7 @@ class Measured(TypedDict):
 def quantities(result: Content) -> dict[str, float]:
     """What a study compares, as far as a result.json has it.
 
-    Returns
-    -------
-    quantities : Re Z, Im Z and K [N/m], mean axial displacement [m], peak ball load [N] and pressure [Pa], of both races
+    Re Z, Im Z and K [N/m], mean axial displacement [m], peak ball load [N] and pressure [Pa], of both races.
     """
     return {name: value for name, quantity in _COMPARED.items() if (value := quantity.of(result)) is not None}
 

@@ -162,14 +162,9 @@ def single_presets() -> dict[str, Preset]:
 def preset_of(name: object, maker: object = None) -> Preset | None:
     """One preset, by its name in the catalogue or by a maker's designation.
 
-    Parameters
-    ----------
     maker : whose bearing of these dimensions and this contact angle it is; None: that of the name
 
-    Raises
-    ------
-    SceneError
-        A designation of a kind of bearing that is not computed; a maker that is not known, or has no such bearing here.
+    SceneError: A designation of a kind of bearing that is not computed; a maker that is not known, or has no such bearing here.
     """
     entry = _entry(name) if isinstance(name, str) else None
     return entry if maker is None or entry is None or entry.maker == maker else _of_maker(str(name), str(maker))

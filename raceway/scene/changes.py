@@ -18,12 +18,8 @@ _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
 def titled(tables: ReadTables, name: str, changes: Iterable[tuple[str, object]]) -> Tables:
     """The tables with a title that says what was changed, in its second line: the first one names the file.
 
-    Parameters
-    ----------
     name : the title where the file has none;  changes : keys and values, the last of a key holds
 
-    Notes
-    -----
     Keys are sorted: changes in another order make the same scene, and folders are named by the title.
     """
     title = tables.get("title", name)

@@ -103,13 +103,9 @@ def groove_edge(bearing: Bearing) -> float:
 def load_at_edge(ellipse: Ellipse, ball_radius: float, angle: float) -> float:
     """Load of a ball [N] at which its contact ellipse reaches the groove's edge.
 
-    Parameters
-    ----------
     ellipse : of the contact, with ``semi_axes(load)`` [m]
     angle : from the contact to the edge, seen from the ball's centre [rad]
 
-    Notes
-    -----
     The semi-major axis grows with the cube root of the load; the edge is reached where a = R angle.
     """
     return float((max(ball_radius * angle, 0.0) / float(ellipse.semi_axes(1.0)[0])) ** 3)
@@ -119,8 +115,6 @@ def load_at_edge(ellipse: Ellipse, ball_radius: float, angle: float) -> float:
 class Grooves:
     """Growth of one row's grooves [m].
 
-    Attributes
-    ----------
     axial, radial : of the vector from the outer to the inner groove centre, at rest
     inner, outer : of the distance of groove centre and ball centre at the first touch
     """
@@ -139,8 +133,6 @@ def ball_growth(bearing: Bearing, spin_speed: float) -> float:
     second spherical harmonic.  A ball that rolls on a standing outer ring at the free contact angle has, with g = D cos(alpha)/d_m,
     w_b = w (d_m / (2 D) (1 - g^2) - (1 - g) / 2) about an axis next to the bearing's.
 
-    References
-    ----------
     Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., chapter XI (solid sphere under a body force).
     """
     d, dm, ball = bearing.ball_diameter, bearing.pitch_diameter, bearing.balls
@@ -211,8 +203,6 @@ class RunningBearing:
         from the bore a to the land b, which grows at b by rho w^2 b / (4 E) ((1 - nu) b^2 + (3 + nu) a^2).  "with_shaft" ring and
         shaft without a fit are one elastic body: the ring is held back by what speed would take from a fit that holds.
 
-        References
-        ----------
         Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 32.
         """
         growth = self.kinematics.radial_expansion
@@ -232,8 +222,6 @@ class RunningBearing:
         I/2 (d_1 / d) (d^2 - d_s^2) / (d_1^2 - d_s^2); ``_by_interference`` takes two.  The interference
         falls by as much as the ring's bore grows beyond the shaft, by centrifugal growth and by temperature.
 
-        References
-        ----------
         Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter 3 (interference fitting and clearance).
         """
         return self._by_interference(b, self.interference(b))
@@ -278,8 +266,6 @@ class RunningBearing:
         Of plane-stress annuli: the bore a of a ring up to the radius b grows by rho w^2 a / (4 E) ((1 - nu) a^2 + (3 + nu) b^2), a
         shaft with the hole c by the same with its own numbers and c for b.
 
-        References
-        ----------
         Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 32.
         """
         at_rest = self.interference_at_standstill(b, seat)

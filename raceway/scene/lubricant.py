@@ -75,8 +75,6 @@ def pressure_viscosity(viscosity: Number) -> Number:
     thirteen mineral oils at 30 to 100 C it gives 0.70 to 1.17 times (checks/validation/film.py), which moves a film,
     h ~ alpha^0.53, by less than a fifth.
 
-    References
-    ----------
     Stachowiak, Batchelor, Engineering Tribology, chapter 2 with table 2.3 of measured coefficients.
     """
     return 1e-8 * (0.6 + 0.965 * largest(log10(largest(1e3 * viscosity, 1.0)), 0.0))

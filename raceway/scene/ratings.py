@@ -18,8 +18,6 @@ _GEOMETRY = "ball_count", "ball_diameter", "pitch_diameter", "contact_angle_deg"
 class LoadRatings:
     """Ratings of one row of balls; numbers may be columns.
 
-    Attributes
-    ----------
     row : balls and grooves at the nominal contact angle
     modulus : contact modulus E* of permitted pressures [Pa]: that of the standards where balls and rings are of steel
     dynamic, static : C and C0 [N];  dynamic_from, static_from : "key", "catalogue" or "geometry"

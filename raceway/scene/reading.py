@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 def check_requirements(table: object, registry: Registry, mistakes: list[Mistake]) -> None:
     """Append a mistake for every requirement that is missing, too old, or not a requirement at all.
 
-    Parameters
-    ----------
     table : name -> version specifier such as ">=1.2, <2"; "" for any version
     """
     if not table:

@@ -23,12 +23,8 @@ def unused(scene: SceneTables) -> tuple[str, ...]:
 def without_inherited(base: ReadTables, tables: ReadTables, changed_keys: Collection[str], registry: Registry) -> Tables:
     """Changed tables without the keys of the base that lose their effect by the change: nobody said those for this scene.
 
-    Parameters
-    ----------
     base : tables of a file;  changed : the same with some keys changed;  changed_keys : those keys, which stay and are reported
 
-    Notes
-    -----
     A key that has no effect in the base either is the base's own mistake, and stays.  Tables that make no scene are left as
     they are: what reads them says what is wrong.
     """

@@ -31,10 +31,7 @@ _UNIT_AND_POWER = re.compile(r"^([A-Za-z%]+|1)(?:\^?(-?\d+(?:\.\d+)?))?$")
 def exponents(unit: str) -> tuple[float, ...]:
     """Exponents of length, force and time in a unit such as "N/m3", "kg m", "N/m^1.5", "" or "r/min".
 
-    Raises
-    ------
-    ConformityError
-        A unit that is not made of SI units.
+    ConformityError: A unit that is not made of SI units.
     """
     total = np.zeros(3)
     above, *below = unit.split("/")

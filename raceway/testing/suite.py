@@ -320,10 +320,7 @@ def check_shape(word: str, values: ArrayLike, shape: tuple[int, ...]) -> None:
 def apart(work: Callable[[], T]) -> T:
     """What ``work()`` returns or raises, which can be pickled, from a child process with limits.
 
-    Raises
-    ------
-    _Died
-        It ended by a signal or an exit of its own, or was stopped.
+    _Died: It ended by a signal or an exit of its own, or was stopped.
     """
     _import_compiler()
     sys.stdout.flush()

@@ -1,8 +1,6 @@
 """Small mechanical systems with known motions, and the compiled loops of the suites, which call kernels as the time loops do:
 by function pointers.
 
-Notes
------
 The mass moves along x against one contact (gap = clearance - x, the contact pushes along -x) and along y and z on linear
 springs, which a gyroscopic term couples.  Balls and tilts do not move.  A bearing has two races, so there are two
 contacts; the second one stays open.
@@ -88,8 +86,6 @@ def _counting(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_r
 def require_no_allocation(call: Callable[[int], object]) -> None:
     """Compiled code that ``call(n)`` runs n times takes no block of memory.
 
-    Notes
-    -----
     Statistics of numba's own runtime are the only trace of such allocations; its switch is put back.
     """
     runtime = import_module("numba.core.runtime")

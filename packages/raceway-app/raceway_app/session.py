@@ -83,8 +83,6 @@ _OTHER = {"bidirectional": "unidirectional", "unidirectional": "bidirectional"}
 class Session:
     """The scenes of a page, and how they came about.
 
-    Attributes
-    ----------
     scenes : one, or two that are compared
     folder : where files are written, and nowhere else
     number : of changes so far

@@ -11,8 +11,6 @@ For each exponent p a power law is linear in its other numbers.  The interval of
 residuals stays below S (1 + t^2 / (n - m)) + 3.84 e^2: S is the least sum, e the root mean square of the runs' errors, n numbers,
 m parameters, t Student's and 3.84 chi squared at 95 %.
 
-References
-----------
 Seber, Wild, Nonlinear Regression (1989), section 5.4 (intervals from the sum of squares).
 """
 
@@ -249,8 +247,6 @@ def verdict_of(number: str, claim: str, rule: str, computed: str, findings: Sequ
 def verdicts(curves: Curves, static: Sequence[Verified]) -> list[Verdict]:
     """Every claim.
 
-    Parameters
-    ----------
     static : rows of the static verification, as ``raceway verify`` computes them
     """
     out = [*_not_testable(static), *(verdict_of(*row) for row in _unidirectional(curves))]

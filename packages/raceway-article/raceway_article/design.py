@@ -77,8 +77,6 @@ class Setting:
 class Design:
     """The runs of a study.
 
-    Attributes
-    ----------
     tables : the scene's tables;  speeds [r/min], loads [N] : ascending
     shaft : tilt stiffness of the setting "shaft" [N m/rad];  bodies : the kinds that are run
     friction : Coulomb coefficient of the settings with friction, which are run with rigid bodies; 0 leaves them out
@@ -186,8 +184,6 @@ def design(
 ) -> Design:  # fmt: skip
     """The runs for a scene.
 
-    Parameters
-    ----------
     speeds, loads : "a,b,c" or "start:stop:count" [r/min], [N]
     shaft : tilt stiffness [N m/rad]; the scene's where it has one, else that of the rig's shaft
     friction : see ``friction_of``

@@ -180,8 +180,6 @@ class ElasticDesign:
 def design(tables: ReadTables, friction: float | None = None, turns: int = TURNS) -> ElasticDesign:
     """The runs for a scene.
 
-    Parameters
-    ----------
     friction : see ``raceway_article.design.friction_of``
 
     SceneError: A scene without unbalance, axial load, mesh or contacts at surface points; a friction below 0.
@@ -344,8 +342,6 @@ def _over(value: float, reference: float) -> float | None:
 class ElasticArticle(Answer):
     """The study's rows, with their differences from Hertz and from condensed bodies.
 
-    Attributes
-    ----------
     rows : of ``design.runs()``, in their order;  seconds, cpu_s : wall and processor time of this command
     reused : rows that were stored before;  fault : why rows could not be stored; None where they were
     command : what makes the page again
@@ -484,8 +480,6 @@ def elastic_article(
 ) -> ElasticArticle:
     """Compute every run but those in the folder ``kept``, one after the other; what this machine refused is tried again.
 
-    Parameters
-    ----------
     folder : where the section through the most loaded contact is drawn; None: it is not
     command : what makes the page again
     """

@@ -154,8 +154,6 @@ def _cost_panel(case: str, rows: list[Tables]) -> Panel:
 def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None, command: str) -> Page:
     """The page.
 
-    Parameters
-    ----------
     content : article-elastic.json;  section : PNG of the section through the most loaded contact, if it was drawn
     command : what makes the page again
     """

@@ -13,8 +13,6 @@ LEVEL = 0.005
 class Finding:
     """Outcome of a rule for one model, load or speed.
 
-    Attributes
-    ----------
     at : which friction, tilt, inertia, bodies, load [N] and speed [r/min]
     holds : None where it could not be judged, with the reason in ``why``
     value : the number that the rule looks at
@@ -45,8 +43,6 @@ BRIDGED = "unstable motions between the ends are left out, a failed run leaves n
 class Verdict:
     """A claim, or one reading of it.
 
-    Attributes
-    ----------
     number : of the claim, with a letter where it has several parts or readings, and "|Z|" where that is taken for the stiffness
     claim, rule, computed : in words
     kind : one of HOLDS, PARTLY, NOT, FAILED, UNTESTED

@@ -305,8 +305,6 @@ def _rows(task: _Task, registry: Registry) -> Tables:
 class Article(Answer):
     """The study's numbers, with verdicts, page, pictures and tables made from them.
 
-    Attributes
-    ----------
     curves : K and |Z| of every setting;  rig : rows at the rig's speeds and loads, with their tilt boundary
     static : rows of the static verification;  trends : quasi-static trends against an independent solver
     scan : axial load -> rows over the shaft's tilt stiffness at the lowest and highest speed
@@ -385,8 +383,6 @@ class Article(Answer):
     def tables(self, content: ReadTables) -> dict[str, list[Tables]]:
         """Name -> rows of each table that is written as CSV.
 
-        Parameters
-        ----------
         content : ``to_dict()``
         """
         scan = [
@@ -499,8 +495,6 @@ def solve_curves(
 ) -> Article:
     """Compute everything but the finished curves in the folder ``kept``; with all mistakes of the scenes refused first.
 
-    Parameters
-    ----------
     processes : how many work at a time; 0 works in this one
     plugins : one-off plug-in files, which each process loads
     command : what makes the page again

@@ -177,16 +177,11 @@ _TRIED, _TURNS = np.linspace(0.505, 0.56, 56), np.linspace(-4.0, 4.0, 33)
 def infer_printed(size: Printed, maker: str | None = None, conformity: float | None = None) -> Inferred:
     """Balls and grooves of one size.
 
-    Parameters
-    ----------
     maker : "NSK" or "GMN", whose practice of rating is known; None: the practice that explains the numbers better
     conformity : of both grooves; None: from printed stiffnesses, else 0.522
 
-    Raises
-    ------
-    SceneError
-        Ratings that contradict each other, or that no whole number of usual balls explains; an unknown maker; stiffnesses that
-        no groove gives.
+    SceneError: Ratings that contradict each other, or that no whole number of usual balls explains; an unknown maker; stiffnesses that
+    no groove gives.
     """
     if not size.ratings:
         raise SceneError.at(size.title, None, "needs the load ratings at one contact angle or more")

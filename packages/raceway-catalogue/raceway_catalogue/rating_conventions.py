@@ -212,8 +212,6 @@ def _bell(*offs: np.ndarray) -> np.ndarray:
 def by_grooves(size: Printed, without: str = "") -> list[Candidate]:
     """Candidates by the maker's own grooves.
 
-    Parameters
-    ----------
     without : designation of a printed bearing that is left out, to test the method on it
     """
     bearings, candidates = _printed_bearings(), []

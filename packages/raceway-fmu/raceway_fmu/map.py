@@ -43,8 +43,6 @@ class Interval:
 class Series:
     """Quantities over a box: f(x_1 ... x_d) = sum of c_ij.. T_i(t_1) T_j(t_2) ..., each t the input, or its logarithm, on -1 ... 1.
 
-    Attributes
-    ----------
     axes : of the inputs;  terms : (m, n_1, ..., n_d) coefficients;  size : (m,) least size of the quantities at the nodes
     error, relative, difference : (m,) largest difference at control points over the size of the quantity, over its value (or 1e-200
         if that changes its sign), and in its unit
@@ -52,8 +50,6 @@ class Series:
     Coefficients interpolate at the roots of T_n of each axis.  Control points, which no fit uses, are the n + 1 extremes of T_n, ends
     and corners included, between which the roots lie and where errors of interpolation are largest, and a Sobol sequence in the box.
 
-    References
-    ----------
     Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, chapters 3, 4 and 8.
     """
 
@@ -87,8 +83,6 @@ class Series:
 def fit(function: Quantities, axes: Sequence[Interval], tolerance: float, most: int) -> Series:
     """Series with as many terms as the tolerance asks for, and logarithms of inputs where these need fewer.
 
-    Parameters
-    ----------
     axes : ``logarithmic`` of one says nothing yet
     tolerance : of the error, relative;  most : points of one fit
     """
@@ -183,17 +177,11 @@ def map_unit(
 ) -> Unit:
     """The FMU of a scene's map.
 
-    Parameters
-    ----------
     ranges : key -> low, high;  outputs_wanted : outputs of ``raceway.function``, numbers or "stiffness", by names or symbols
     tolerance : relative error that terms are added for
 
-    Raises
-    ------
-    SceneError
-        A key or an output that the function does not have.
-    RacewayError
-        A point within the ranges that has no answer, or runs for longer than two minutes.
+    SceneError: A key or an output that the function does not have.
+    RacewayError: A point within the ranges that has no answer, or runs for longer than two minutes.
     """
     names = function(scene, ranges, outputs_wanted).outputs
     f = function(scene, ranges, dict.fromkeys([*names, *([K.name] if C.name in names else [])]))

@@ -40,8 +40,6 @@ _STEPS = np.array([1e-9, 1e-9, 1e-9, 1e-7, 1e-7, 1e-2, 1e-5])
 class RigidForce:
     """The force of a bearing with rigid rings and balls, as ``packages/raceway-fmu/raceway_fmu/data/force.c`` computes it.
 
-    Attributes
-    ----------
     numbers : by their names in C: constants, arrays;  balls : their count
     speed, highest : of the scene, and up to which the force is made for [rad/s]
     limits : ball loads inside and outside up to which it is made for [N]: those of the static pressure of ISO 76
@@ -59,14 +57,9 @@ class RigidForce:
 def rigid_force(scene: Scene, highest_rpm: float | None = None) -> RigidForce:
     """Numbers of a scene.
 
-    Parameters
-    ----------
     highest_rpm : speed that it is made for [r/min]; None: a quarter above the scene's, or the usual limit of such bearings
 
-    Raises
-    ------
-    SceneError
-        A scene whose force is no function of displacement and speed, or not of rigid bodies.
+    SceneError: A scene whose force is no function of displacement and speed, or not of rigid bodies.
     """
     now = float(resolve(scene).spin_speed)
     rpm = highest_rpm or max(1.25 * now / _RPM, _DN / (1e3 * scene.bearing.pitch_diameter))

@@ -1,7 +1,5 @@
 """The files of an FMU: description of its variables, C sources, and a library where a compiler exists.
 
-References
-----------
 Functional Mock-up Interface for Model Exchange and Co-Simulation 2.0.4; Functional Mock-up Interface 3.0.2 (Modelica Association).
 """
 
@@ -64,8 +62,6 @@ class Variable:
 class Unit:
     """An FMU of a bearing.
 
-    Attributes
-    ----------
     name : identifier in C;  words : what it is, with its error
     source : file of the model in ``raceway/data/fmu``;  numbers : of the model, by their names in C: arrays, or constants
     beyond : what is logged out of range

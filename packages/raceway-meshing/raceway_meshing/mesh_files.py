@@ -33,14 +33,9 @@ def file_unit(words: str) -> Any:
 def bodies(mesher: Mesher, bearing: Bearing, make: Callable[[str, str], HexMesh]) -> dict[str, HexMesh]:
     """Meshes of the bodies whose paths the mesher's options name; the ball's mesh at each ball's place.
 
-    Parameters
-    ----------
     make : (name of the body, path) -> mesh
 
-    Raises
-    ------
-    MeshError
-        A pair of rows, or what ``make`` raises.
+    MeshError: A pair of rows, or what ``make`` raises.
     """
     from raceway.extend import azimuth, ball_names, placed
 

@@ -33,8 +33,6 @@ _RADIANS = np.pi / 30.0
 class Coefficients:
     """A table over speed (n,), over frequency (m,), or over both (n, m).
 
-    Attributes
-    ----------
     speed : (n,) of the rotor [rad/s], None for a table over frequency alone
     frequency : (m,) of the vibration [rad/s], None where it equals the speed or nothing depends on it
     stiffness, damping : (..., 2, 2) over y, z [N/m, N s/m]
@@ -108,18 +106,12 @@ def coefficients(
 ) -> Coefficients:
     """The coefficients of a selection.
 
-    Parameters
-    ----------
     source : "rotating", "directions" or "tangent"; by default what the sweep's excitation gives
     unresolved : cyy and czz [N s/m] where the sweep's own is smaller than its error, which may have either sign
     least : points that an axis needs; cubics through them take ``LEAST_POINTS``, where straight lines take 2
 
-    Raises
-    ------
-    SceneError
-        Axes that are to be chosen first, too few points on one, or an unknown source.
-    RacewayError
-        Points without result, or a source that this sweep does not have.
+    SceneError: Axes that are to be chosen first, too few points on one, or an unknown source.
+    RacewayError: Points without result, or a source that this sweep does not have.
     """
     if not (math.isfinite(unresolved) and unresolved >= 0.0):
         raise SceneError.at("--damping", unresolved, "must be a finite damping of at least 0 N s/m")

@@ -10,8 +10,6 @@ Ansys Mechanical APDL
     order of the element: K11, K22, K12, K21, C11, C22, C12, C21.  KEYOPT(2) = 1 lays the element in the YZ plane, so that 1, 2 are
     y, z, and x is the axis.
 
-References
-----------
 https://help.autodesk.com/cloudhelp/2022/ENU/NSTRN-Reference/files/GUID-A544DE9B-E51F-45D5-99AB-DCA1D308A7FF.htm (PBUSHT)
 https://help.autodesk.com/cloudhelp/2022/DEU/NSTRN-Reference/files/GUID-F7947A2D-E28B-40DC-B721-37405D08ECE5.htm (TABLED1)
 https://help.altair.com/hwsolvers/os/topics/solvers/os/pbusht_bulk_r.htm

@@ -23,8 +23,6 @@ _MOST, _TOLERANCE = 50, 1e-10
 class NodeBearing:
     """One bearing under a rotor.
 
-    Attributes
-    ----------
     scene : static
     tilts : whether the node's own tilts are the ring's
     damping : added to all translations [N s/m]
@@ -165,18 +163,13 @@ def node_bearing(
 ) -> NodeBearing:
     """The bearing of a preset or a scene.
 
-    Parameters
-    ----------
     bearing : name of a preset, or Scene, path, TOML text, dict of tables
     preload : axial load [N]; None: the scene's own
     tilt : "locked", "free", "node" (the node's tilts are the ring's) or a stiffness [N m/rad]; None: the scene's supports.tilt
     axial : "force" or "displacement"; None: the scene's supports.axial
     damping : added to the translations [N s/m]
 
-    Raises
-    ------
-    SceneError
-        With every mistake that was found.
+    SceneError: With every mistake that was found.
     """
     is_preset = isinstance(bearing, str) and not any(sign in bearing for sign in "./\\\n=[")
     scene = as_scene({"bearing": {"preset": bearing}} if is_preset else bearing)

@@ -51,14 +51,9 @@ _LEFT_OUT = (
 def ross_content(table: Coefficients, generation: int, tag: str, node: int) -> Tables:
     """Keyword arguments of ``ross.BearingElement``.
 
-    Parameters
-    ----------
     generation : of ROSS, 2 or 3;  tag : the element's name;  node : of the rotor, where it stands
 
-    Raises
-    ------
-    RacewayError
-        A table over speed and frequency for ROSS 2, which has one axis.
+    RacewayError: A table over speed and frequency for ROSS 2, which has one axis.
     """
     axes = table.axes
     if generation < 3:
@@ -141,12 +136,8 @@ def ross_spline(axis: np.ndarray, values: np.ndarray) -> np.ndarray:
 def through_points(bearing: BearingElement) -> BearingElement:
     """Let a bearing element of ROSS pass through its points, as ROSS 3 does by itself; returns it.
 
-    Parameters
-    ----------
     bearing : ``ross.BearingElement`` with ``frequency`` (n,) and coefficients (n,), changed in place
 
-    Notes
-    -----
     Shape-preserving cubics (PCHIP) between the points, straight lines with the end's slope beyond them.
     """
     axis = getattr(bearing, "frequency", None)
@@ -177,14 +168,9 @@ class _Points:
 def ross(purpose: str, least: int = GENERATIONS[0]) -> ModuleType:
     """The package ``ross``, imported without what its own packages print while they are loaded.
 
-    Parameters
-    ----------
     purpose : what needs it, for the message;  least : generation that it needs
 
-    Raises
-    ------
-    RacewayError
-        ROSS is missing, cannot be imported, or is older.
+    RacewayError: ROSS is missing, cannot be imported, or is older.
     """
     try:
         with _silence():

@@ -10,8 +10,6 @@ Deflection w = y + j z and slope s = y' + j z' of a shaft that whirls with e^{j 
 G = 2 M_r for a round section (I_p = 2 I_t).  Force and moment are conjugate to w and s; a moment is M_z - j M_y, the slope
 theta_z - j theta_y.  The shape functions are those of the exact static solution, so that a beam loaded at its nodes is exact.
 
-References
-----------
 Przemieniecki, Theory of Matrix Structural Analysis (1968), sections 5.6 and 11.3; Friswell, Penny, Garvey, Lees, Dynamics of
 Rotating Machines (2010), sections 5.4.3 to 5.4.6.
 """
@@ -151,8 +149,6 @@ _ELEMENT = 0.25
 class Rotor:
     """Answers of the free shaft at one speed, linear in unbalance force, bearing force and bearing moment.
 
-    Attributes
-    ----------
     speed : W [rad/s]
     ring, sensor : answers (w, s) of the shaft in the bearing and (w) at the sensor: rows of (.., 3) for
         a unit of unbalance force [N] at the disc, force [N] and moment [N m] of the shaft on each bearing
@@ -179,8 +175,6 @@ class Rotor:
 def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
     """The rig's shaft with its disc.
 
-    Parameters
-    ----------
     shear : False leaves shear and rotary inertia out of the shaft
     finer : divides the length of the elements
     """
@@ -206,8 +200,6 @@ def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
 def rotor(rig: Rig, speed: float, model: Beam | None = None) -> Rotor:
     """The rotor at a speed [rad/s].
 
-    Parameters
-    ----------
     model : another model of the shaft
     """
     model = model or shaft(rig)
@@ -232,8 +224,6 @@ def whirling_load(speed: float, force: complex, moment: complex) -> HarmonicLoad
 class Bearing:
     """One bearing of the rig.
 
-    Attributes
-    ----------
     scene : with the axial load; free to tilt and without a rotor's mass, which are the shaft's
     compliance : (2, 2) of deflection and slope by force and moment, tangent at rest [m/N, 1/N; 1/N, rad/(N m)]
     mass : of the inner ring [kg]; 0 with an integrator that knows no inertia
@@ -253,8 +243,6 @@ class Bearing:
     def anew(self, replayed: Iterable[list[float]] = ()) -> "Bearing":
         """The same bearing without a motion to continue: its answers depend on none before.
 
-        Parameters
-        ----------
         replayed : ``answers`` of an earlier course, which the same loads get again without a run
         """
         return attrs.evolve(self, last=[], answers=[], replayed=list(replayed))
@@ -267,14 +255,9 @@ class Bearing:
     def answer(self, speed: float, force: complex, moment: complex) -> np.ndarray:
         """Deflection [m] and slope [rad] (2,) of the inner ring in forward whirl, with its inertia.
 
-        Parameters
-        ----------
         speed : [rad/s];  force, moment : of the shaft on the inner ring [N, N m]
 
-        Raises
-        ------
-        ConvergenceError
-            No steady motion.
+        ConvergenceError: No steady motion.
         """
         if len(self.answers) < len(self.replayed):
             self.answers.append(self.replayed[len(self.answers)])
@@ -326,8 +309,6 @@ _MOST, _HALVINGS = 40, 4
 class State:
     """State of the tested bearing in the rig.
 
-    Attributes
-    ----------
     speed : [rad/s];  force, moment : of the shaft on the inner ring [N, N m]
     deflection, slope : of the inner ring [m, rad];  sensor : deflection there [m]
     mass : of the inner ring [kg];  coupling : force by tilt at rest, of the bearing [N/rad]
@@ -391,16 +372,10 @@ def find_root(
 ) -> tuple[np.ndarray, int]:
     """A complex root (n,) of a function by Broyden's method, and the number of evaluations.
 
-    Parameters
-    ----------
     slope : (n, n) first guess of the derivative;  size : (n,) of the function's values, for the tolerance
 
-    Notes
-    -----
     Real and imaginary parts are unknowns of their own: a stiffness that depends on the amplitude is not analytic.
 
-    References
-    ----------
     Broyden, Math. Comp. 19 (1965) 577.
     """
     n = len(start)

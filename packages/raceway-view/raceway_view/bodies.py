@@ -25,8 +25,6 @@ _CORNER = 0.4
 class Surface:
     """Triangles.
 
-    Attributes
-    ----------
     points, normals : (n, 3) [mm], and unit vectors out of the body
     triangles : (m, 3) int
     values : (n,) what the points are coloured by; None for one colour
@@ -146,8 +144,6 @@ INNER, OUTER, _FACE = "#6f93b5", "#b9a679", "#dfe3e7"
 class Snapshot:
     """Balls and inner ring at one moment.
 
-    Attributes
-    ----------
     azimuth : (Z,) [rad]
     load : (2 Z,) inner races first [N]
     angle : (2 Z,) contact angles, nan where a contact carries nothing [rad]
@@ -167,8 +163,6 @@ class Snapshot:
 class Solid:
     """One surface and how it looks.
 
-    Attributes
-    ----------
     colour : of the surface; None where ``surface.values`` are loads [N] or pressures [MPa], as ``scale`` says
     load : of a ball [N], for its colour; None for others
     ball : number of the ball; None for others
@@ -187,8 +181,6 @@ class Solid:
 class BearingSolids:
     """The bodies of a result.
 
-    Attributes
-    ----------
     result : raceway.pipeline.result.Result
     assumed : dimensions that the scene does not give
     """

@@ -33,8 +33,6 @@ BALL_COLUMNS = [
 def view_page(bearing: BearingSolids, state: Snapshot, words: Tables, pictures: Sequence[tuple[bytes, str, str]]) -> Page:
     """The page.
 
-    Parameters
-    ----------
     words : title, subtitle, when (which state is shown), lead (a paragraph), notes (sentences), quantities (name, value, remark)
     pictures : (bytes of a PNG file, what is seen, caption)
     """

@@ -104,14 +104,9 @@ def rendered(
 ) -> bytes:
     """PNG of what ``draw(pyvista, plotter)`` puts into a scene.
 
-    Parameters
-    ----------
     otherwise : what a message adds about how to do without the picture
 
-    Raises
-    ------
-    RacewayError
-        pyvista or its system libraries are missing, or VTK cannot draw here.
+    RacewayError: pyvista or its system libraries are missing, or VTK cannot draw here.
     """
     pyvista = pyvista_of(otherwise)
 

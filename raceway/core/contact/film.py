@@ -17,8 +17,6 @@ bearings are in the first regime; a warning says where a contact is not.  The fi
 than bearings have: to 2 GPa of pressure measured films keep its power of the load (Gentle, Duckworth, Cameron), beyond k = 8 its
 bracket is 1 to 0.002, and at high speeds the heat of the inlet decides (``thermal_reduction``).
 
-References
-----------
 Hamrock, Dowson, J. Lubr. Technol. 99 (1977) 264 (piezoviscous-elastic), 100 (1978) 236 (isoviscous-elastic); Brewe, Hamrock,
 Taylor, J. Lubr. Technol. 101 (1979) 231 (isoviscous-rigid); Jeng, Hamrock, Brewe, ASLE Trans. 30 (1987) 452
 (piezoviscous-rigid); Hamrock, Dowson, Ball Bearing Lubrication (1981); Hamrock, Fundamentals of Fluid Film Lubrication (1994);
@@ -37,8 +35,6 @@ _BY_LOAD = np.array([-0.067, -0.22, 3.0 * 0.375 - 2.0, -2.0])
 class Film:
     """Films of contacts; arrays (n,).
 
-    Attributes
-    ----------
     central, minimum : thickness [m];  regime : index of ``REGIMES``
     by_load : d ln(central) / d ln(load)
     """
@@ -60,8 +56,6 @@ def film(
 ) -> Film:
     """Film of each contact by the regimes that hold; no film where nothing entrains.
 
-    Parameters
-    ----------
     viscous : (n,) eta u [N/m];  alpha : pressure-viscosity coefficient [1/Pa];  modulus : (n,) E' = 2 E* [Pa]
     along, across : (n,) effective radii along and across the running direction [m];  load : (n,) [N], above 0
     k : (n,) ellipticity, a/b
@@ -98,12 +92,8 @@ def film(
 def thermal_reduction(loading: np.ndarray) -> np.ndarray:
     """Film over the isothermal film of contacts that roll without sliding and heat the oil in their inlets.
 
-    Parameters
-    ----------
     loading : (n,) thermal loading L = eta beta u^2 / k, with beta = -d ln(eta) / dT [1/K] and k of the oil [W/m/K]
 
-    References
-    ----------
     Murch, Wilson, J. Lubr. Technol. 97 (1975) 212, as printed in Wilson, Sheu, J. Lubr. Technol. 105 (1983) 187, equation 9: a fit
     to Grubin's inlet, which does not depend on the load.
     """
@@ -115,13 +105,9 @@ def entraining_speed(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Mean speed of both surfaces against the contact (n,) [m/s], of the inner and of the outer race.
 
-    Parameters
-    ----------
     spin : speed of the inner ring [rad/s], the outer one stands
     inner, outer : (n,) contact angles [rad]
 
-    Notes
-    -----
     A ball that rolls at both races without slip: with g = D cos(a) / d_m of either race the cage turns at
     w_c = w (1 - g_i) / (2 - g_i + g_o), the surfaces of the inner contact run at (w - w_c) d_m/2 (1 - g_i), those of the outer at
     w_c d_m/2 (1 + g_o), which is the same speed; of one angle w d_m/4 (1 - g^2).

@@ -4,8 +4,6 @@ B = (f_i + f_o - 1) D is the distance of the groove centres, R_i = d_m/2 + (f_i 
 inner ones.  With g = D cos(alpha)/d_m the curvature sums are (4 - 1/f + 2g/(1-g))/D inside and (4 - 1/f - 2g/(1+g))/D
 outside.  An internal radial clearance P_d sets cos(alpha) = 1 - P_d/(2B).
 
-References
-----------
 Harris & Kotzalas, Essential Concepts of Bearing Technology, chapters 2 and 6; ISO/TS 16281.
 """
 
@@ -97,8 +95,6 @@ class BallBearing:
 class Growth:
     """By how much the grooves of a running, warm bearing differ from those before mounting [m].
 
-    Attributes
-    ----------
     common : (5,) of the scalars REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM
     by_ball : (Z, 5) of the rows' own columns of the same, beyond that
     """
@@ -119,8 +115,6 @@ _ITERATIONS = 120
 def axial_balance(*numbers: Number) -> tuple[Number, Number]:
     """(x [m], load of a ball [N]), columns (n,) of columns.
 
-    Parameters
-    ----------
     numbers : K [N/m^1.5], distance of the groove centres [m], sine and cosine of the free contact angle, balls, axial load [N]
     """
     if not any(map(is_column, numbers)):

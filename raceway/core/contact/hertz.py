@@ -5,8 +5,6 @@ difference is F = 1 - 2 / (chi^2 - 1) (K/E - 1).  a* = (2 chi^2 E / pi)^(1/3), b
 delta* = (2 K / pi) (pi / (2 chi^2 E))^(1/3) give, with S the curvature sum and E* the contact modulus,
 a = a* (3 Q / (2 S E*))^(1/3), b likewise, delta = delta* (3 Q / (2 S E*))^(2/3) S / 2.
 
-References
-----------
 Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter 6 (with E' written as E*).
 """
 
@@ -80,8 +78,6 @@ def regula_falsi(function: Callable[[float], float], low: float, high: float) ->
 class Ellipse:
     """Hertz contact of one pair of surfaces, load-independent part; of several pairs every number is an array (``every``).
 
-    Attributes
-    ----------
     curvature_sum : float [1/m]
     contact_modulus : float [Pa]
     a_star, b_star, delta_star : float, dimensionless
@@ -113,8 +109,6 @@ class Ellipse:
         displacement T ((1 - nu) K + nu D) / (2 pi G a) along the major axis, with K - D for D along the minor one, against
         (1 - nu) K / (2 pi G a) normal to it: K and D = (K - E) / e^2 at e^2 = 1 - (b/a)^2.  A circle has 2 (1 - nu) / (2 - nu).
 
-        References
-        ----------
         Mindlin, J. Appl. Mech. 16 (1949) 259; Vermeulen, Johnson, J. Appl. Mech. 31 (1964) 338.
         """
         m1 = (self.b_star / self.a_star) ** 2
@@ -192,12 +186,8 @@ def _ellipses(curvature_difference: np.ndarray) -> tuple[np.ndarray, np.ndarray,
 def normal_displacement(depth: np.ndarray, away: np.ndarray, young: float, poisson: float) -> np.ndarray:
     """Displacement (n, m) along a unit force on the surface, at a depth and a distance along the surface from it [m/N].
 
-    Parameters
-    ----------
     depth : (n,) float [m];  away : (m,) float [m];  young : [Pa]
 
-    References
-    ----------
     Johnson, Contact Mechanics (1985), equation 3.18b (Boussinesq): u = (1 + nu) / (2 pi E) (z^2 / r^3 + 2 (1 - nu) / r).
     """
     z = np.asarray(depth, dtype=float)[:, None]
@@ -215,19 +205,13 @@ def ball_compliance(
 ) -> tuple[float, float]:
     """(own, opposite) [m/N]: what a load adds to the approach of its own contact beyond Hertz, and to that of the opposite one.
 
-    Parameters
-    ----------
     radius : of the ball [m];  semi_major, semi_minor : of the contact ellipse [m]; own depends on them as a logarithm
 
-    Notes
-    -----
     A point force on a sphere is a series of Legendre polynomials, balanced by uniform acceleration, displacements measured
     from the mean of its masses. Its terms tend to c0 + c1 / n: c0 is the half-space with the chord as distance, c1 a
     logarithm; both are summed in closed form, the rest falls off as 1 / n^2. A mesh would have to resolve the ellipse to
     give the same number.
 
-    References
-    ----------
     Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., sections 172-173 (solutions of degree n in a sphere).
     """
     c0, c1, coefficients = _stress_series(poisson)
@@ -337,12 +321,8 @@ def axis_shear(depth: np.ndarray, semi_axes: tuple[float, float], peak_pressure:
 def largest_shear(semi_axes: tuple[float, float], peak_pressure: float, poisson: float) -> tuple[float, float]:
     """The largest shear stress on the axis [Pa] and its depth [m]: 0.31 p0 at 0.48 a of a circle, 0.30 p0 at 0.786 b of a line.
 
-    Parameters
-    ----------
     semi_axes : [m], in any order;  peak_pressure : [Pa], above 0
 
-    Notes
-    -----
     Of long ellipses with a Poisson's ratio below 0.2 it lies at the surface, where the stress along the line is small.
     """
     from scipy.optimize import minimize_scalar

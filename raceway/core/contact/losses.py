@@ -57,8 +57,6 @@ _GYROSCOPIC_LIMIT = 0.9
 class Contacts(NamedTuple):
     """Contacts of the inner race, then of the outer one.
 
-    Attributes
-    ----------
     load, half_tangent : (n, 2 Z) [N], tangent of half the contact angle, nan where open;  root : of the load to the third [N^(1/3)]
     ratio, pitch, inertia : (1 or n, 2 Z) of ball over pitch diameter, pitch diameter [m] and ball's inertia [kg m2]
     drag : (1 or n, 2 Z) of a ball over the square of its speed [kg/m]
@@ -139,8 +137,6 @@ def _ball_rates(at, film, speed, outer_race, balls):
     Drag is half the density of the mixture times C_D pi D^2 / 4 and the square of the ball's speed.  Density: that of oil and of air of
     1.2 kg/m3, by volume.  A sphere alone has a C_D of 0.44 at Reynolds numbers of 1e3 to 2e5; balls in a cage shelter each other.
 
-    References
-    ----------
     Jones, J. Basic Eng. 81 (1959) 1; Harris, J. Lubr. Technol. 93 (1971) 32.  Drag: Harris & Kotzalas, Essential Concepts of Bearing
     Technology, 5th ed., chapter 10 (with the speed to the power 1.95); Schiller, Naumann, VDI Z. 77 (1933) 318 (sphere).
     """
@@ -227,8 +223,6 @@ def _contact_losses(at, film, speed, balls):
     traction    Eyring: tau = tau_E asinh(eta(p) slip / (h tau_E)), eta(p) = eta exp(alpha p) (Barus), in the central film h of Hamrock and
                 Dowson, less what the inlet's heat takes, 1 / (1 + 0.254 L^0.62); at most ``traction_limit`` p.
 
-    References
-    ----------
     Inlet: Biboulet, Houpert, Proc. IMechE J 224 (2010) 777, equation 32, F_R as a moment over R_x as in the open program D-BRAIN; Aihara,
     J. Tribol. 109 (1987) 471 for the heat of the inlet, as coded there.  Hysteresis: Houpert, Tribol. Trans. 45 (2002) 345, as coded in open programs of ball screws (MER;
     one prints 3.519e-36, a misprint).  Traction: Johnson, Tevaarwerk, Proc. R. Soc. A 356 (1977) 215 (Eyring); Jacod, Venner, Lugt,
@@ -267,8 +261,6 @@ def _contact_losses(at, film, speed, balls):
 def ball_losses(contacts, films, speed, outer_race, row, by_contacts, by_balls):
     """Losses of n points, sums over the balls of each row.
 
-    Parameters
-    ----------
     films : (1 or n, 5) of the oil, as in ``_Film``;  outer_race : whether it controls the spin;  row : (Z,) of each ball
     by_contacts : (n, 3, 2, rows) zeros, torque on the shaft [N m] by source - rolling, elastic rolling, sliding - and race
     by_balls : (n, 2, rows) zeros, torque by the mixture [N m], and largest part of the traction limit that a gyroscopic moment takes

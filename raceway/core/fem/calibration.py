@@ -62,13 +62,9 @@ def calibrated(
 ) -> Calibration | None:
     """Of contacts on a ring, at the free contact angle and some way up the groove; None where points determine nothing.
 
-    Parameters
-    ----------
     body : the ring, its window is not used;  ellipses : Hertz's contacts of both races, whose points have the same distances
     load : typical one [N];  radius : of the ball [m];  balls : in a row;  angle : free contact angle [rad]
 
-    Notes
-    -----
     Depth matching (``structural``) compares fields on the normal through the centre of a contact. The compliance of a
     contact that is long against the wall below it is their mean over its length, which is less; nor is a groove a
     paraboloid. One ball on one race, solved at its surface points, has both effects: (approach - Hertz's) / load as a

@@ -64,8 +64,6 @@ def line_load_weights(places: np.ndarray, centre: float, half: float) -> np.ndar
 def half_space(depth: np.ndarray, half: float, young: float, poisson: float) -> np.ndarray:
     """Normal displacement below the middle of a unit line load on a half-space [m/N].
 
-    Parameters
-    ----------
     depth : (n,) float [m];  half : half length of the load [m];  young : [Pa]
     """
     x, w = density(41)
@@ -126,8 +124,6 @@ def ring_compliance(
 ) -> RingCompliance:
     """Structural compliance of a ring at contact angles all over its groove.
 
-    Parameters
-    ----------
     balls : Z, evenly spaced
     half : semi-major axis of a contact at a typical load [m]; the result hardly depends on it
     young, poisson : of the ring [Pa, -];  seat : see ``Revolution``
@@ -244,8 +240,6 @@ _WIDTH = 0.2
 class ElasticBodies:
     """Structural compliances of rings and balls, added to the approach of each contact.
 
-    Attributes
-    ----------
     inner, outer : of the rings, at the same angles
     ball_direct, ball_opposite : of a ball, by its load on the same and on the other race [m/N]
     calibrations : of contacts on the inner and the outer race at their surface points, where those are known
@@ -298,12 +292,8 @@ def elastic_system(rigid: System, bodies: ElasticBodies, angles: np.ndarray | No
 def elastic_scalars(rigid: np.ndarray, bodies: ElasticBodies, angles: np.ndarray | None = None) -> np.ndarray:
     """The scalars (..., k) of kernels of condensed bodies, from those of the rigid ones.
 
-    Parameters
-    ----------
     angles : (Z,) contact angles [rad] about which balls act on each other through the rings; None leaves that out
 
-    Notes
-    -----
     Tables over the angle become cubic splines without slope at their ends.  Where balls act on each other the table holds what
     a contact's direct compliance has beyond n.M n of its groove centre's motion.
     """

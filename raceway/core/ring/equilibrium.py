@@ -16,8 +16,6 @@ the arm R so that all unknowns are lengths.
     report      (2,) out: iterations, relative residual
     status      CONVERGED, NOT_CONVERGED, BALLS_FAILED, NOT_FINITE or RUN_AWAY (nothing holds the ring)
 
-References
-----------
 More, Sorensen: Computing a trust region step, SIAM J. Sci. Stat. Comput. 4 (1983).
 """
 

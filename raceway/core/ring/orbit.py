@@ -4,8 +4,6 @@ At N equidistant times of one period M D2 q + C D q + K q + f(q, D q) = load + f
 differentiation matrix; Newton on all N states at once.  It contains the inertia forces, so that a transient that
 starts on it starts without a jump: the contacts carry F0 + m w^2 r, not F0.
 
-References
-----------
 Trefethen, Spectral Methods in MATLAB (2000), chapter 3; Krack, Gross, Harmonic Balance for Nonlinear Vibration Problems
 (2019), chapter 2.
 """
@@ -95,8 +93,6 @@ def responses(system: System, states: States, tangents: bool = False) -> Respons
 class Orbit:
     """A periodic motion at N equidistant times.
 
-    Attributes
-    ----------
     period : float [s];  displacement, velocity, acceleration, force : (N, 5);  ball : (N, Z, 2)
     stiffness, damping : (N, 5, 5) derivatives of the contact forces by displacement and velocity;  residual : largest imbalance over the largest force;  iterations : int
     """

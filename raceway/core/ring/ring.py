@@ -19,8 +19,6 @@ from raceway.core.signatures import Constants
 class Increment:
     """A step of an integrator since the law's memory was committed.
 
-    Attributes
-    ----------
     dt : its length [s];  gain : derivative of the balls' rates by their places [1/s]
     memory : (2 Z, m); None for the ring's ``law_state``
     """
@@ -38,8 +36,6 @@ AT_ONCE = Increment()
 class Evaluation:
     """Contact forces at one state.
 
-    Attributes
-    ----------
     force : (5,) internal force of the contacts [N, N m]
     stiffness, damping : (5, 5) its derivatives by displacement and velocity
     gap, contact_force : (2 Z,) inner races first, then outer [m, N]
@@ -72,8 +68,6 @@ _INTERVAL = 1e-5
 class ChangingSpeed:
     """The speed w(t) of the inner ring, and the parts of a system that belong to a reference speed w_r.
 
-    Attributes
-    ----------
     phase : function of times (n,) [s] -> angle of the rotor (n,) [rad]
     reference : w_r that the system's constants were made for [rad/s]
     growth : of the inner raceway [m]: at w_r by speed, by its fit at standstill, and what w_r takes from that fit, down to none

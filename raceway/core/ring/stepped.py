@@ -13,15 +13,11 @@ _STIFFER = 1.02
 class SteppedBearing:
     """``SteppedSystem`` around a system with the interface of ``raceway.core.ring.ring.Ring``.
 
-    Parameters
-    ----------
     system : object
         Offers ``ball_count``, ``ball_columns``, ``rated_columns``, ``conservative``, ``arm``, ``mass``, ``damping``, ``stiffness`` (5, 5), ``free``, ``load``
         (5,), ``law_state``, ``outer_force(t)``, ``critical_time_step(tangent)``, ``at_speed(t)`` (itself, or with the constants
         of the speed at t), ``stopped(t)`` (a copy whose balls stand where they are at t), and ``evaluate(q, v, ball, ball_rate, t, step)``, an ``Evaluation``.
 
-    Notes
-    -----
     A ball's velocity follows the second-order backward difference (3 p1 - 4 p0 + p(-1)) / (2 dt): ``evaluate`` sees it as
     ball_gain * p1 + ball_rate.
     """

@@ -280,8 +280,6 @@ class System(Ring):
 class SteppedRing(Ring):
     """A ring whose contact forces are not compiled.
 
-    Attributes
-    ----------
     rigid : the same ring with rigid bodies and Hertz's contacts
     """
 

@@ -6,8 +6,6 @@ step needs it).  S is a rational function whose poles are the balls' rates of de
 function through values on the positive axis continues it to the imaginary one, to rounding.  With K and C condensed each, j w C is
 right for w -> 0 only.
 
-References
-----------
 Nakatsukasa, Sete, Trefethen, The AAA algorithm for rational approximation, SIAM J. Sci. Comput. 40 (2018), eq. 2.4 and section 3
 (weights from the null space of the Loewner matrix).
 """
@@ -28,13 +26,9 @@ def viscous_stiffness(
 ) -> np.ndarray:
     """S(j w) - S(0) (5, 5) from ``stiffness``, S at real rates [1/s].
 
-    Parameters
-    ----------
     damping : (5, 5) of slow motions, dS/dg at 0 [N s/m, ...]
     frequency : w [rad/s];  cage : speed of orbiting balls [rad/s]
 
-    Notes
-    -----
     Orbiting balls see a forward motion (z = -j y) at w less the cage speed, and a backward one at w plus it; axial motions at w.
     That is exact where balls are loaded alike; where they are not, parts that couple these motions are left out.
     """

@@ -106,14 +106,9 @@ def sections(problem: Problem, basis: Basis) -> Hashable:
 def elastic_bodies(problem: Problem, basis: Basis, coarser: float = 1.0) -> ElasticBodies:
     """Structural compliances of a scene's rings and balls; those of the last few scenes are cached.
 
-    Parameters
-    ----------
     coarser : factor on all sizes of elements
 
-    Raises
-    ------
-    SceneError
-        Bodies so soft that their contacts are as large as a ball.
+    SceneError: Bodies so soft that their contacts are as large as a ball.
     """
     key = (sections(problem, basis), coarser)
     with _LOCK:

@@ -180,8 +180,6 @@ _UNSURE = 0.0125
 class ElasticResultants(ElasticBodies):
     """A force for each ball and race.
 
-    Attributes
-    ----------
     compliances : of the bearing's own rings and balls, for the calibration of the law by contacts at surface points
     """
 

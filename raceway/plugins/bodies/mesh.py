@@ -190,11 +190,8 @@ def refined(problem: Problem) -> bool:
 def predicted_mesh(problem: Problem) -> Tables | None:
     """Predicted size of the scene's mesh.
 
-    Returns
-    -------
-    dict or None
-        ``bodies[{name, cells, bytes}]`` (what each mesh keeps), ``cells`` of all, ``bytes`` at the peak while they are
-        made; None without [mesh], and where the mesher cannot predict it before it reads or meshes.
+    ``bodies[{name, cells, bytes}]`` (what each mesh keeps), ``cells`` of all, ``bytes`` at the peak while they are
+    made; None without [mesh], and where the mesher cannot predict it before it reads or meshes.
 
     MeshError: Sizes that cannot work.
     PluginError: A mesher whose prediction is none, or that raises anything but a ``RacewayError``.

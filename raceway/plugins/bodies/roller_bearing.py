@@ -44,8 +44,6 @@ class Rollers(Protocol):
 class RollerBearing(BuiltBearing):
     """Rigid rings on cylindrical rollers.
 
-    Attributes
-    ----------
     length : of the line contacts [m];  radii : reduced radii R of the inner and outer contact [m]
     clearance : radial, on the diameter [m]
     """
@@ -109,8 +107,6 @@ def line_contact(
 
     Mean over the length: the profile raises the pressure in the middle.
 
-    References
-    ----------
     Johnson, Contact Mechanics (1985), section 4.2(c), with E* of both bodies.
     """
     half = np.sqrt(4.0 * load * radius / (pi * length * modulus))

@@ -58,11 +58,9 @@ def labelled_dataset(variables: Tables, coordinates: Any, attributes: Tables) ->
 def labelled(result: RunResult) -> Any:
     """All arrays of a run as an xarray.Dataset.
 
-    Returns
-    -------
-    xarray.Dataset : ``displacement``, ``stiffness``, ``ball_load`` and ``contact_angle`` of the equilibrium; the ``motion``,
-        ``force`` and ``contact_force`` of the turns that are used by ``time``, where motion was recorded; the identified numbers, and
-        ends of the intervals of K and kyy
+    ``displacement``, ``stiffness``, ``ball_load`` and ``contact_angle`` of the equilibrium; the ``motion``, ``force`` and
+    ``contact_force`` of the turns that are used by ``time``, where motion was recorded; the identified numbers, and ends of the
+    intervals of K and kyy.
 
     RacewayError: xarray is missing.
     """

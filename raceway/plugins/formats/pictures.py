@@ -75,21 +75,12 @@ def picture(result: RunResult, name: str) -> Figure:
 
 
 def plot(result: RunResult, what: str | None, ax: Axes | None) -> Axes | tuple[Axes, ...]:
-    """Draw one picture, or all that the result has data for.
+    """Draw one picture, or all that the result has data for; its axes, or a tuple of them.
 
-    Parameters
-    ----------
     what : "orbit", "spectrum" or "ball_loads"; None: all, side by side
     ax : axes of matplotlib for one picture, polar ones for the ball loads; None: new ones of pyplot
 
-    Returns
-    -------
-    Axes, or a tuple of them where ``what`` is None
-
-    Raises
-    ------
-    RacewayError
-        matplotlib is missing; no such picture, or no data for it; axes that it cannot be drawn on.
+    RacewayError: matplotlib is missing; no such picture, or no data for it; axes that it cannot be drawn on.
     """
     available = _available(result)
     if what is not None and what not in _DRAWINGS:

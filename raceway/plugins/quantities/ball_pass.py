@@ -5,8 +5,6 @@ BPFI = Z (1 + g) / 2 (balls over a place of the outer and of the inner race), BS
 axis).  Balls roll without slip and cos(a) is the mean over both races of all loaded balls of a row: at speed the races' angles differ.
 Forces know one cage speed, that of the free contact angle (``BallBearing.cage_speed``), stated beside FTF as ``ftf_in_forces``.
 
-References
-----------
 Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., chapter 10.
 """
 

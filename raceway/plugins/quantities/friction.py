@@ -247,8 +247,6 @@ def palmgren_torque(points: SolvedPoints) -> dict[str, float]:
     M0 = 1e-7 f0 (nu n)^(2/3) d_m^3, 160e-7 f0 d_m^3 where nu n < 2000; M1 = f1 F d_m; in N mm, mm2/s, r/min and mm.  F is the larger of
     the radial load and 0.9 F_a cot(angle) - 0.1 F_r at the nominal angle.  Of rows the sum; a radial load is shared.
 
-    References
-    ----------
     Palmgren, Ball and Roller Bearing Engineering, 3rd ed. (1959); Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed.,
     chapter 10.
     """

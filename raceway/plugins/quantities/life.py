@@ -7,8 +7,6 @@ the outer ring (``raceway.core.life``).  Whatever fails first ends the life: rin
 The static safety factor is the contact load that C0 permits over the largest one, on the race where it is less; where C0 is by the
 geometry, (4200 MPa / p_max)^3 of steel.
 
-References
-----------
 ISO/TS 16281:2008; ISO 281:2007; ISO 76:2006.
 """
 

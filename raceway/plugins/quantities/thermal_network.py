@@ -25,8 +25,6 @@ def thermal_network(
 ) -> Network:
     """The network of n points, temperatures in degrees Celsius.
 
-    Parameters
-    ----------
     traction, conductance : factors of the heat of friction and of conductances by correlations, numbers or columns (n,)
     inner_oil : of the conductance by correlation from the inner rings to the oil, instead of ``conductance``
     """

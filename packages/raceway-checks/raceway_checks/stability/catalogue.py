@@ -29,8 +29,6 @@ _AT_REST = "scenes:condensed_at_rest"
 class Case:
     """One place of the catalogue; small enough to be sent to another process.
 
-    Attributes
-    ----------
     name : what its rows are called by
     measure : ``module:function``, a module of this folder or a whole path, called as ``function(rows, bench, **arguments)``
     setting : law, integrator, what else was varied
@@ -87,14 +85,9 @@ def law_changes(name: str, registry: Registry) -> Tables:
 def catalogue(registry: Registry, tables: ReadTables | None = None) -> tuple[Case, ...]:
     """All cases; of a scene those that any scene can be put through.
 
-    Parameters
-    ----------
     tables : plain tables of a user's scene; the base scene and the full catalogue when None
 
-    Raises
-    ------
-    SceneError
-        A scene whose contacts are surface points.
+    SceneError: A scene whose contacts are surface points.
     """
     base = dict(tables) if tables is not None else BASE
     if base.get("contact", {}).get("discretisation") == "nodal":

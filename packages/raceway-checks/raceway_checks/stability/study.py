@@ -96,8 +96,6 @@ class Rows:
     ) -> _Row:  # fmt: skip
         """A number against its limit; an error of a function, or no number, fails.
 
-        Parameters
-        ----------
         why : the reason of the limit;  at : setting of this row alone
         """
         observation = drift = None
@@ -151,8 +149,6 @@ def short(error: BaseException) -> str:
 class Stability(Answer):
     """Rows of a catalogue.
 
-    Attributes
-    ----------
     cases : how many were run or taken from what is stored;  reused : how many of them were stored
     left_out : how many were not asked for
     seconds, cpu_s : wall time; processor time of all processes, compiling too
@@ -286,8 +282,6 @@ def measured(
 ) -> tuple[list[_Row], int]:  # fmt: skip
     """Rows of all cases, and how many cases were stored before; none can stop the others by hanging or dying.
 
-    Parameters
-    ----------
     processes : how many work at a time; 0 works in this process, without guard against a hang
     patience : time after which a case of another process is given up [s]
     """

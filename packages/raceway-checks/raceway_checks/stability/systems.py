@@ -20,8 +20,6 @@ _HALVINGS = 200
 class Still:
     """A bearing in its equilibrium, without an excitation.
 
-    Attributes
-    ----------
     limit : stable step of central differences for small motions [s]
     dissipative : whether the law loses energy by itself
     """

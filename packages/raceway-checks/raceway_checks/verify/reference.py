@@ -18,8 +18,6 @@ BASES = {"published": "published numbers", "closed form": "numbers of closed for
 class Verified:
     """One computed number beside that of a case, in the unit of the source.
 
-    Attributes
-    ----------
     error : |computed / reference - 1|;  tolerance : largest error allowed;  ok : whether it is met
     note : why there is no computed number (then computed and error are None, and ok is False), or ""
     """
@@ -40,8 +38,6 @@ class Verified:
 class Case:
     """One case, in the units of its source (they are part of each key: ``Dw_mm``).
 
-    Attributes
-    ----------
     basis : where ``outputs`` come from, a key of ``BASES``
     inputs, outputs : what the source states and what it gives
     rel_tol : relative agreement asked for, one number or one for each group of outputs

@@ -3,8 +3,6 @@
 Two equal spheres that meet count as one of half the mass at the relative speed.  With the approach d, m d'' + k d^1.5 = 0 gives
 d_max = (5 m v^2 / (4 k))^(2/5), F_max = k d_max^1.5 and t_c = (4/5) sqrt(pi) Gamma(2/5) / Gamma(9/10) d_max / v.
 
-References
-----------
 Chung, Ooi, Granular Matter 13 (2011), benchmark tests 1 and 3; Johnson, Contact Mechanics (1985), section 11.4.
 """
 

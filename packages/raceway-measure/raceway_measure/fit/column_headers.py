@@ -90,15 +90,10 @@ def columns_of(
 ) -> dict[str, tuple[int, float]]:
     """Index and factor to SI of each quantity among the columns.
 
-    Parameters
-    ----------
     mapping : header, with its unit or without, -> a header that is understood, perhaps with a factor ("x_um/8e-3": 8e-3 V per um),
         or "ignore";  where : prefix of messages;  needed : quantities that columns which are not understood may be, and their words
 
-    Raises
-    ------
-    ValueError
-        Headers that are not understood, with the meaning of every column and the ``--map`` that mends it.
+    ValueError: Headers that are not understood, with the meaning of every column and the ``--map`` that mends it.
     """
     mapping = _mapping(headers, mapping or {})
     # A map of a column that does not exist, to an unknown name, or to another unit than the header's.

@@ -8,8 +8,6 @@ Numbers of the scene that are not free are uncertain: a range of its [tolerances
 distribution from the number, the relative standard error of a preset's inferred numbers is in the catalogue.  Conformities of a preset
 are one number that was inferred: they deviate together.  To first order they move the estimate by -(J' J)^-1 J' dr.
 
-References
-----------
 Seber, Wild, Nonlinear Regression, Wiley 1989, chapters 2 and 3: linearised region, Student's distribution of its half-widths.
 """
 
@@ -47,8 +45,6 @@ _DOUBLINGS, _HALVINGS = 40, 50
 class Free:
     """One free number.
 
-    Attributes
-    ----------
     name : key of the scene, or a word of the model;  unit : of the number
     start : where the search begins;  size : of a change that counts, the number itself where it is not 0
     low, high : ends of the range that the scene's rules leave
@@ -143,14 +139,9 @@ class _Uncertain:
 def uncertain(scene: Scene, free: Collection[str], measured: Collection[str] = ()) -> tuple[_Uncertain, ...]:
     """Uncertain numbers of a scene, without free ones.
 
-    Parameters
-    ----------
     measured : keys that the data state, for which no catalogue counts
 
-    Raises
-    ------
-    SceneError
-        A tolerance that reaches what a rule refuses.
+    SceneError: A tolerance that reaches what a rule refuses.
     """
     table = dict(leaves(scene.source.get("tolerances", {})))
     ranges = {}
@@ -202,8 +193,6 @@ class Combination:
 class Estimate:
     """Numbers at the least sum of squares.
 
-    Attributes
-    ----------
     free, values : (p,);  covariance : (p, p), of the linearised model by noise, along what the data determine
     reach : half-width at 95 % over the standard error of noise;  half : (p,) half-widths, infinite where the data do not determine a number
     residuals, jacobian : (n,), (n, p), weighted, there
@@ -267,16 +256,10 @@ class Estimate:
 def estimate(problem: Residuals, free: Sequence[Free], stated: bool) -> Estimate:
     """The numbers at the least sum of squares.
 
-    Parameters
-    ----------
     stated : whether weights are those of stated errors; else the residuals determine them
 
-    Raises
-    ------
-    RacewayError
-        The model has no answer where the search begins.
-    ConvergenceError
-        The search does not converge.
+    RacewayError: The model has no answer where the search begins.
+    ConvergenceError: The search does not converge.
     """
     from scipy.optimize import least_squares
 
@@ -326,8 +309,6 @@ def judged(
 ) -> Estimate:  # fmt: skip
     """Intervals and undetermined combinations by residuals (n,) and derivatives (n, p) at the least sum of squares.
 
-    Parameters
-    ----------
     scores : (m, p) of independent groups of residuals that are not alike, derivatives times residuals: they determine the covariance
     """
     from scipy.stats import chi2, t

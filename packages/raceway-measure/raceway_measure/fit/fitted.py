@@ -24,8 +24,6 @@ _SMALL = 0.02
 class Series:
     """One measured quantity beside the fit.
 
-    Attributes
-    ----------
     name, unit : of the quantity;  over, over_unit : of the abscissa
     x, measured, fitted : (n,)
     error : (n,) standard errors, by the residuals where none were stated

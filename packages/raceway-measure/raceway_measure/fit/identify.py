@@ -399,17 +399,11 @@ def identify_recording(
 ) -> Identified:
     """K and C from a record.
 
-    Parameters
-    ----------
     tested : the scene's bearing under the record's axial load
     run_out : the run-out, or the 1x component of a slow roll that shows it
 
-    Raises
-    ------
-    RacewayError
-        A record that cannot be used.
-    ConvergenceError
-        Signals that no bearing of the scene's kind gives.
+    RacewayError: A record that cannot be used.
+    ConvergenceError: Signals that no bearing of the scene's kind gives.
     """
     rotation = rotation_of(recording)
     component = synchronous(rotation)

@@ -14,8 +14,6 @@ stationary.  A peak far above its neighbours is a tone; blocks of frequencies wh
 A force sampled at fs has at each frequency w its true spectrum at fs - w added.  What its upper half would add at half the rate, with
 signs of lobes and times of pulses, stands for that: spectra of pulses without jumps fall with 1 / w^2 beyond their first lobe.
 
-References
-----------
 Pintelon, Schoukens, System Identification: A Frequency Domain Approach, Wiley 2012, chapters 6 (leakage), 9 (errors in variables).
 MacKinnon, White, J. Econometrics 29 (1985) 305: covariance where variances differ.
 """
@@ -377,8 +375,6 @@ def _without_nuisance(answer: Estimate, count: int, problem: LinearResiduals) ->
 def fit_record(record: Signals | FrequencyResponse, names: list[str], mass: float | None) -> Fitted:
     """K, C and mass of a linear model from a record of force and displacement, or their frequency response.
 
-    Parameters
-    ----------
     mass : where it is not free [kg]; None: it is free, named or not
     """
     if mass is not None and mass < 0.0:

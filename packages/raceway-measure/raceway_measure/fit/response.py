@@ -1,7 +1,5 @@
 """Frequency response functions and time histories in universal files (UFF type 58), by pyuff.
 
-References
-----------
 Universal file datasets 58 (function at nodal degree of freedom) and 164 (units), SDRL, University of Cincinnati, as pyuff prints
 them: specific data types, units labels, units factors.
 """
@@ -59,8 +57,6 @@ _UNITS = {
 class FrequencyResponse:
     """Displacement over force at one point.
 
-    Attributes
-    ----------
     source : its file;  hz (n,) : frequencies [Hz], greater than 0;  receptance (n,) : complex [m/N]
     notes : sentences on units and form that a reader needs
     """
@@ -101,15 +97,10 @@ def is_response(data: object) -> bool:
 def response_of(path: str | Path, columns: Mapping[str, str] | None = None) -> FrequencyResponse | Signals:
     """The drive-point frequency response function of a universal file, as receptance in SI; without one, its time histories.
 
-    Parameters
-    ----------
     columns : number of a function, from 1, -> its form, with a factor to SI where the file states no unit or another one
         ("accelerance*9.80665"), that of a time history -> a column's name ("force_n*100"), or "ignore"
 
-    Raises
-    ------
-    SceneError
-        The function's fault, or what the file holds instead, and the remedy.
+    SceneError: The function's fault, or what the file holds instead, and the remedy.
     """
     import pyuff
 

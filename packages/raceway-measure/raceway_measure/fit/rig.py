@@ -65,8 +65,6 @@ def invert(shaft: Rotor, bearing: Bearing, sensor: complex) -> State:
 def with_tilt_of(shaft: Rotor, state: State, sensor: complex, stiffer: float = 1.0) -> State:
     """State of the bearing by the deflection at the sensor, with the moment over tilt of a state nearby; costs no run.
 
-    Parameters
-    ----------
     stiffer : factor on the moment over tilt; 0 for a bearing that resists no tilt
     """
     # Unknown F, M and slope: sensor, slope of the shaft, and M * slope_0 = stiffer * M_0 * slope.

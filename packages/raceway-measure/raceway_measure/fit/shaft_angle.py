@@ -40,8 +40,6 @@ _SECOND, _FIRST = 0.6745 * 6.0**0.5, 0.6745 * 2.0**0.5
 class Rotation:
     """A record of full turns with its angles.
 
-    Attributes
-    ----------
     recording : the samples from the first to the last pulse
     angle : (n,) from the first pulse [rad];  speed : (n,) [rad/s]
     turns : full turns;  marked : whether angle 0 is that of a pulse; else the record's beginning

@@ -89,16 +89,11 @@ def table_of(
 ) -> tuple[NumberTable, str]:
     """Numbers below their column headers, and their source: a CSV file's path, or ``name``.
 
-    Parameters
-    ----------
     data : path of a CSV file; mapping of headers to arrays (n,); ``pandas.DataFrame``; ``xarray.Dataset``, whose variables may
         have their units as attribute
     word : what a row is, for messages;  judge : of the headers, before the numbers are read; it raises ``ValueError``
 
-    Raises
-    ------
-    SceneError
-        The fault of a file or of arrays, with line or row and column.
+    SceneError: The fault of a file or of arrays, with line or row and column.
     """
     name, data = str(data) if isinstance(data, str | Path) else name, _in_memory(data)
     if isinstance(data, str | Path):
@@ -152,8 +147,6 @@ def _file_numbers(header: str, array: ArrayLike, word: str) -> np.ndarray:
 class Signals:
     """A record as it was read.
 
-    Attributes
-    ----------
     source : its file, or "signals"
     columns : quantity -> samples (n,): time [s], y, z [m], key (any unit), speed [rad/s], force, force_y, force_z [N], velocity [m/s],
         acceleration [m/s2]
@@ -180,15 +173,10 @@ def signals_of(
 ) -> Signals:
     """The record in data of any form that ``table_of`` takes.
 
-    Parameters
-    ----------
     columns : header -> name in ``column_headers.COLUMNS``, for headers that are not understood; "ignore" leaves a column out
     required : quantities that the record must have, and their words;  where : prefix of messages about arrays from a file
 
-    Raises
-    ------
-    SceneError
-        The fault, with line and column.
+    SceneError: The fault, with line and column.
     """
     path, notes = data if isinstance(data, str | Path) else "", ""
     data = _in_memory(data)

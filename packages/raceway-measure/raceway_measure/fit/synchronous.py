@@ -35,8 +35,6 @@ _ROUNDING = 1e-12
 class Synchronous:
     """The forward 1x component at the mean speed.
 
-    Attributes
-    ----------
     forward : complex amplitude of e^{j angle} [m];  error : its standard error [m], of real and imaginary part together
     backward : amplitude of the backward 1x component [m]
     speed : mean [rad/s];  lowest, highest : of the blocks [rad/s]
@@ -222,15 +220,10 @@ def response_of(
 ) -> _Response:
     """The response in a record's 1x component.
 
-    Parameters
-    ----------
     bearing : the scene's, for the response to the unbalance in a slow roll
     run_out : the run-out, or the 1x component of a slow roll
 
-    Raises
-    ------
-    RacewayError
-        An orbit that turns against the shaft, or a run-out without pulses.
+    RacewayError: An orbit that turns against the shaft, or a run-out without pulses.
     """
     if component.backward > abs(component.forward):
         raise RacewayError(

@@ -77,14 +77,9 @@ def measurements_in(
 ) -> _Measurements:
     """The measurements in a table.
 
-    Parameters
-    ----------
     columns : header -> the header that is meant, or "ignore"
 
-    Raises
-    ------
-    SceneError
-        The fault, with its column or row.
+    SceneError: The fault, with its column or row.
     """
     try:
         kinds = _column_kinds(table.header, scene, columns or {})

@@ -66,13 +66,9 @@ def response(rig: Rig, bearing: Bearing, state: State, signals: Signals) -> _Res
 def record(rig: Rig, answer: _Response, signals: Signals, seed: int, noise: float | None = None) -> Recording:
     """A record at the response's middle speed.
 
-    Parameters
-    ----------
     seed : of the noise
     noise : its rms [m], instead of the signal-to-noise ratio: a slow roll has the noise of the other records
 
-    Notes
-    -----
     The gap wanders by ``drift``: half of it straight, half as a slow half-wave, along y and z alike.
     """
     random = np.random.default_rng(seed)

@@ -30,15 +30,11 @@ if TYPE_CHECKING:
 class Cage:
     """Springs on mean motions: energy 1/2 k (L u)^2.
 
-    Attributes
-    ----------
     rows : (m, 3 nodes) sparse L: a mean displacement [m], or a mean turn [rad], of one ball
     stiffness : (m,) k [N/m, N m/rad]
     nodal : (3 nodes,) springs on single displacements that hold the balls' means about as well [N/m]
     fields, centres : (balls, rows, 6), (balls, 3) the rows of each ball as its masses times t + w x r
 
-    Notes
-    -----
     Where nothing pushes a ball along its orbit, the cage carries nothing, whatever its stiffness.  Friction pushes: see ``raceway.core.fem.elastic.bearing``.
     """
 
@@ -60,8 +56,6 @@ class Cage:
 class Frame:
     """A rigid frame of a few degrees of freedom, and the nodes that move with it.
 
-    Attributes
-    ----------
     nodes : (k,) int, of the body that the frame belongs to; tied to it, or on a bed between it and them
     centre : (3,) float, the reference point [m]
     motions : columns of ``rigid`` that are unknowns, 0 to 2 translations [m], 3 to 5 rotations [rad] about x, y, z
@@ -91,8 +85,6 @@ class Frame:
 class Body:
     """One body.
 
-    Attributes
-    ----------
     name : str
     operator : HexOperator
     held : (n, 3) bool, displacements that are zero
@@ -343,8 +335,6 @@ class Assembly:
     cage : Cage | None, set by ``hold``
     groups : of equal parts (``raceway.core.fem.elastic.interface``), set before forces are asked for
 
-    Notes
-    -----
     All displacements U (3 nodes,) follow from the unknowns y (size,) by U = G y: free nodes are unknowns, tied ones follow
     their frame, held ones are zero.  Forces on the unknowns are G^T F.
 
@@ -444,8 +434,6 @@ class Assembly:
     def internal(self, y: np.ndarray, u: np.ndarray, beside: Callable[[], None] | None = None) -> np.ndarray:
         """(size,) forces of bodies, beds, cage and frames at y, U = G y, without matrices of the bodies.
 
-        Parameters
-        ----------
         beside : work that is done at the same time
         """
         means = self.means
@@ -523,8 +511,6 @@ class Assembly:
     def loose_motions(self, contacts: list[tuple[int, int]]) -> list[str]:
         """Rigid motions that nothing holds: for each body in words; ``contacts`` are pairs of bodies that touch and so hold each other.
 
-        Notes
-        -----
         A body that touches another counts as held, but for the motions that no contact can hold: a ball's turning and,
         between two rings, its way along the orbit, unless the cage holds them.
         """

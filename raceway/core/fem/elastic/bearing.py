@@ -143,8 +143,6 @@ class ElasticSystem:
     ) -> np.ndarray:
         """(size,) increment by which the forces of the last ``internal`` change by ``right``.
 
-        Parameters
-        ----------
         tolerance : of conjugate gradients, by which without superelements the tangents of these forces are solved
         """
         if self.condensed is None:
@@ -283,10 +281,7 @@ class ElasticSystem:
     def solve_equilibrium(self, guess: np.ndarray, tolerance: float = TOLERANCE) -> StaticSolution:
         """Equilibrium under ``load``; places on the second surfaces are looked up anew until they stay.
 
-        Raises
-        ------
-        ConvergenceError
-            A rigid motion that nothing holds, by name, or no equilibrium: with the last good state and the residuals.
+        ConvergenceError: A rigid motion that nothing holds, by name, or no equilibrium: with the last good state and the residuals.
         """
         touching = []
         if self.contact is not None:

@@ -17,8 +17,6 @@ Material = tuple[float, float, float]
 class BearingData:
     """Data of a bearing beyond its meshes.
 
-    Attributes
-    ----------
     geometry : BallBearing;  azimuth : (Z,) of the balls [rad]
     rings, balls : young [Pa], poisson, density [kg/m3]
     reference_load : load of a ball [N], from which the points that may touch are chosen

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 class Near:
     """The columns of B that are not empty: a few of all nodes.
 
-    Attributes
-    ----------
     entries : (k,) int, of the nodal displacements, sorted
     move : (3 n, k) sparse, B at these entries
     """
@@ -148,8 +146,6 @@ STIFFER = 1.02
 class PlaceLaw:
     """Normal force of the places of a contact.
 
-    Attributes
-    ----------
     kernel, params, state_size : of signature ``LAW``, (n, k) its parameters, columns of its memory
     damping : normal damping, pressure per gap rate [N s/m3]; of resultants [N s/m]
     """
@@ -173,8 +169,6 @@ class Contact(ABC):
     ----------
     move : (3 n, 3 nodes) sparse B: displacement of the places against the second bodies
 
-    Notes
-    -----
     With y = X + B u, gap = g(y) of the exact surface and its normal n = grad g, the force on a place of the first body is
     A p n: forces on the nodes are f = -B^T F and the tangent is B^T D B with 3 x 3 blocks D.  No momentum is lost.
     """
@@ -247,8 +241,6 @@ class Contact(ABC):
     def evaluate(self, dt: float, u: np.ndarray, v: np.ndarray | None = None, share: float = 0.0) -> np.ndarray:
         """(3 nodes,) internal forces of the contacts [N] at displacements u (3 nodes,) [m] and velocities v.
 
-        Parameters
-        ----------
         share : places less deep than this share of their pair's deepest one count as open
             Of an overlap that nothing has deformed yet, half the depth bounds the contact area.
         """
@@ -354,8 +346,6 @@ _AT_REST, IN_MOTION = 0.02, 0.5
 class Pair:
     """Two surfaces that may touch.
 
-    Attributes
-    ----------
     name : str
     points : SurfacePoints of the first surface; node numbers are the assembly's
     surface : (8,) the second one, exact (``raceway.core.fem.elastic.contact``)
@@ -372,12 +362,8 @@ class Pair:
 class NodalContact(Contact):
     """Points of all pairs of an assembly.
 
-    Parameters
-    ----------
     pairs : list of Pair;  nodes : int, of the assembly;  law, friction : see ``Contact``
 
-    Notes
-    -----
     A point moves by y = X + u_1(X) - u_2(projection of y); the force on it goes to the nodes of its facet, and the opposite
     to those of the second one's, with the interpolation's weights.
     """
@@ -445,8 +431,6 @@ class NodalContact(Contact):
     def stable_step(self, mass: np.ndarray) -> float:
         """See ``Contact``.
 
-        Notes
-        -----
         By Gershgorin's theorem on M^-1 B^T D B: 2 / sqrt(largest row sum).
         """
         size = self._sizes()

@@ -1,7 +1,5 @@
 """Explicit steps of elastic bodies on a CUDA device: the functions of ``explicit_kernels`` in one kernel.
 
-Notes
------
 All threads take the parts of a step together and wait for each other between them.  Elements leave their forces, nodes gather them:
 every sum has one order, however many threads there are, and equal runs have equal bits.
 """
@@ -125,8 +123,6 @@ def _kernel(law):  # type: ignore[no-untyped-def]
 class DeviceSteps(ExplicitSteps):
     """The steps of ``ExplicitSteps`` on a CUDA device, of all points.
 
-    Notes
-    -----
     The state comes back where a row is recorded, and the CPU computes the row, with its energies: a microsecond an element on one
     core, and of a million elements a copy of some 100 MB.  A device that fails leaves the state of the last copy.
     """
@@ -152,10 +148,7 @@ class DeviceSteps(ExplicitSteps):
     def _advance(self, recorder: Recorder, first: int, count: int, numbers: np.ndarray, points: Any) -> None:
         """As on the CPU.
 
-        Raises
-        ------
-        ConvergenceError
-            A device that fails.
+        ConvergenceError: A device that fails.
         """
         start = perf_counter()
         try:

@@ -1,7 +1,5 @@
 """Explicit steps of one-point hexahedra in contact at surface points, compiled: no Python between two samples of a record.
 
-Notes
------
 The equations are those of ``raceway.core.time``.  Of the surface points only those are evaluated that may touch: a gap grows or shrinks by
 no more than the surfaces travel, and what they have travelled since all gaps were known is summed from their largest speed.
 """

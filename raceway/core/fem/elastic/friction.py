@@ -1,7 +1,5 @@
 """Coulomb friction at the points of a nodal contact, by return mapping with a committed history.
 
-Notes
------
 A point that shifts by s against its partner since the last commit carries the trial resistance
 t* = t0 + k s, both in the present tangent plane (t0 is what it carried at the commit).  It sticks, t = t*, while
 |t*| <= mu p; else it slips: t = mu p t* / |t*|.  With tau = t* / |t*| and n the normal along which the gap opens,
@@ -12,8 +10,6 @@ t* = t0 + k s, both in the present tangent plane (t0 is what it carried at the c
 The last term makes the tangent unsymmetric.  It is mu times the normal stiffness, so that leaving it out of the system
 costs a linear convergence with a factor of about mu: at mu = 0.03 three decimals in two iterations.
 
-References
-----------
 Simo, Laursen: An augmented Lagrangian treatment of contact problems involving friction, Computers & Structures 42 (1992);
 Wriggers: Computational Contact Mechanics (2006), section 5.2.
 """
@@ -109,8 +105,6 @@ class CoulombFriction:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Traction on the points (n, 3) [Pa] and minus its derivative by ``displacement`` (n, 3, 3) [N/m3].
 
-        Parameters
-        ----------
         displacement : (n, 3) displacement of the points against the other surface [m]
         normal : (n, 3);  pressure : (n,) [Pa];  d_gap : (n,) its derivative by the gap [N/m3]
         """

@@ -5,8 +5,6 @@ unknowns are eliminated, what is left goes to the parent.  What is left of the w
 nodes: a superelement, exact.  It is computed in double precision; the factors are kept in single precision, half as large and
 twice as quick: a solution has six digits, and each refinement with a residual in double precision adds six.
 
-References
-----------
 Duff, Reid: The multifrontal solution of indefinite sparse symmetric linear systems, ACM Transactions on Mathematical
 Software 9 (1983) 302;  Przemieniecki: Matrix structural analysis of substructures, AIAA Journal 1 (1963) 138.
 """
@@ -62,14 +60,10 @@ class _Dissection:
 def dissect(points: np.ndarray, cells: np.ndarray, interface: np.ndarray) -> _Dissection:
     """Halves of halves of a mesh, cut where few nodes lie.
 
-    Parameters
-    ----------
     points : (n, 3) float;  cells : (m, 8) int
     kept : (k,) int
         Nodes that are not eliminated.
 
-    References
-    ----------
     George, A.: Nested dissection of a regular finite element mesh, SIAM Journal on Numerical Analysis 10 (1973) 345.
     """
     numbers = np.asarray(cells, dtype=np.int64)
@@ -173,8 +167,6 @@ class _Front:
 class Fronts:
     """Factors of A with retained unknowns, of ``factored`` or of what it gave before.
 
-    Attributes
-    ----------
     fronts : list of Front
     kept : (k,) unknowns that were not eliminated;  schur : (k, k) what A is for them, None where it is not known any more
     """
@@ -247,18 +239,13 @@ def factored(
 ) -> Fronts:
     """Eliminate all unknowns but those retained.
 
-    Parameters
-    ----------
     dissection : _Dissection
     cells : (m, 8) uint32, in the order of the dissection
     matrices : function of a slice of these cells -> (k, 24, 24)
     free : (3 n,) bool, unknowns; the others are zero
     on_front : called after each front with the work done and that of all, in millions of operations; optional
 
-    Raises
-    ------
-    ConvergenceError
-        A singular matrix: a motion that neither the retained nodes nor supports hold.
+    ConvergenceError: A singular matrix: a motion that neither the retained nodes nor supports hold.
     """
     position = np.full(len(free), -1, dtype=np.int64)
     waiting: dict[int, tuple[np.ndarray, np.ndarray]] = {}

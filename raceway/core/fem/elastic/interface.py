@@ -265,8 +265,6 @@ class _RingFlexibility:
 class Motions:
     """Displacements, or forces, at what bodies are seen from.
 
-    Attributes
-    ----------
     nodes : (n, 3) the contacts' nodes of all bodies
     balls : (Z, e) mean motions of the balls
     frame : (m,) motions of the frame
@@ -294,8 +292,6 @@ class Interface:
     ----------
     numbers : (n,) of the contacts' nodes in the assembly;  place : (nodes,) the way back, -1 elsewhere
 
-    Notes
-    -----
     A ball answers for itself: its contacts' nodes, and the mean motions that its cage and the springs of its superelement
     act on. The rings answer for all contacts at once.
     """
@@ -389,8 +385,6 @@ _FURTHER = 1
 def interface_of(assembly: Assembly, contacts: np.ndarray, mass: float, on_progress: OnProgress | None = None) -> Interface:
     """Superelements of c K + d M.
 
-    Parameters
-    ----------
     assembly : inner ring, outer ring, balls, with its groups of equal parts
     contacts : (nodes,) bool, those that contacts may touch
     mass : d / c [1/s2]

@@ -103,16 +103,9 @@ _RANK = 1e-8
 
 
 def rigid_motions(points: np.ndarray, centre: np.ndarray | None = None) -> np.ndarray:
-    """Three translations and three rotations about the centre, all of size one.
+    """Three translations and three rotations about the centre (3 n, 6), these divided by the largest distance from it.
 
-    Parameters
-    ----------
-    points : (n, 3) float [m]
-    centre : (3,) float [m]; mean of the points when None
-
-    Returns
-    -------
-    (3 n, 6) float : rotations divided by the largest distance from the centre
+    points : (n, 3) float [m];  centre : (3,) float [m]; mean of the points when None
     """
     arm = points - (points.mean(axis=0) if centre is None else centre)
     largest = float(np.abs(arm).max()) if len(arm) else 1.0
@@ -149,8 +142,6 @@ _MULTIPLY = {np.float64: jit(_signature(float64))(_multiply), np.float32: jit(_s
 class BlockMatrix:
     """A square sparse matrix of 3 x 3 blocks.
 
-    Parameters
-    ----------
     matrix : (3 n, 3 n) scipy.sparse
     real : numpy.float64 or numpy.float32, of the blocks and of all vectors
     """
@@ -285,8 +276,6 @@ def solve_static(
 class StaticSolver:
     """Factors or multigrid of a body, for many loads.
 
-    Parameters
-    ----------
     stiffness : (3 n, 3 n) CSR, positive definite on the degrees of freedom that are not held [N/m]
     points : (n, 3) float [m];  held : (n, 3) bool
     """
@@ -334,15 +323,11 @@ class Preconditioner:
     Scaling with the root of the diagonal makes Chebyshev smoothing, which knows one spectral bound for all rows, work on
     graded meshes whose rows differ by orders of magnitude.
 
-    Parameters
-    ----------
     matrix : (3 n, 3 n) CSR, symmetric, positive definite on the free degrees of freedom
     points : (n, 3) float [m]
     held : (3 n,) bool
     fewest : nodes of an aggregate, see ``_aggregates``
 
-    References
-    ----------
     P. Vanek, J. Mandel, M. Brezina, Computing 56 (1996) 179-196: algebraic multigrid by smoothed aggregation.
     """
 

@@ -39,13 +39,9 @@ _TRIALS, _FLAT = 12, 0.9
 def searched(slope: float, at: Callable[[float], tuple[T, float, bool]]) -> T:
     """The state at the part of a step that the search ends with.
 
-    Parameters
-    ----------
     slope : of the potential at the step's start, downwards: step . unbalanced forces
     at : function of the part of the step -> the state there, its slope, and whether its forces balance well enough
 
-    Notes
-    -----
     -phi'(s) = step . rest falls from one side of the minimum to the other by as much as points that close are stiffer than the
     bodies.  The minimum is bracketed between the longest part s that falls short of it and the shortest one beyond: a part that is
     only cut, and never lengthened, stops short of where points close, in this iteration and in all that follow.
@@ -74,8 +70,6 @@ TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-2, 1e-1, 1e-4
 class StaticSolution:
     """An equilibrium.
 
-    Attributes
-    ----------
     y : (size,) unknowns
     iterations : of Newton;  linear_iterations : of all linear solves
     residuals : list of relative residuals, in order

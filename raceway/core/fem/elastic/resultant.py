@@ -27,8 +27,6 @@ _RINGS, _ANGLES, _AROUND = 6, 12, 8
 class Footprint:
     """A contact on one body.
 
-    Attributes
-    ----------
     nodes : (k,) int of the body;  weights : (k,) float, of the ellipse: a unit force, and the mean displacement under it
     share : (3, k, 3) float: displacement of the surface against which the other body moves
     """
@@ -58,13 +56,9 @@ def footprint(
 ) -> Footprint:
     """A contact at a pole of a body.
 
-    Parameters
-    ----------
     pole : (3,) [m];  normal : (3,) into the body;  along : (3,) of the first semi-axis, both of length 1
     centre : (3,) of the surface's curvature [m];  semi_axes : of the ellipse, along the groove and across [m]
 
-    Notes
-    -----
     The normal force is spread over an ellipse far wider than Hertz's, so that the local compliance of the mesh is smaller
     than the contact's and can be subtracted from it. The tangential displacement of the surface is that of its surroundings,
     moved as a rigid body to the centre of curvature: a ball that turns, and a groove that tilts about the centre of its own
@@ -108,8 +102,6 @@ _DEEPEST = 1e-3
 class Touch:
     """One ball on one race.
 
-    Attributes
-    ----------
     name : str
     ball, race : Footprint; node numbers are the assembly's
     centre : (3,) of the ball [m]
@@ -131,12 +123,8 @@ class Touch:
 class ResultantContact(Contact):
     """All balls on all races of an assembly.
 
-    Parameters
-    ----------
     touches : list of Touch;  nodes : int, of the assembly;  law : see ``Contact``
 
-    Notes
-    -----
     The centres of ball and groove approach by -g, the law's own approach by -h: h = g - m Q(h) with the compliance m of the
     meshes below the contact, which Q compresses already.  From dQ = (dg - m dQ) dQ/dh follows dQ/dg = Q' / (1 + m Q'),
     stiffer than the law's Q' = dQ/dh < 0.  A law that depends on the rate of the gap gets that of g.
@@ -284,8 +272,6 @@ def interpolation_at(points: np.ndarray, cells: np.ndarray, where: np.ndarray) -
 class LoadedBody:
     """One body, to be pressed in many places.
 
-    Parameters
-    ----------
     points, cells : of its mesh
     stiffness : (3 n, 3 n) CSR, with beds [N/m];  held : (n, 3) bool
     mass : (n,) of its nodes [kg], where nothing holds it: a force accelerates it, and displacements are those from the mean of
@@ -329,12 +315,8 @@ class LoadedBody:
     ) -> _Separation:
         """Compliances under a contact of ``footprint`` with the same pole, normal and semi-axes.
 
-        Parameters
-        ----------
         reach : thickness below the contact [m], as ``raceway.core.fem.structural.reach``
 
-        Notes
-        -----
         Under the force of a footprint the surface of the mesh deflects by s, which depends on the cells there. Below it, the
         mesh's displacement u(z) and that of a half-space h(z) differ by a nearly constant amount, the structural compliance
         c of the body (``raceway.core.fem.structural``). Of s, the part s - c is local: to be replaced by Hertz's.

@@ -23,8 +23,6 @@ _TOLERANCE, _LINEAR = 1e-7, 1e-4
 class ElasticRing(SteppedRing):
     """All nodes of rings and balls; the ring's reference point is what the rest of the program sees.
 
-    Attributes
-    ----------
     bodies : ElasticBearing
     held_by : axial load [N] whose displacement, where it acts alone on the mounted bearing, is held; None: the axial motion is free
     """

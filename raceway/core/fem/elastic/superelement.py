@@ -23,8 +23,6 @@ SAME = 1e-13
 class Copies:
     """A mesh and where its copies lie.
 
-    Attributes
-    ----------
     points : (n, 3) of the first copy [m];  cells : (m, 8)
     nodes : (copies, n) numbers of the copies' nodes in the mesh that they make up
     turns : (copies, 3, 3) from the first copy to each
@@ -62,16 +60,10 @@ def turn(angle: float) -> np.ndarray:
 def same_bodies(
     bodies: list[tuple[np.ndarray, np.ndarray]], azimuth: np.ndarray, starts: np.ndarray
 ) -> list[tuple[Copies, list[int]]]:
-    """Groups of equal bodies.
+    """Groups of equal bodies: the mesh of each group with its copies, and which bodies these are.
 
-    Parameters
-    ----------
     bodies : points (n, 3), cells (m, 8) of each
     azimuth : (bodies,) by which each is turned [rad];  starts : (bodies,) number of its first node
-
-    Returns
-    -------
-    groups : the mesh of each group with its copies, and which bodies these are
     """
     members: list[list[int]] = []
     for k, (points, cells) in enumerate(bodies):
@@ -98,8 +90,6 @@ def same_bodies(
 def sectors(points: np.ndarray, cells: np.ndarray, azimuth: np.ndarray, marks: np.ndarray, first: int) -> Copies | None:
     """A ring as equal sectors, one about each ball; None where it is none.
 
-    Parameters
-    ----------
     points, cells : of the ring
     azimuth : (Z,) of the balls [rad]
     marks : (n, k) bool, what must be the same at copies of a node: whether it is held, or belongs to a seat
@@ -180,8 +170,6 @@ class Part:
     ) -> Part:
         """Factored.
 
-        Parameters
-        ----------
         operator : HexOperator, whose material and formulation it has
         free : (n,) bool, nodes that are not held;  mass : d / c [1/s2]
         bed : (cells (b,), matrices (b, 24, 24)) that some cells stand on, or None
@@ -268,8 +256,6 @@ class Loose:
     def of(cls, part: Part, held: bool = False) -> Loose:
         """From a part just factored.
 
-        Parameters
-        ----------
         held : whether springs hold it: of the order of the contacts' nodes' own, with a mass too: that of a long step hardly holds a ball
         """
         schur, order = part.schur, part.places(part.contact)
@@ -357,8 +343,6 @@ _KEPT = types.Array(float64, 3, "C", readonly=True)
 def gather_turned(blocks, turns, copies, nodes, out):  # type: ignore[no-untyped-def]
     """Flexibility of nodes (m,) of copies (m,), each turned to where it lies: out (3 m, 3 m).
 
-    Parameters
-    ----------
     blocks : (c, 3 k, 3 k) of copy i, in its frame, under forces on copy 0;  turns : (c, 3, 3)
     """
     work = np.empty((3, 3))
@@ -397,21 +381,15 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
 class Closed:
     """Sectors that make up a ring, seen from the nodes of its contacts.
 
-    Parameters
-    ----------
     part : Part, a sector
     factors : (harmonics, p, p) complex64, lower triangles of what the cut plane's unknowns are in each harmonic
     across : (harmonics, p, 3 k) complex64, between the cut plane and the contacts' nodes
     blocks : (copies, 3 k, 3 k) displacements of sector c, in its frame, under forces on the first sector [m/N]
 
-    Notes
-    -----
     With l_c the displacements on the first cut plane of sector c, in the frame of that sector, its second cut plane has Q
     l_(c+1): Q turns by one sector. A discrete Fourier transform over the sectors makes this Q exp(i theta_h) l_h, and the
     harmonics h are independent.
 
-    References
-    ----------
     Thomas, D. L.: Dynamics of rotationally periodic structures, International Journal for Numerical Methods in Engineering
     14 (1979) 81.
     """

@@ -347,8 +347,6 @@ class CondensedSolver:
     ) -> np.ndarray:
         """(size,) increment by which forces change by ``right``: those of the contacts themselves, not their tangents.
 
-        Parameters
-        ----------
         u, v : (3 nodes,) displacements and velocities at which the last contact forces were evaluated
         dt : with this step [s]; 0 at rest, where places on the second surfaces are looked up meanwhile
         """

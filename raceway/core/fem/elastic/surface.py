@@ -74,8 +74,6 @@ def _walk(where, points, quads, neighbours, facet, weights, outside):  # type: i
 class Facets:
     """A surface made of quadrilaterals.
 
-    Parameters
-    ----------
     points : (n, 3) float [m];  quads : (k, 4) int, nodes of the facets, all in the same sense
     """
 
@@ -119,8 +117,6 @@ _CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 class SurfacePoints:
     """Points at which pressure acts.
 
-    Attributes
-    ----------
     place : (n, 3) float [m];  area : (n,) float [m2], weights of the integral over the surface
     nodes : (n, 4) int, of the facet;  weights : (n, 4) float, which interpolate the nodes' displacements
     """
@@ -137,13 +133,9 @@ class SurfacePoints:
 def surface_points(points: np.ndarray, quads: np.ndarray, centre: np.ndarray | None = None) -> SurfacePoints:
     """Gauss points of the facets ``quads`` (k, 4) nodes of ``points`` (n, 3) [m].
 
-    Parameters
-    ----------
     centre : (3,) float [m], optional
         Of the sphere on which the nodes lie: points and areas are then those of the exact sphere; else of the facets.
 
-    Notes
-    -----
     The bilinear facet x(s, t) is mapped to c + R (x - c) / |x - c|, whose area element is that of the sphere.
     """
     root = 1.0 / np.sqrt(3.0)

@@ -57,8 +57,6 @@ def gather(first, last, free, values, out):  # type: ignore[no-untyped-def]
 class Selection:
     """Some entries of nodal vectors, seen from the unknowns y = (frames, free nodes).
 
-    Attributes
-    ----------
     entries : (k,) int, of the nodal vectors, sorted
     free, unknown : those that are unknowns: numbers among the k, and in y
     tied, ride : those that follow a frame: numbers among the k, and (t, frame_size) their displacement with it
@@ -137,14 +135,9 @@ def _add_transposed(first, last, rows, begin, amounts, f):  # type: ignore[no-un
 class MeanMotions:
     """The rows of L in blocks.
 
-    Parameters
-    ----------
     rows : (m, n) sparse L; each row without gaps from its first column to its last, as means over a body are
 
-    Raises
-    ------
-    ValueError
-        A row with a gap.
+    ValueError: A row with a gap.
     """
 
     def __init__(self, rows: csr_matrix) -> None:

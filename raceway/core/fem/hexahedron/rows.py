@@ -72,9 +72,7 @@ RANGES, _FEWEST = 8, 4096
 def divide(cells: NDArray[np.uint32]) -> NDArray[np.int64]:
     """Ranges of whole blocks of elements.
 
-    Returns
-    -------
-    ranges : (at most RANGES, 5) first element, last element + 1, first node, last node + 1, first node's place among the parts
+    returns : (at most RANGES, 5) first element, last element + 1, first node, last node + 1, first node's place among the parts
 
     The elements are cut into contiguous ranges, always the same for one mesh.  Each range has its own forces for the nodes
     between its lowest and its highest; these parts are added in the order of the ranges, whoever computed them.  On a mesh
@@ -179,16 +177,10 @@ def _assemble_blocks(
 def assemble(
     cells: NDArray[np.uint32], count: int, components: int, element_matrices: Callable[[slice], Floats]
 ) -> csr_matrix:
-    """Sum of element matrices.
+    """Sum of element matrices, a csr_array (components count, components count).
 
-    Parameters
-    ----------
     cells : (m, 8);  count : of nodes;  components : unknowns a node: 3 for a stiffness, 1 for the mass of one direction
     element_matrices : of a slice of elements (k, 8 components, 8 components)
-
-    Returns
-    -------
-    matrix : scipy.sparse.csr_array (components count, components count)
     """
     from scipy.sparse import csr_array
 
@@ -209,12 +201,8 @@ _SAME = 1e-9
 def stable_step(matrices: Callable[[slice], Floats], masses: Floats) -> float:
     """2 / (largest angular frequency of any single element with its share of the lumped mass) [s].
 
-    Parameters
-    ----------
     matrices : stiffness of a slice of elements (k, 24, 24) [N/m];  masses : (m, 8) shares of the nodes' lumped masses [kg]
 
-    Notes
-    -----
     No mode of the assembled mesh is faster than the fastest element (Fried 1972; Hughes, The Finite Element Method, 1987,
     section 9.1), so the step is safe.  Elements are visited in the order of a bound, the largest row sum of the scaled
     stiffness, until no bound left exceeds the largest eigenvalue found: the result is that of all elements.  Where many
@@ -287,8 +275,6 @@ def add_rows(first, last, nodes, starts, neighbours, data, u, force):  # type: i
 class BlockRows:
     """A stiffness matrix.
 
-    Attributes
-    ----------
     starts : (n + 1,);  neighbours : (k,) nodes that share an element with node i, sorted: neighbours[starts[i] : starts[i + 1]]
     data : (9 k,) the three rows of a node after each other [N/m]
     """

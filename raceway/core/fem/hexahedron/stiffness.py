@@ -235,13 +235,9 @@ def _block(w, base, lame, shear, hourglass):
 def range_force(r, mesh, u, work, f):
     """Forces of one range of elements, into that range's part of ``f``.
 
-    Parameters
-    ----------
     r : number of the range;  u : (3 n,) displacements, node by node [m]
     work : (ranges WORK,) scratch;  f : (3 places,) the part of this range is overwritten by its forces [N]
 
-    Notes
-    -----
     With B_jI the integral of dN_I/dx_j over the element, V its volume and G = u B^T / V the mean displacement gradient,
 
         f_iI = sum_j sigma_ij(G) B_jI + kappa / 8 sum_a (gamma_a . u_i) gamma_aI,
@@ -254,8 +250,6 @@ def range_force(r, mesh, u, work, f):
     Elements go through in blocks of 16, transposed into a structure of arrays, because LLVM then vectorises the loop over
     the block.  Blocks of 8 it unrolls instead, at three times the time.
 
-    References
-    ----------
     Flanagan, Belytschko, A uniform strain hexahedron and quadrilateral with orthogonal hourglass control, Int. J. Numer.
     Meth. Engng 17 (1981) 679-706.
     """
@@ -304,8 +298,6 @@ def corner_modes(cells, e, a):
 def range_hourglass_energy(r, mesh, u):
     """Energy [J] that the hourglass control of one range of elements holds; arguments as of ``range_force``.
 
-    Notes
-    -----
     kappa / 16 sum_ai (gamma_a . u_i)^2 an element: half of what its forces do on u.
     """
     ranges, cells, x, moduli = mesh
@@ -362,8 +354,6 @@ def _relax_modes(points, moduli, element, square, stress, values):
 def range_point_force(kind, r, mesh, u, f):
     """Forces of one range of elements; see ``raceway.core.fem.hexahedron.stiffness.range_force``.
 
-    Notes
-    -----
     These are the elements for accuracy on coarse meshes; the loops are plain, one element after the other.
     """
     ranges, cells, x, moduli = mesh

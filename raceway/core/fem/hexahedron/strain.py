@@ -8,8 +8,6 @@
 
 Strains are in Voigt's order xx yy zz xy yz zx, shears being angles.
 
-References
-----------
 Taylor, Beresford, Wilson, A non-conforming element for stress analysis, Int. J. Numer. Meth. Engng 10 (1976) 1211-1219.
 Simo, Rifai, A class of mixed assumed strain methods, Int. J. Numer. Meth. Engng 29 (1990) 1595-1638.
 Hughes, Generalization of selective integration procedures, Int. J. Numer. Meth. Engng 15 (1980) 1413-1418.
@@ -178,16 +176,9 @@ def nodal(m):
 def gradient_modes(y, z):
     """Modes 1 to 6 of the exact mean gradient along x; call with (z, x) for y and with (x, y) for z.
 
-    Parameters
-    ----------
     y, z : modes 1 to 7 of the two other coordinates [m]
+    returns : b (6,) [m2]; 64 times the integral of the gradient of shape function I along x is sum_k b_k h_k(I)
 
-    Returns
-    -------
-    b : (6,) [m2]: 64 times the integral of the gradient of shape function I along x is sum_k b_k h_k(I)
-
-    Notes
-    -----
     The integral over the element of dN_I/dx is that of the determinant |d(N_I, y, z) / d(xi, eta, zeta)| over the
     cube, a polynomial; <xi^2> = 1/3 is all that is left of it.  Mode 7 vanishes, and so do all products with y7 and z7.
     """

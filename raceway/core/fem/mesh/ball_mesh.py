@@ -17,14 +17,10 @@ def ball_mesh(
 ) -> HexMesh:
     """A ball about the origin.
 
-    Parameters
-    ----------
     u, v, w : (n,) points from -1 to 1: lines of the cube, at equal angles where equally spaced
     layers : (n,) points 0 to 1 from the inner cube to the surface
     patch : semi-axes (along u, along v) [m] of the facets that belong to "inner_patch" (-w) and "outer_patch" (+w)
 
-    Notes
-    -----
     Sets of facets and of nodes: surface, inner_patch, outer_patch; set of nodes: centre (the node nearest to it).
     """
     nu, nv, nw = len(u), len(v), len(w)

@@ -1,7 +1,5 @@
 """Quality of cells (scaled Jacobian, aspect, skew), and refusal of those that cannot be computed with.
 
-References
-----------
 Knupp, Ernst, Thompson, Stimpson, Pebay: The Verdict geometric quality library, SAND2007-1751 (2007): scaled Jacobian,
 edge ratio, skew of hexahedra.
 """

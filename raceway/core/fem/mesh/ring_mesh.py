@@ -20,8 +20,6 @@ from raceway.storage.tables import Tables
 class RingShape:
     """Profile of a ring, lengths in metres.
 
-    Attributes
-    ----------
     inner : whether it is the inner ring (groove on its outside)
     seat, land : radius of bore or outer cylinder, and of the shoulders
     width : between the side faces at -width/2 and width/2
@@ -175,16 +173,12 @@ def ring_mesh(
 ) -> HexMesh:
     """The swept mesh.
 
-    Parameters
-    ----------
     left, right : (n,) points 0 to 1 on the lands, left from the side face to the groove, right from the groove
     arc : (n,) angles of points on the groove [rad], from edge to edge
     layers : (n,) points 0 to 1 from the raceway to the seat
     azimuths : (n,) of the nodes around the ring, ascending within one turn [rad]
     band : angles between which facets belong to the set "band", the refined zone of the raceway
 
-    Notes
-    -----
     Sets of facets and of nodes: raceway, band, land, seat, face_negative, face_positive.
     """
     divisions = len(azimuths)

@@ -23,8 +23,6 @@ _DEGREE = 8
 class RingSection:
     """Places and areas to integrate over.
 
-    Attributes
-    ----------
     x, r : (n,) place along the axis, 0 in the balls' plane, and radius [m];  area : (n,) [m2]
     contact : x and radius of the groove at the free contact angle [m]
     """

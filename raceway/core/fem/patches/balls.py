@@ -45,8 +45,6 @@ class _Turned:
 class Gyroscopic:
     """Moments of the balls.
 
-    Attributes
-    ----------
     scale : J times the speeds of ring and cage [N m];  ratio : D / d_m;  shares : of inner and outer race, 2 in all
     diameter, groove : of the ball, and the inner groove's radius [m];  traction : largest coefficient of both contacts; 0: none
 
@@ -113,8 +111,6 @@ _IDLE = 1e-12
 class AppliedLoads:
     """Loads on balls and contacts beside those of their places.
 
-    Attributes
-    ----------
     turn : (Z,) of the inner ring's section at every ball [rad]
     slip : of the points of all contacts, each (rows * columns,) [m]; empty: no friction
     push, spring : (Z, 2) [N] and [N/m]: force push - spring * place on the balls, their inertia
@@ -136,8 +132,6 @@ class AppliedLoads:
 class LinearisedBalls:
     """The balls linearised at one state.
 
-    Attributes
-    ----------
     contact_states : (2 Z) answers of the contacts
     force : (2 Z, 2) forces on the balls that are carried on [N];  excess : (2 Z, 2) what the contacts give beyond them
     contact_stiffness : (4 Z, 4 Z) S [N/m];  ball_stiffness : (2 Z, 2 Z) the balls' own stiffness H = P^T S P
@@ -166,8 +160,6 @@ class LinearisedBalls:
 class Balls:
     """Balls of all rows with their contacts.
 
-    Parameters
-    ----------
     contacts : 2 Z contacts, inner races first
     coupling : (4 Z, 4 Z) W [m/N], symmetric
     loads : (Z, 2) forces on the balls themselves, axial and radial [N]: centrifugal
@@ -193,8 +185,6 @@ class Balls:
     ) -> LinearisedBalls:
         """Press all contacts.
 
-        Parameters
-        ----------
         centre, position : (Z, 2) e and p [m];  force : (2 Z, 2) F [N];  rate : (2 Z, 2) velocities of D [m/s]
         """
         applied = applied or AppliedLoads(np.zeros(self.count))

@@ -10,8 +10,6 @@ which is the return mapping of all points at once: the least of q.C q / 2 - q.(p
 Points without pressure follow the ball.  Tangential displacements by pressures are left out: between bodies of one material
 both surfaces move alike (Goodman 1962).  So is traction along the rolling direction.
 
-References
-----------
 Mindlin, Compliance of elastic bodies in contact, J. Appl. Mech. 16 (1949); Johnson, Contact Mechanics (1985), 5.4, 7.2.
 """
 
@@ -32,8 +30,6 @@ _NONE = np.zeros(0, dtype=np.int64)
 class Traction:
     """A contact's answer along the groove.
 
-    Attributes
-    ----------
     force : resultant of the tractions [N], positive against a positive place
     by_place : its derivative by the place [N/m];  by_load : (n,) by the points' pressure forces
     slip : (rows * columns,) of every point [m];  lost : energy that slipping took since the slips given [J]
@@ -51,8 +47,6 @@ class Traction:
 class Friction:
     """Stick and slip of one contact, with the memory that makes the next solution cheap.
 
-    Parameters
-    ----------
     patch : with the compliances along the groove (``_Race.shear``, ``_Ball.shear``)
     coefficient : of friction
     """
@@ -69,14 +63,9 @@ class Friction:
     def pull(self, nodes: np.ndarray, load: np.ndarray, position: float, slip: np.ndarray) -> Traction:
         """Tractions at a place [m] of the contact along the groove.
 
-        Parameters
-        ----------
         nodes, load : (n,) points that carry and their forces [N];  slip : (rows * columns,) committed last [m]
 
-        Raises
-        ------
-        ConvergenceError
-            The sets repeat themselves.
+        ConvergenceError: The sets repeat themselves.
         """
         after = np.full(len(slip), position)
         if not len(nodes):

@@ -49,8 +49,6 @@ def sphere_in_torus(axial, radial, points, gap):
 def derivatives(axial, radial, points, nodes, load, slope, curvature):
     """slope (n, 2): derivatives of chosen points' gaps by D; curvature (3,): aa, ar, rr of sum(load * second derivatives).
 
-    Parameters
-    ----------
     nodes : (n,) numbers k * columns + i;  load : (n,)
     """
     geometry, meridian, parallel = points
@@ -79,8 +77,6 @@ def derivatives(axial, radial, points, nodes, load, slope, curvature):
 def between(ball, race, to, of, out):
     """out (len(to), len(of)) [m/N]: displacement of points ``to`` by forces on points ``of``.
 
-    Parameters
-    ----------
     ball : (rows, n, n) by distance in rows;  race : (n, m, m) by distance in columns
     to, of : numbers k * n + i
     """

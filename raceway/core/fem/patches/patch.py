@@ -23,8 +23,6 @@ from raceway.errors import MeshError
 class Spacing:
     """Distances of the surface points.
 
-    Attributes
-    ----------
     along, across : along the groove and along the rolling direction [m]
     ball_divisions : points around the ball's equator
     columns : points on each side of the middle one, along the rolling direction
@@ -44,16 +42,11 @@ class Spacing:
     def of(cls, semi_axes: tuple[float, float], nodes: float, radius: float, widest: float) -> "Spacing":
         """Spacing of ``nodes`` points per semi-axis.
 
-        Parameters
-        ----------
         semi_axes : major and minor one at the load that counts [m]
         radius : of the ball [m]
         widest : largest minor semi-axis that has to fit, with margin [m]
 
-        Raises
-        ------
-        MeshError
-            An ellipse so long that no two points lie around the ball's equator: it is no contact of this ball.
+        MeshError: An ellipse so long that no two points lie around the ball's equator: it is no contact of this ball.
         """
         divisions = round(2.0 * pi * radius / (semi_axes[0] / nodes))
         if divisions < 2:
@@ -133,8 +126,6 @@ class _Ball:
 class Patch:
     """One ball on one race: both grids together.
 
-    Attributes
-    ----------
     area : of a surface point [m2];  phi : (m,) angle of every row on the ball [rad];  points : for kernels
     """
 
@@ -170,8 +161,6 @@ class Patch:
 class Solid:
     """Material and element formulation of a body.
 
-    Attributes
-    ----------
     young, poisson, formulation : [Pa, -], see ``raceway.core.fem.revolution.body``; between points of a contact "full" converges
         faster than "incompatible" (at 4 points along a semi-axis the peak pressure is 0.4 % low, not 0.7 %)
     bulk : size of elements far from the contacts [m]
@@ -187,8 +176,6 @@ class Solid:
 class RingBody:
     """One ring of a row.
 
-    Attributes
-    ----------
     shape, solid
     seat : "clamped" or the stiffness of a bed [N/m3]
     window : (2,) contact angles between which it has surface points [rad]

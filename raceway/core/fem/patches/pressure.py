@@ -117,8 +117,6 @@ _TOLERANCE = 1e-11
 class PointLaw:
     """A law without memory at the points of one contact.
 
-    Attributes
-    ----------
     kernel : compiled ``LAW``;  params : (k,) of this contact;  area : of a point [m2]
     """
 
@@ -249,8 +247,6 @@ def _active_set(gap: np.ndarray, start: np.ndarray, factor: ComplianceFactor) ->
 class BeyondPatch(RacewayError):
     """Points in contact at the end of a patch that could be larger: what it must reach.
 
-    Attributes
-    ----------
     sense : of the race, -1 inner, 1 outer;  angle : contact angle of the resultant [rad];  load : of the contact [N]
     across : whether it left along the rolling direction
     """
@@ -268,8 +264,6 @@ class BeyondPatch(RacewayError):
 class ContactState:
     """A contact's answer.
 
-    Attributes
-    ----------
     force : (2,) on the ball, axial and radial [N];  stiffness : (2, 2) minus its derivative by the ball's place [N/m]
     viscous : (2, 2) minus its derivative by the ball's velocity [N s/m]
     nodes, load : (n,) points that carry and their forces [N], number k * columns + i
@@ -314,8 +308,6 @@ _NONE = np.zeros(0, dtype=np.int64)
 class Contact:
     """One ball-race pair with the memory that makes the next solution cheap: points in contact and their factor.
 
-    Parameters
-    ----------
     patch : Patch
     law : what gives the pressure at a point; None for no penetration
     friction : coefficient of Coulomb friction; the patch has compliances along the groove where it is not 0
@@ -445,8 +437,6 @@ class Contact:
 class PressureField:
     """Pressures on a ball's surface.
 
-    Attributes
-    ----------
     along : (m,) place along the groove, from the contact angle of zero [m];  across : (n,) along the rolling direction [m]
     angle : (m,) of the rows on the ball, as contact angles [rad]
     pressure : (m, n) [Pa], zero where nothing carries
@@ -478,8 +468,6 @@ Window = tuple[float, float]
 class Reach:
     """Extent that patches have to cover.
 
-    Attributes
-    ----------
     inner, outer : lowest and highest angle of points in contact [rad]
     widest : largest minor semi-axis, with room [m]
     mean_load, largest_load : of the balls that carry, on the inner race, and of all contacts [N]
@@ -527,8 +515,6 @@ def reach_of(
 ) -> Reach:
     """Reach of known contacts.
 
-    Parameters
-    ----------
     inner, outer : angles (n,) [rad] and loads (n,) [N]
     radius : of the ball [m];  free : contact angle where nothing carries [rad];  room : more load than known, as a factor
     """

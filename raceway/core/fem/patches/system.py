@@ -150,8 +150,6 @@ class _Row:
 class Pool:
     """Patches of both races and solvers for any set of balls on them.
 
-    Parameters
-    ----------
     patches : of the inner and the outer race
     laws : at the points of the inner and the outer race; None for no penetration
     wider : called with a ``BeyondPatch``, returns patches that reach further; None: contact that leaves is an error
@@ -245,8 +243,6 @@ _BALLS = 1e-11
 class PatchSystem(SteppedRing):
     """M q'' + C q' + K q + f(q, q') = load + force(t), f from pressures at surface points of finite elements.
 
-    Attributes
-    ----------
     pool : patches and solvers, shared by all copies of this system
     ball_mass : of one ball [kg]; 0 leaves out its inertia in steps of time
 

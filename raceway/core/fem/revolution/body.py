@@ -153,11 +153,7 @@ def solved_harmonics(divisions: int, harmonics: str) -> np.ndarray:
 
 
 def offset_weights(divisions: int, harmonics: np.ndarray, offsets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of the solved harmonics at offsets in whole sectors.
-
-    Returns
-    -------
-    even, odd : (offsets, s) of the cosine and of the sine part
+    """Weights of the solved harmonics at offsets in whole sectors, (offsets, s) of the cosine and of the sine part.
 
     A unit force at azimuth 0 is the sum of all harmonics with weight 1/N, N the number of sectors. The compliance C(n) is a
     smooth function of n, so it is solved at few n; (1 + n) C as a function of log(1 + n/8) is interpolated by a spline of
@@ -187,19 +183,11 @@ def offset_weights(divisions: int, harmonics: np.ndarray, offsets: np.ndarray) -
 
 
 def groove_compliance(angles: np.ndarray, response: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """M by least squares over all pairs of angles.
+    """M (k, 3) by least squares over all pairs of angles: axial by axial, axial by radial and radial by radial force [m/N].
 
-    Parameters
-    ----------
     angles : (n,) contact angles [rad];  weight : (n,) of each
     response : (n, n, k) displacement along the normal at one angle by a unit force along that at another [m/N]
 
-    Returns
-    -------
-    compliance : (k, 3) axial by axial, axial by radial and radial by radial force [m/N]
-
-    Notes
-    -----
     A groove whose section turns about its centre is the same groove, and the force of a contact goes through that centre: a
     contact at the angle b feels n(b).M n(a) of a unit force at the angle a, n = (sin, cos). Displacements of a surface point
     hold that turn and are not what the contact feels.
@@ -240,8 +228,6 @@ _CONDENSED = 4
 class Revolution:
     """A profile swept in equal steps, with its material and seat.
 
-    Attributes
-    ----------
     divisions : elements around the body, N; at least 3
     young, poisson, density : [Pa, -, kg/m3]
     formulation : "incompatible", "full" or "one_point", see ``raceway.core.fem.hexahedron.strain``;  hourglass : of "one_point"
@@ -314,19 +300,15 @@ class Revolution:
     def compliance(
         self, load_dofs: np.ndarray, observed_dofs: np.ndarray, offsets: np.ndarray | None = None, harmonics: str = "sampled"
     ) -> np.ndarray:
-        """Displacements under unit forces, at the offsets that are asked for.
+        """Displacements (o, observed, loads) under unit forces [m/N], at the offsets that are asked for.
 
-        Parameters
-        ----------
         load_dofs, observed_dofs : (k, 2) node of the profile and component, 0 r, 1 theta, 2 x, see ``dofs``; forces and displacements
             have the directions r and theta of their own meridian
         offsets : (o,) sectors from the loaded meridian to the observed one, towards +theta; None: 0 to N - 1
         harmonics : "sampled" (error below 1e-8 of the largest compliance of rings that are finest around them, 1e-5 where they are
             coarsest around them) or "all"
 
-        Returns
-        -------
-        compliance : (o, observed, loads) [m/N]; reversing the offset changes the sign where one of both components is theta
+        Reversing the offset changes the sign where one of both components is theta
         """
         load, outputs = _flat(load_dofs), _flat(observed_dofs)
         steps = np.arange(self.divisions) if offsets is None else np.atleast_1d(np.asarray(offsets, dtype=np.int64))
@@ -381,15 +363,9 @@ class Revolution:
         return kept("compliance", label, inputs, SOURCES, make)["compliance"]
 
     def frequencies(self, harmonics: Iterable[int], count: int) -> np.ndarray:
-        """Natural frequencies.
+        """Natural frequencies (len(harmonics), count) [Hz], ascending.
 
-        Parameters
-        ----------
         count : how many of each harmonic, the lowest; those of the rigid motions of a free body (zero) are left out
-
-        Returns
-        -------
-        frequencies : (len(harmonics), count) [Hz], ascending
         """
         from scipy.sparse import diags_array
         from scipy.sparse.linalg import LinearOperator, eigsh

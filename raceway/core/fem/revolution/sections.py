@@ -14,8 +14,6 @@ from raceway.errors import MeshError
 class Profile:
     """Nodes and quadrilaterals of a section.
 
-    Attributes
-    ----------
     points : (N, 2) float, radius r > 0 and place x along the axis [m]
     quads : (M, 4) int, turned on input so that their nodes run from +x to +r
     race : (n,) int, nodes of the loaded surface in the order of ``angles``
@@ -95,8 +93,6 @@ def graded_profile(
 ) -> Profile:
     """A section that is fine around a contact.
 
-    Parameters
-    ----------
     arc_step : distance of the race's nodes along the groove [m]; one of them lies at the free contact angle
     window : lowest and highest contact angle of the nodes in ``race`` [rad], positive at the free contact angle; what runs over
         the groove's edge is left out
@@ -201,8 +197,6 @@ def ball_profile(
 ) -> Profile:
     """Section of a ball; x is the rolling direction, the equator holds both contacts and all contact angles.
 
-    Parameters
-    ----------
     lateral_step : distance of the nodes along the rolling direction at the equator, as arc length [m]; one lies on the equator
     half_width : arc length from the equator up to which nodes keep that distance [m]; they are ``race``, from -x to +x
     depth_step, bulk : size of the first layer below the surface and of the elements far from it [m]
