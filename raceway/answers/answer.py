@@ -136,10 +136,7 @@ class Answer(Shown):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during long work, with what is finished.
-
-    partial : the answer so far; None: nothing is finished
-    """
+    """Ctrl-C during long work; ``partial`` is the answer so far, None where nothing is finished."""
 
     def __init__(self, partial: Answer | None) -> None:
         super().__init__()

@@ -17,10 +17,7 @@ _BUILT = (*OF_PRELOAD, "kinematics")
 
 @attrs.frozen(eq=False, slots=False)
 class Builder:
-    """Bearings at columns of a scene's keys; what loads leave as it is, is built once.
-
-    plan : of the scene with the numbers of one point
-    """
+    """Bearings at columns of a scene's keys, ``plan`` of one point; what loads leave as it is, is built once."""
 
     plan: ScenePlan
 

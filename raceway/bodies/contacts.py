@@ -83,10 +83,7 @@ _HALVINGS = 80
 
 
 def law_of_pair(ring: Ring, race: int, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Force (n,) [N] and stiffness (n,) [N/m] of the law at rest, for contacts of one race (0 inner, 1 outer).
-
-    approach : (n,) [m]
-    """
+    """Force (n,) [N] and stiffness (n,) [N/m] of the law at rest at approaches (n,) [m] of one race (0 inner, 1 outer)."""
     system, n = surrogate(ring), len(approach)
     row, z = race * system.ball_count, system.ball_count
     # A number of contacts that is that of the balls is theirs: rows may differ.

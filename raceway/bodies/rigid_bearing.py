@@ -100,10 +100,7 @@ def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
 
 
 def probe(problem: Problem, basis: Basis, system: System) -> None:
-    """Try the plug-ins' kernels as deep as the scene's own load presses, and well beyond.
-
-    Loads of single balls are many times the mean.
-    """
+    """Try the plug-ins' kernels as deep as the load presses, and well beyond: a ball may have many times the mean."""
     load = basis.ball_load + 5.0 * max(np.abs(system.load[:3]).max(), 1.0) / len(basis.azimuth)
     approach = float(np.max(basis.inner.approach(load)))
     depths = [factor * approach for factor in (0.3, 1.0, 3.0, 10.0)]

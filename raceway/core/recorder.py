@@ -149,10 +149,7 @@ class Recorder:
         )
 
     def _outer_work(self, state: State, outer: np.ndarray) -> float:
-        """Work of the mean outer forces over a step [J].
-
-        StabilityError: a displacement beyond ``BOUND``, or that is no number.
-        """
+        """Work of the mean outer forces over a step [J]; StabilityError: displacement beyond ``BOUND`` or not finite."""
         size = len(state.u)
         count = -(-size // _BLOCK)
         arrays = [np.ascontiguousarray(each, dtype=float) for each in (self._outer, outer, self.state.u, state.u)]

@@ -361,10 +361,7 @@ class Design:
 
 
 def grid(definitions: Vary) -> Design:
-    """A grid of ``KEY=a,b,c`` and ``KEY=start:stop:count``, or of keys with their values.
-
-    SceneError: With every mistake in them.
-    """
+    """A grid of ``KEY=a,b,c`` and ``KEY=start:stop:count``, or of keys with values; SceneError with all mistakes."""
     return Design(axes=parse_axes(definitions, "--grid", _MOST_SWEEP_POINTS))
 
 
@@ -409,10 +406,7 @@ def box(ranges: Vary) -> dict[str, tuple[float, float]]:
 
 
 def listed_points(points: Iterable[Mapping[str, object]]) -> Design:
-    """A list of points, each a mapping of the same keys to their values.
-
-    SceneError: No points, or other keys in one of them.
-    """
+    """A list of points, each a mapping of the same keys to their values; SceneError: none, or other keys in one of them."""
     return _point_list("points", tidy(list(points)))
 
 

@@ -52,10 +52,7 @@ class _Indices:
 
 
 def design(count: int, dimensions: int, seed: int) -> np.ndarray:
-    """((d + 2) n, d) numbers in [0, 1): rows of A, of B, then of A with each column of B in turn; n a power of 2.
-
-    count : n;  dimensions : d
-    """
+    """((d + 2) n, d) numbers in [0, 1): rows of A, of B, then of A with each column of B in turn; n is a power of 2."""
     from scipy.stats import qmc
 
     both = qmc.Sobol(2 * dimensions, seed=seed).random(count)

@@ -304,10 +304,7 @@ def _short_names(axes: tuple[Axis, ...]) -> dict[str, str]:
 
 
 def labelled(comparison: Findings) -> Dataset:
-    """Numbers and states of all runs, a dimension for each key.
-
-    RacewayError: xarray is missing.
-    """
+    """Numbers and states of all runs, a dimension for each key; RacewayError without xarray."""
     keys = [axis.key for axis in comparison.axes]
     shape = tuple(len(axis.values) for axis in comparison.axes)
     moving = comparison.quantities is MOVING

@@ -197,10 +197,7 @@ def points_of(store: SweepStore) -> Points:
 
 
 def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Dataset:
-    """The data set of a store: states, and the variables that its scenes have.
-
-    RacewayError: xarray is missing.
-    """
+    """The data set of a store: states, and the variables that its scenes have; RacewayError without xarray."""
     design = store.design
     dims = ("point",) if design.listed else design.keys
     points, shape = points_of(store), design.shape
@@ -276,10 +273,7 @@ def blank(design: Design, scene: ReadTables) -> xarray.Dataset:
 
 
 def write_netcdf(store: SweepStore) -> Path:
-    """``results.nc`` in the store, whole or not at all.
-
-    RacewayError: A library is missing, or a disk that takes no more.
-    """
+    """``results.nc`` in the store, whole or not at all; RacewayError without a library or room on the disk."""
     try:
         # In memory first: the HDF5 library takes the whole process down where a disk is full.
         content = dataset(store).to_netcdf(engine="h5netcdf")
@@ -289,10 +283,7 @@ def write_netcdf(store: SweepStore) -> Path:
 
 
 def write_csv(store: SweepStore, path: Path) -> Path:
-    """All points and their numbers as CSV, a line each.
-
-    RacewayError: A file that cannot be written.
-    """
+    """All points and their numbers as CSV, a line each; RacewayError where it cannot be written."""
     with scratch_file(path, "Choose another place.") as scratch, scratch.open("w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows(_lines(store))
     return path

@@ -27,10 +27,7 @@ _NO_RESULT = "#c3cad1"
 
 
 def draw(layout: _Layout) -> Figure:
-    """The picture of a layout.
-
-    RacewayError: matplotlib is missing.
-    """
+    """The picture of a layout; RacewayError without matplotlib."""
     data, kind = layout.data, layout.kind
     factor, unit = read_in(1.0, str(data.attrs.get("units", "")))
     name = str(data.name).replace("_", " ").replace(":", " ")
@@ -155,10 +152,7 @@ class _Layout:
         return [(axis.words(value), [one.isel({axis.key: k}) for one in arrays]) for k, value in enumerate(axis.values)]
 
     def write(self, path: Path) -> Path:
-        """Draw it.
-
-        RacewayError: matplotlib is missing, or the file cannot be written.
-        """
+        """Draw it; RacewayError without matplotlib, or where the file cannot be written."""
         return save_figure(draw(self), path)
 
 

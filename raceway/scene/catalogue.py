@@ -172,10 +172,7 @@ def preset_of(name: object, maker: object = None) -> Preset | None:
 
 @cache
 def _of_maker(name: str, maker: str) -> Preset:
-    """The bearing of a maker that has the dimensions and the nominal angle of a preset.
-
-    SceneError: of ``preset_of``.
-    """
+    """The bearing of a maker with the dimensions and the nominal angle of a preset; errors as in ``preset_of``."""
     from raceway.scene.designation import read_designation
 
     entry, designation, makers = _entry(name), read_designation(name), set[str]()
@@ -287,10 +284,7 @@ def found_by(pattern: str) -> list[Preset]:
 
 
 def preset(name: object, maker: object = None) -> Tables:
-    """The [bearing] table of a preset, of ``preset_of``.
-
-    SceneError: Unknown name, with the nearest five; unknown maker, with the known ones.
-    """
+    """The [bearing] table of a preset; SceneError: unknown name, with the nearest five, or maker, with the known ones."""
     entry = preset_of(name, maker)
     if entry is None:
         raise SceneError.at("bearing.preset", name, no_preset(str(name)))

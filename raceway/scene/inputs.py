@@ -105,10 +105,7 @@ def read_toml(path: str | Path) -> Tables:
 
 
 def parse_toml(text: str, name: str) -> Tables:
-    """The tables of a TOML text; ``name`` says in messages where it came from.
-
-    SceneError: A text that is empty or malformed, with the line.
-    """
+    """The tables of a TOML text from ``name``; SceneError: one that is empty or malformed, with the line."""
     if not text.strip():
         raise SceneError.at(name, None, "is empty; a scene needs at least a [bearing] table (see examples/minimal.toml)")
     try:

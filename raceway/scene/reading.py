@@ -300,10 +300,7 @@ def _plugin_table(
 
 
 def options_class(kind: str, word: str, registry: Registry) -> type:
-    """The class of options of a table's ``kind``.
-
-    PluginError: No plug-in has this name.
-    """
+    """The class of options of a table's ``kind``; PluginError where no plug-in has this name."""
     return AutoIntegrator if (kind, word) == ("integrator", AutoIntegrator.name) else registry.find(kind, word).plugin
 
 

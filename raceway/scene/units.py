@@ -86,10 +86,7 @@ _LONGEST = 400
 
 @cache
 def unit_of(text: str) -> Unit:
-    """A unit from its symbols.
-
-    ValueError: A symbol that is not known, or no product of symbols.
-    """
+    """A unit from its symbols; ValueError: a symbol that is not known, or no product of symbols."""
     unit, sign = _ONE, 1
     for part in re.findall(r"\*\*|[/*·\s]|[^/*·\s]+(?:\*\*[+-]?\d+)?", text.replace(" ** ", "**")):
         if part == "/":

@@ -245,10 +245,7 @@ def verdict_of(number: str, claim: str, rule: str, computed: str, findings: Sequ
 
 
 def verdicts(curves: Curves, static: Sequence[Verified]) -> list[Verdict]:
-    """Every claim.
-
-    static : rows of the static verification, as ``raceway verify`` computes them
-    """
+    """Every claim; ``static`` are rows of the static verification, as ``raceway verify`` computes them."""
     out = [*_not_testable(static), *(verdict_of(*row) for row in _unidirectional(curves))]
     for measure in MEASURES:
         rows = [*_hardening(curves, measure), *_axial(curves, measure), *_joint_effect(curves, measure)]

@@ -203,10 +203,7 @@ def design(
 
 
 def excitation_of(tables: ReadTables) -> ReadTables:
-    """The scene's excitation.
-
-    SceneError: It has no unbalance.
-    """
+    """The scene's excitation; SceneError where it has no unbalance."""
     excitation = tables.get("excitation")
     if not isinstance(excitation, Mapping) or excitation.get("unbalance") is None:
         why = "is needed: the study compares the force m e w^2 with one of constant amplitude; give it in kg m"
@@ -215,10 +212,7 @@ def excitation_of(tables: ReadTables) -> ReadTables:
 
 
 def friction_of(tables: ReadTables, friction: float | None) -> float:
-    """Coulomb coefficient: the one of ``--friction``, else the scene's, else the article's.
-
-    SceneError: A friction below 0.
-    """
+    """Coulomb coefficient: the one of ``--friction``, else the scene's, else the article's; SceneError below 0."""
     if friction is None:
         friction = float(tables.get("contact", {}).get("friction", 0.0)) or _FRICTION
     if not (math.isfinite(friction) and friction >= 0.0):
@@ -232,10 +226,7 @@ def _every_other(values: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _ascending(option: str, text: str) -> tuple[float, ...]:
-    """Ascending positive numbers, at least three: two points have no curvature.
-
-    SceneError: naming the option.
-    """
+    """Ascending positive numbers, at least three (two points have no curvature); else a SceneError that names the option."""
     try:
         axis = parse_axis(f"{option}={text}")
     except SceneError as error:

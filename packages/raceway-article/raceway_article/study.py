@@ -381,10 +381,7 @@ class Article(Answer):
         return content
 
     def tables(self, content: ReadTables) -> dict[str, list[Tables]]:
-        """Name -> rows of each table that is written as CSV.
-
-        content : ``to_dict()``
-        """
+        """Name -> rows of each table that is written as CSV, from ``to_dict()``."""
         scan = [
             {"axial_n": line["axial_n"], "tilt_stiffness": stiffness, "k_ratio": ratio}
             for line in content["tilt_stiffness"]

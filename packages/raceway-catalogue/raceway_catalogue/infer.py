@@ -90,10 +90,7 @@ def infer(
 
 
 def _value(name: str, unit: str, value: Quantity) -> float:
-    """A number in the unit, from text with any of its dimension.
-
-    SceneError: no number, or another dimension.
-    """
+    """A number in the unit, from text with any of its dimension; SceneError: no number, or another dimension."""
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         raise SceneError.at(name, None, f"must be a number [{unit}] or text with a unit, not {type(value).__name__}")
     try:

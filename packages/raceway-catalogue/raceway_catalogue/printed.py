@@ -152,10 +152,7 @@ class Table:
 
 
 def read_table(path: Path) -> Table:
-    """The lines of a CSV file.
-
-    SceneError: A file that cannot be read, columns that are missing or unknown, no line that is a bearing.
-    """
+    """The lines of a CSV file; SceneError: unreadable, columns missing or unknown, no line that is a bearing."""
     try:
         size_of(path, _LARGEST)
         text = path.read_text(encoding="utf-8-sig")
@@ -167,10 +164,7 @@ def read_table(path: Path) -> Table:
 
 
 def table_in_text(text: str, name: str) -> Table:
-    """One ``Printed`` a line of a CSV text; lines that start with # are remarks.
-
-    SceneError: as ``read_table``.
-    """
+    """One ``Printed`` a line of a CSV text; lines that start with # are remarks.  Errors as in ``read_table``."""
     lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
     rows = list(csv.reader(line for _, line in lines))
     head = [word.strip() for word in rows[0]] if rows else []

@@ -210,10 +210,7 @@ def _bell(*offs: np.ndarray) -> np.ndarray:
 
 
 def by_grooves(size: Printed, without: str = "") -> list[Candidate]:
-    """Candidates by the maker's own grooves.
-
-    without : designation of a printed bearing that is left out, to test the method on it
-    """
+    """Candidates by the maker's own grooves, a printed bearing (its designation) left out to test the method on it."""
     bearings, candidates = _printed_bearings(), []
     references = bearings["name"] != without
     same = zip((bearings["bore"], bearings["size"]), _shape(size, 1, 1.0)[2:], _FAMILY, strict=True)

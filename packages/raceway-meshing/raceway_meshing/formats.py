@@ -35,10 +35,7 @@ def meshio() -> ModuleType:
 
 
 def load(path: Path, reader: Callable[[Path], Mesh]) -> Mesh:
-    """meshio's own mesh.
-
-    MeshError: A file that is missing, empty, unpacks without end, or cannot be read, by name.
-    """
+    """meshio's own mesh; MeshError, by name: a file that is missing, empty, unpacks without end, or cannot be read."""
     path = Path(path)
     size = readable(path)
     if not size:
@@ -133,10 +130,7 @@ def used_only(path: Path, points: np.ndarray, cells: np.ndarray, node_sets: Read
 
 
 def facets_of_quads(path: Path | str, cells: np.ndarray, quads: np.ndarray) -> np.ndarray:
-    """(k, 2) cell and local face of quadrilaterals (k, 4) that lie on cells.
-
-    MeshError: Quadrilaterals on no cell.
-    """
+    """(k, 2) cell and local face of quadrilaterals (k, 4) that lie on cells; MeshError where they lie on none."""
     from raceway.extend import FACES
 
     faces = np.sort(cells[:, FACES].reshape(-1, 4), axis=1)

@@ -335,10 +335,7 @@ def export_coefficients(
 
 
 def kind_of(kind: str | None, path: str | Path | None) -> str:
-    """The kind as given, or by the path's ending.
-
-    SceneError: An unknown one.
-    """
+    """The kind as given, or by the path's ending; SceneError where it is unknown."""
     if kind is None and path is not None:
         kind = _ENDINGS.get(Path(path).suffix.lower())
         if kind is None:

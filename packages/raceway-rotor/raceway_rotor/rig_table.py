@@ -138,10 +138,7 @@ class Rig:
 
 
 def rig_of(scene: Scene) -> Rig:
-    """The table ``[rig]`` of a scene.
-
-    SceneError: There is none.
-    """
+    """The table ``[rig]`` of a scene; SceneError where there is none."""
     if "rig" not in scene.source:
         raise SceneError.at(
             "rig", None, "is required: a table [rig] with shaft, disc and sensor (see examples/test_rig.toml)"

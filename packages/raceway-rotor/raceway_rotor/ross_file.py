@@ -110,10 +110,7 @@ def _toml_section(tag: str) -> str:
 
 
 def check_name(path: Path) -> None:
-    """Refuse a file that ROSS would not read.
-
-    RacewayError: For an ending other than .toml and .json.
-    """
+    """Refuse (RacewayError) a file that ROSS would not read: an ending other than .toml and .json."""
     if path.suffix.lower() not in (".toml", ".json"):
         raise RacewayError(f"`{path}`: ROSS reads .toml and .json, by their suffix: choose one of them")
 

@@ -198,10 +198,7 @@ def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
 
 @lru_cache(maxsize=32)  # a fit asks for one at all its numbers
 def rotor(rig: Rig, speed: float, model: Beam | None = None) -> Rotor:
-    """The rotor at a speed [rad/s].
-
-    model : another model of the shaft
-    """
+    """The rotor at a speed [rad/s], or another model of its shaft."""
     model = model or shaft(rig)
     near, far = (2 * model.node(position) for position in rig.bearings)
     disc, sensor = 2 * model.node(0.5 * rig.shaft_length), 2 * model.node(rig.sensor)
@@ -277,10 +274,7 @@ class Bearing:
 
 
 def bearing(scene: Scene, axial: float, registry: Registry) -> Bearing:
-    """The scene's bearing as it sits in the rig under an axial load [N].
-
-    SceneError: A scene whose bearing is not the same all around.
-    """
+    """The scene's bearing in the rig under an axial load [N]; SceneError where it is not the same all around."""
     if any(scene.load.radial) or any(scene.load.moment):
         raise SceneError.at(
             "load", None, "the rig is taken to whirl in circles: leave `load.radial` and `load.moment` at zero"
@@ -351,10 +345,7 @@ class State:
 
 
 def balance(free: Rotor, bearing: Bearing) -> State:
-    """Force and moment at which the ring and the shaft in it move alike.
-
-    ConvergenceError: No such force and moment found.
-    """
+    """Force and moment at which the ring and the shaft in it move alike; ConvergenceError where none are found."""
     speed = free.speed
     gain = bearing.compliance - free.ring[:, 1:]
     start = np.linalg.solve(gain, free.ring[:, 0] * free.unbalance_force)

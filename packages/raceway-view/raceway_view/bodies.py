@@ -191,10 +191,7 @@ class BearingSolids:
 
     @classmethod
     def of(cls, result: Result) -> BearingSolids:
-        """From a result; rings without dimensions get usual ones, which are named.
-
-        SceneError: Rows of different bearings.
-        """
+        """From a result; rings without dimensions get usual ones, by name.  SceneError: rows of different bearings."""
         b = result.model.problem.bearing
         if not b.equal_rows:
             raise SceneError.at(

@@ -34,10 +34,7 @@ _OTHERWISE = ", or leave out --picture"
 
 
 def mesh_picture(meshes: Mapping[str, HexMesh], title: str) -> bytes:
-    """PNG of all bodies with their edges, one colour a kind of body.
-
-    RacewayError: pyvista is missing or cannot draw here.
-    """
+    """PNG of all bodies with their edges, one colour a kind; RacewayError: pyvista is missing or cannot draw here."""
 
     def draw(pyvista: ModuleType, plotter: Plotter) -> None:
         outside: dict[int, np.ndarray] = {}  # balls share one array of cells
@@ -90,10 +87,7 @@ class _Meshes(Answer):
 
     @door
     def save(self, folder: Annotated[str | Path, PATH], pictures: bool | str = True) -> list[Path]:
-        """Write a file for each ring, one for all balls, and the picture.
-
-        RacewayError: a folder that cannot be written, or pyvista is missing.
-        """
+        """Write a file for each ring, one for all balls, and the picture; RacewayError where that fails."""
         folder, files = Path(folder), self.content["files"]
         files.clear()
         try:

@@ -77,10 +77,7 @@ _BAR: Tables = {"color": INK, "n_labels": 5, "fmt": "%.0f", "vertical": True}
 
 
 def pyvista_of(otherwise: str = "") -> ModuleType:
-    """The package.
-
-    RacewayError: It or its system libraries are missing; names what installs them.
-    """
+    """The package; RacewayError, which names what installs it, where it or its system libraries are missing."""
     import pyvista
 
     refuse_pictures(otherwise)

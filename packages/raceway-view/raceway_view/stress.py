@@ -100,10 +100,7 @@ def contacts_left_out(result: Result) -> str:
 
 
 def field_files(result: Result) -> dict[str, bytes]:
-    """fields.vtu and stress.png.
-
-    RacewayError: pyvista or its system libraries are missing.
-    """
+    """fields.vtu and stress.png; RacewayError without pyvista or its system libraries."""
     grid = _new_grid(pyvista_of(), StressFields.of(result))
     balls = result.equilibrium.contact_force[: result.model.system.ball_count]
     most = int(np.argmax(balls))
@@ -168,10 +165,7 @@ _UM, _MPA, _MARK = 1e6, 1e-6, "#00a0c8"
 
 
 def contact_stress_files(result: Result) -> dict[str, bytes]:
-    """contact.vtu and stress_contact.png; nothing where no contact at points is loaded.
-
-    RacewayError: pyvista or matplotlib is missing.
-    """
+    """contact.vtu and stress_contact.png where contacts at points are loaded; RacewayError without pyvista, matplotlib."""
     bodies: ElasticPoints = result.model.bearing  # type: ignore[assignment]
     sides = below_contacts(bodies, result.model, result.equilibrium)
     if not sides:

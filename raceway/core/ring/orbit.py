@@ -154,10 +154,7 @@ def steady_orbit(
 def orbit_near(
     system: Ring, period: float, start: np.ndarray, samples: int, inertial: bool, tolerance: float, limit: int = 60
 ) -> Orbit:
-    """Newton on all times at once from a first guess (samples, 5), an odd number of equidistant times.
-
-    ConvergenceError: None found near it.
-    """
+    """Newton on all times at once from a guess (samples, 5), an odd number of equidistant times; ConvergenceError."""
     times = np.arange(samples) * (period / samples)
     force = np.array([system.outer_force(t) for t in times])
     first = differentiation(samples, period)

@@ -278,10 +278,7 @@ class System(Ring):
 
 @attrs.define(eq=False, kw_only=True)
 class SteppedRing(Ring):
-    """A ring whose contact forces are not compiled.
-
-    rigid : the same ring with rigid bodies and Hertz's contacts
-    """
+    """A ring whose contact forces are not compiled; ``rigid`` is it with rigid bodies and Hertz's contacts."""
 
     rigid: System
 

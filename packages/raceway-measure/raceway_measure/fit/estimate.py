@@ -63,10 +63,7 @@ class Free:
 
 
 def free_keys(scene: Scene, paths: Iterable[str]) -> list[Free]:
-    """Free keys of a scene, each with its range.
-
-    SceneError: No key, one twice, or one that is no continuous key of the scene.
-    """
+    """Free keys of a scene, each with its range; SceneError: none, one twice, or no continuous key."""
     paths = [path.strip() for path in paths if path.strip()]
     if not paths:
         raise SceneError.at("--free", None, "names no key; at least one is needed, such as bearing.contact_angle_deg")
@@ -167,10 +164,7 @@ class Residuals(Protocol):
     """Weighted residuals (n,), (fit - datum) / standard error, and their derivatives (n, p) by the free numbers."""
 
     def residuals(self, values: np.ndarray) -> np.ndarray:
-        """At numbers (p,).
-
-        ConvergenceError, SceneError: The model has no answer there.
-        """
+        """At numbers (p,); ConvergenceError or SceneError where the model has no answer."""
         ...
 
     def jacobian(self, values: np.ndarray) -> np.ndarray:

@@ -83,10 +83,7 @@ def draw_fit(content: ReadTables) -> Figure:
 
 
 def figures(rotation: Rotation, component: Synchronous, state: State) -> dict[str, Figure]:
-    """Figures "signals", "spectrum" and "orbits" of a record.
-
-    RacewayError: matplotlib is missing.
-    """
+    """Figures "signals", "spectrum" and "orbits" of a record; RacewayError without matplotlib."""
     drawings = {"signals": new_figure(8.0, 4.4), "spectrum": new_figure(8.0, 3.4), "orbits": new_figure(5.6, 5.4)}
     first, means = drawings["signals"].subplots(
         2, 1, height_ratios=(3, 2)

@@ -60,10 +60,7 @@ class Rotation:
 
 
 def rotation_of(recording: Recording) -> Rotation:
-    """Angles of a record.
-
-    RacewayError: Fewer than two turns, missing pulses, or a speed that changes too much.
-    """
+    """Angles of a record; RacewayError: fewer than two turns, missing pulses, or a speed that changes too much."""
     rotation = _by_pulses(recording, recording.key) if recording.key is not None else _by_speed(recording)
     per_turn = len(rotation.angle) / rotation.turns
     if per_turn < _LEAST_PER_TURN:

@@ -274,10 +274,7 @@ def _clipping(name: str, signal: np.ndarray) -> str:
 
 
 def write_recording(recording: Recording, path: Path) -> Path:
-    """Write a record as CSV: seconds, micrometres, the probe's voltage, r/min.
-
-    RacewayError: A folder that cannot be written.
-    """
+    """Write a record as CSV: seconds, micrometres, the probe's voltage, r/min; RacewayError where it cannot be written."""
     columns = {
         "time_s": (recording.time, "%.9g"),
         "y_um": (recording.y * 1e6, "%.7g"),

@@ -59,10 +59,7 @@ class Synchronous:
 
 
 def synchronous(rotation: Rotation) -> Synchronous:
-    """The 1x component of a record.
-
-    RacewayError: The sensor sees no motion once per turn.
-    """
+    """The 1x component of a record; RacewayError where the sensor sees no motion once per turn."""
     forward, backward, speeds, residual = _blocks(rotation)
     if max(np.abs(forward).max(), np.abs(backward).max()) <= _ROUNDING * np.abs(rotation.recording.plane).max():
         raise RacewayError("the sensor shows no synchronous motion: y and z are nearly constant. Check its connection")
@@ -157,10 +154,7 @@ class RunOut:
 
 
 def slow_roll(recording: Recording) -> Synchronous:
-    """The 1x component of a slow roll.
-
-    RacewayError: A record that cannot be used; one without pulses has no phase.
-    """
+    """The 1x component of a slow roll; RacewayError: a record that cannot be used; one without pulses has no phase."""
     try:
         rotation = rotation_of(recording)
         if not rotation.marked:

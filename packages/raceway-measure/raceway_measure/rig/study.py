@@ -342,10 +342,7 @@ def _causes(study: _RigStudy) -> Figure:
 
 
 def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
-    """rig.html and its figures as PNG.
-
-    RacewayError: matplotlib is missing, or a folder that cannot be written.
-    """
+    """rig.html and its figures as PNG; RacewayError without matplotlib, or where they cannot be written."""
     first = study.points[0].identified
     record = figures(first.rotation, first.component, first.state)
     drawings = {"procedures": _procedures(study), **record, "error-split": _causes(study)}

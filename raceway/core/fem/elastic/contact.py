@@ -429,10 +429,7 @@ class NodalContact(Contact):
         return True
 
     def stable_step(self, mass: np.ndarray) -> float:
-        """See ``Contact``.
-
-        By Gershgorin's theorem on M^-1 B^T D B: 2 / sqrt(largest row sum).
-        """
+        """See ``Contact``; by Gershgorin's theorem on M^-1 B^T D B, 2 / sqrt(largest row sum)."""
         size = self._sizes()
         np.maximum(self.stiffest, size, out=self.stiffest)
         touching = np.flatnonzero(size)

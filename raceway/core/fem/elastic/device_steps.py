@@ -146,10 +146,7 @@ class DeviceSteps(ExplicitSteps):
         self._frame = self._frame._replace(places=a.tied, rows=np.arange(len(a.tied)))
 
     def _advance(self, recorder: Recorder, first: int, count: int, numbers: np.ndarray, points: Any) -> None:
-        """As on the CPU.
-
-        ConvergenceError: A device that fails.
-        """
+        """As on the CPU; ConvergenceError where the device fails."""
         start = perf_counter()
         try:
             self._take_steps(recorder, first, count, numbers, points)

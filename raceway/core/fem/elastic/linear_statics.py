@@ -294,10 +294,7 @@ class StaticSolver:
             self._factors = splu(self._inner.tocsc(), permc_spec="MMD_AT_PLUS_A")
 
     def solve(self, load: np.ndarray, values: np.ndarray | float = 0.0, tolerance: float = 1e-8) -> _Solution:
-        """Displacements under nodal forces (n, 3), where held as prescribed (n, 3).
-
-        ConvergenceError: Iterations that end too early.
-        """
+        """Displacements under nodal forces (n, 3), where held as prescribed (n, 3); ConvergenceError of the iterations."""
         displacement = np.array(np.broadcast_to(values, load.shape), dtype=float).reshape(-1)
         displacement[self._free] = 0.0
         right = (np.asarray(load, dtype=float).reshape(-1) - self._matrix @ displacement)[self._free]

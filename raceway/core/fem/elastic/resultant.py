@@ -174,10 +174,7 @@ class ResultantContact(Contact):
         return touch.name, float(self._approach[pair]), touch.size
 
     def stable_step(self, mass: np.ndarray) -> float:
-        """See ``Contact``.
-
-        The eigenvalues of M^-1 B^T D B that are not zero are those of D B M^-1 B^T, of three rows a contact.
-        """
+        """See ``Contact``: eigenvalues of M^-1 B^T D B but 0 are those of D B M^-1 B^T, of three rows a contact."""
         np.maximum(self.stiffest, self._sizes(), out=self.stiffest)
         if self._mobility is None:
             from scipy.sparse import diags_array

@@ -66,10 +66,7 @@ class ElasticRing(SteppedRing):
 
     @property
     def equilibrium(self) -> np.ndarray:
-        """(size,) unknowns at the last equilibrium under ``load``.
-
-        ConvergenceError: None was looked for.
-        """
+        """(size,) unknowns at the last equilibrium under ``load``; ConvergenceError where none was looked for."""
         if self._y is None:
             raise ConvergenceError("elastic bodies have forces at their equilibria only: solve for them first")
         return self._y

@@ -72,10 +72,7 @@ def _walk(where, points, quads, neighbours, facet, weights, outside):  # type: i
 
 
 class Facets:
-    """A surface made of quadrilaterals.
-
-    points : (n, 3) float [m];  quads : (k, 4) int, nodes of the facets, all in the same sense
-    """
+    """A surface of points (n, 3) [m] and quads (k, 4), the nodes of its facets, all in the same sense."""
 
     def __init__(self, points: np.ndarray, quads: np.ndarray) -> None:
         from scipy.spatial import KDTree

@@ -327,10 +327,7 @@ class Balls:
         tolerance: float,
         applied: AppliedLoads | None = None,
     ) -> tuple[np.ndarray, np.ndarray, LinearisedBalls]:
-        """Equilibrium of the balls while the ring stands: places, forces and the state there.
-
-        Raises ConvergenceError.
-        """
+        """Places, forces and state of the balls in equilibrium while the ring stands; else ConvergenceError."""
         still = np.zeros(2 * self.count)
         now = self.linear(centre, position, force, rate, applied)
         for _ in range(_LIMIT):

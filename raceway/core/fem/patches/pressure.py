@@ -115,10 +115,7 @@ _TOLERANCE = 1e-11
 
 @attrs.frozen(eq=False)
 class PointLaw:
-    """A law without memory at the points of one contact.
-
-    kernel : compiled ``LAW``;  params : (k,) of this contact;  area : of a point [m2]
-    """
+    """A law without memory at the points of one contact: its ``LAW``, its params (k,), the area of a point [m2]."""
 
     kernel: Kernel
     params: np.ndarray
