@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway import hookimpl
+import raceway as rw
 
 if TYPE_CHECKING:
     import click
@@ -20,8 +20,6 @@ class Article:
     help: ClassVar[str] = "The article's figures 9 to 12 and a verdict on each of its claims."
 
     def command(self) -> click.Command:
-        from raceway import Command, Option
-
         example = (
             "raceway study article --bodies rigid --friction 0\n"
             "raceway study article examples/b7206.toml \\\n"
@@ -29,12 +27,12 @@ class Article:
             "raceway study article --bodies elastic --set mesh.element_size=2e-3"
         )
         options = {
-            "bodies": Option(choices=("rigid", "condensed", "both", "elastic")),
-            **Option.metavars(speeds="LIST", axial="LIST", shaft="N·M/RAD", friction="MU", turns="N"),
+            "bodies": rw.Option(choices=("rigid", "condensed", "both", "elastic")),
+            **rw.Option.metavars(speeds="LIST", axial="LIST", shaft="N·M/RAD", friction="MU", turns="N"),
         }
-        return Command("article", "raceway_article.front:article", self.help, example, options, folder="-article").click()
+        return rw.Command("article", "raceway_article.front:article", self.help, example, options, folder="-article").click()
 
 
-@hookimpl
+@rw.hookimpl
 def raceway_studies() -> list[type]:
     return [Article]

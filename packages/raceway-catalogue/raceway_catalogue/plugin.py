@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from raceway import hookimpl
-
-if TYPE_CHECKING:
-    from raceway import Command
+import raceway as rw
 
 
-@hookimpl
-def raceway_commands() -> dict[str, tuple[Command, ...]]:
-    from raceway import Command, Option
-
+@rw.hookimpl
+def raceway_commands() -> dict[str, tuple[rw.Command, ...]]:
     return {
         "Answers": (
-            Command(
+            rw.Command(
                 "catalogue",
                 "raceway_catalogue.catalogue:look_up",
                 "List, search and draw the bearings of the catalogue.",
                 'raceway catalogue "70*C"\nraceway catalogue 7014C --picture 7014C.png',
-                {"pattern": Option(positional=True), "picture": Option(metavar="FILE.png")},
+                {"pattern": rw.Option(positional=True), "picture": rw.Option(metavar="FILE.png")},
                 folder=None,
                 pictures=None,
             ),
-            Command(
+            rw.Command(
                 "catalogue --infer",
                 "raceway_catalogue.infer:infer_texts",
                 "Infer balls and grooves from printed dimensions and ratings.",
@@ -33,10 +26,12 @@ def raceway_commands() -> dict[str, tuple[Command, ...]]:
                 '    --rating "15:47 kN:43 kN" --rating "25:44.5 kN:41 kN"\n'
                 "raceway catalogue --infer nsk --conformity 0.522",
                 {
-                    "table": Option(positional=True),
-                    "ratings": Option("rating", "ANGLE:C:C0"),
-                    "pairs": Option("pair", "ANGLE:PRELOAD:STIFFNESS"),
-                    **Option.metavars(bore="LENGTH", outer_diameter="LENGTH", width="LENGTH", maker="NAME", conformity="F"),
+                    "table": rw.Option(positional=True),
+                    "ratings": rw.Option("rating", "ANGLE:C:C0"),
+                    "pairs": rw.Option("pair", "ANGLE:PRELOAD:STIFFNESS"),
+                    **rw.Option.metavars(
+                        bore="LENGTH", outer_diameter="LENGTH", width="LENGTH", maker="NAME", conformity="F"
+                    ),
                 },
                 folder=None,
                 pictures=None,
@@ -45,7 +40,7 @@ def raceway_commands() -> dict[str, tuple[Command, ...]]:
     }
 
 
-@hookimpl
+@rw.hookimpl
 def raceway_names() -> dict[str, str]:
     return {
         "catalogue": "raceway_catalogue.catalogue",

@@ -2,36 +2,29 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from raceway import hookimpl
-
-if TYPE_CHECKING:
-    from raceway import Command
+import raceway as rw
 
 
-@hookimpl
-def raceway_commands() -> dict[str, tuple[Command, ...]]:
-    from raceway import Command, Option
-
+@rw.hookimpl
+def raceway_commands() -> dict[str, tuple[rw.Command, ...]]:
     return {
         "Trust": (
-            Command(
+            rw.Command(
                 "stability",
                 "raceway_checks.stability.study:stability",
                 "Test laws and integrators on stiff and extreme cases.",
                 "raceway stability --only chatter",
-                {"only": Option(metavar="WORDS"), "every": Option("all")},
+                {"only": rw.Option(metavar="WORDS"), "every": rw.Option("all")},
                 folder="-stability",
                 unchecked=True,
                 pictures=None,
             ),
-            Command(
+            rw.Command(
                 "verify",
                 "raceway_checks.verify.study:verify",
                 "Compare with published reference cases.",
                 "raceway verify --only harris-table-6.1 --all",
-                {"only": Option(metavar="CASE"), "every": Option("all")},
+                {"only": rw.Option(metavar="CASE"), "every": rw.Option("all")},
                 folder=None,
                 pictures=None,
             ),

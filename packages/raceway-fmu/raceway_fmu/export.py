@@ -14,9 +14,8 @@ from raceway import Answer, SceneError, door
 from raceway.extend import (
     KEY_VALUES, PATHS, TEXTS, Fact, Part, SceneSource, Tables, Words, as_scene, box, member, radial_note, slug, write_whole,
 )  # fmt: skip
-from raceway_fmu.rigid_force import NOTES, force_unit
 from raceway_fmu.map import default_ranges, map_unit
-from raceway_fmu.rigid_force import SPIN
+from raceway_fmu.rigid_force import NOTES, SPIN, force_unit
 from raceway_fmu.unit import Unit
 
 _VERSIONS = (2, 3)

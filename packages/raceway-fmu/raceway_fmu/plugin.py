@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from raceway import hookimpl
-
-if TYPE_CHECKING:
-    from raceway import Command
+import raceway as rw
 
 
-@hookimpl
-def raceway_commands() -> dict[str, tuple[Command, ...]]:
-    from raceway import Command, Option
-
+@rw.hookimpl
+def raceway_commands() -> dict[str, tuple[rw.Command, ...]]:
     return {
         "Answers": (
-            Command(
+            rw.Command(
                 "export --fmu",
                 "raceway_fmu.export:export_fmu",
                 "A bearing as an FMU (FMI 2.0, 3.0) for simulators: its map, or its force.",
@@ -24,9 +17,9 @@ def raceway_commands() -> dict[str, tuple[Command, ...]]:
                 "    --range excitation.speed_rpm=3000:15000\n"
                 "raceway export --fmu examples/minimal.toml --kind force",
                 {
-                    "kind": Option(choices=("map", "force")),
-                    "ranges": Option("range", "A.B=X:Y"),
-                    "outputs": Option("output", "NAME"),
+                    "kind": rw.Option(choices=("map", "force")),
+                    "ranges": rw.Option("range", "A.B=X:Y"),
+                    "outputs": rw.Option("output", "NAME"),
                 },
                 folder="-fmu",
                 pictures=None,
@@ -35,6 +28,6 @@ def raceway_commands() -> dict[str, tuple[Command, ...]]:
     }
 
 
-@hookimpl
+@rw.hookimpl
 def raceway_names() -> dict[str, str]:
     return {"FMU": "raceway_fmu.export", "export_fmu": "raceway_fmu.export"}

@@ -10,13 +10,11 @@ import attrs
 import numpy as np
 
 from raceway import Scene, SceneError, build_model
-from raceway.extend import CAGE, SCALARS, Model, System, compiled, renews, resolve, with_numbers
+from raceway.extend import (
+    CAGE, DIMENSIONS, SCALARS, STIFFNESS, Model, System, compiled, entry_unit, renews, resolve, with_numbers,
+)  # fmt: skip
 from raceway_fmu.map import Interval, fit
-from raceway.extend import DIMENSIONS
-from raceway.extend import STIFFNESS
-from raceway_fmu.unit import Unit
-from raceway_fmu.unit import Variable
-from raceway.extend import entry_unit
+from raceway_fmu.unit import Unit, Variable
 
 #: What to do instead.
 _MAP = "export the map instead (--kind map)"

@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway import hookimpl
+import raceway as rw
 
 if TYPE_CHECKING:
     import click
-
-    from raceway import Command
 
 
 @attrs.frozen
@@ -22,24 +20,20 @@ class Rig:
     help: ClassVar[str] = "A test rig's signals, and the bearing read back from them."
 
     def command(self) -> click.Command:
-        from raceway import Command
-
         example = "raceway study rig examples/test_rig.toml --set rig.sensor_distance=0.03"
-        return Command("rig", "raceway_measure.rig.study:rig", self.help, example, folder="-rig").click()
+        return rw.Command("rig", "raceway_measure.rig.study:rig", self.help, example, folder="-rig").click()
 
 
-@hookimpl
+@rw.hookimpl
 def raceway_studies() -> list[type]:
     return [Rig]
 
 
-@hookimpl
-def raceway_commands() -> dict[str, tuple[Command, ...]]:
-    from raceway import Command, Option
-
+@rw.hookimpl
+def raceway_commands() -> dict[str, tuple[rw.Command, ...]]:
     return {
         "Answers": (
-            Command(
+            rw.Command(
                 "fit",
                 "raceway_measure.fit.fit:fit_texts",
                 "Fit scene parameters, or K and C of a rig's bearing, to measurements.",
@@ -53,10 +47,10 @@ def raceway_commands() -> dict[str, tuple[Command, ...]]:
                 "raceway identify orbit.csv --scene examples/test_rig.toml \\\n"
                 '    --map "Ch 1=y_um" --map "Ch 2=z_um"',
                 {
-                    "data": Option(positional=True),
-                    "scene": Option("scene"),
-                    "columns": Option("map", '"HEADER=NAME"'),
-                    **Option.metavars(free="A.B,C.D", mass="KG", slow_roll="FILE.csv", run_out="UM,DEG"),
+                    "data": rw.Option(positional=True),
+                    "scene": rw.Option("scene"),
+                    "columns": rw.Option("map", '"HEADER=NAME"'),
+                    **rw.Option.metavars(free="A.B,C.D", mass="KG", slow_roll="FILE.csv", run_out="UM,DEG"),
                 },
                 folder="-fitted",
                 named_by="data",
@@ -66,7 +60,7 @@ def raceway_commands() -> dict[str, tuple[Command, ...]]:
     }
 
 
-@hookimpl
+@rw.hookimpl
 def raceway_names() -> dict[str, str]:
     return {
         "fit": "raceway_measure.fit.fit",

@@ -113,8 +113,6 @@ def hexahedra(path: Path, content: Mesh) -> tuple[np.ndarray, list[int | None]]:
 
 def used_only(path: Path, points: np.ndarray, cells: np.ndarray, node_sets: ReadTables, facet_sets: ReadTables) -> HexMesh:
     """A ``HexMesh`` without points that no cell uses; ``MeshError`` names the file if it is none."""
-    from raceway.extend import HexMesh
-
     points = np.asarray(points, dtype=float)
     if points.ndim == 2 and points.shape[1] == 3 and cells.min() >= 0 and cells.max() < len(points):
         in_cells = np.zeros(len(points), dtype=bool)
@@ -147,8 +145,6 @@ def facets_of_quads(path: Path | str, cells: np.ndarray, quads: np.ndarray) -> n
 
 def example() -> HexMesh:
     """Two cells with sets, for the conformance suite."""
-    from raceway.extend import HexMesh
-
     corner = [(x, y, z) for z in (0.0, 0.7) for x, y in ((0, 0), (1, 0), (2, 0), (0, 1), (1, 1), (2, 1.3))]
     cells = [[0, 1, 4, 3, 6, 7, 10, 9], [1, 2, 5, 4, 7, 8, 11, 10]]
     sets = {"bottom": [[0, 0], [1, 0]], "end": [[1, 3]]}

@@ -20,9 +20,8 @@ import numpy as np
 
 from raceway import MeshError, one_of, option, positive
 from raceway.extend import Bearing, HexMesh, Prediction, remedy
-from raceway_meshing.formats import readable
+from raceway_meshing.formats import facets_of_quads, readable
 from raceway_meshing.mesh_files import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
-from raceway_meshing.formats import facets_of_quads
 
 _SOLIDS = {4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids"}
 #: Endings of files and OpenCASCADE's readers for them.

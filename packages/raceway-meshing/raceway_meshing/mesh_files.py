@@ -104,12 +104,9 @@ class File:
         return bodies(self, bearing, self._body)
 
     def _body(self, body: str, path: str) -> HexMesh:
-        from raceway.extend import refuse_bad_cells, refuse_doubled
+        from raceway.extend import default_registry, refuse_bad_cells, refuse_doubled
 
-        # A file by the format that has its ending, of those that this process knows
-        from raceway.extend import default_registry
-
-        try:
+        try:  # the format that has the file's ending, of those that this process knows
             form = default_registry().format_of(path)
         except PluginError as why:
             raise MeshError(str(why)) from None

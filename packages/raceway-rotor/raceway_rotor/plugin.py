@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from raceway import hookimpl
-
-if TYPE_CHECKING:
-    from raceway import Command
+import raceway as rw
 
 
-@hookimpl
-def raceway_commands() -> dict[str, tuple[Command, ...]]:
-    from raceway import Command, Option
-
+@rw.hookimpl
+def raceway_commands() -> dict[str, tuple[rw.Command, ...]]:
     return {
         "Answers": (
-            Command(
+            rw.Command(
                 "export",
                 "raceway_rotor.command:export",
                 "Export coefficients of a sweep to rotor programs.",
@@ -28,10 +21,10 @@ def raceway_commands() -> dict[str, tuple[Command, ...]]:
                 "raceway export raceway-out/from-rest --from tangent \\\n"
                 "    --nastran bearing.bdf --ansys bearing.inp --table bearing.csv",
                 {
-                    "store": Option(positional=True),
-                    "source": Option("from", choices=("rotating", "directions", "tangent")),
-                    "ross_version": Option(choices=("2", "3")),
-                    **Option.metavars(
+                    "store": rw.Option(positional=True),
+                    "source": rw.Option("from", choices=("rotating", "directions", "tangent")),
+                    "ross_version": rw.Option(choices=("2", "3")),
+                    **rw.Option.metavars(
                         ross="FILE", nastran="FILE", ansys="FILE", table="FILE", at="KEY=VALUE", damping="C", tag="NAME"
                     ),
                 },
@@ -42,7 +35,7 @@ def raceway_commands() -> dict[str, tuple[Command, ...]]:
     }
 
 
-@hookimpl
+@rw.hookimpl
 def raceway_names() -> dict[str, str]:
     return {
         "CoefficientFile": "raceway_rotor.export",
@@ -56,6 +49,6 @@ def raceway_names() -> dict[str, str]:
     }
 
 
-@hookimpl
+@rw.hookimpl
 def raceway_tables() -> dict[str, str]:
     return {"rig": "raceway_rotor.rig_table:Rig"}

@@ -2,40 +2,33 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from raceway import hookimpl
-
-if TYPE_CHECKING:
-    from raceway import Command
+import raceway as rw
 
 
-@hookimpl
-def raceway_commands() -> dict[str, tuple[Command, ...]]:
-    from raceway import Command, Option
-
+@rw.hookimpl
+def raceway_commands() -> dict[str, tuple[rw.Command, ...]]:
     return {
         "Answers": (
-            Command(
+            rw.Command(
                 "view",
                 "raceway_view.view:view",
                 "Draw a bearing: loads, contacts, mesh, orbit; PNG, HTML.",
                 "raceway view examples/b7206.toml --html",
-                {"page": Option("html")},
+                {"page": rw.Option("html")},
                 pictures=None,
             ),
-            Command(
+            rw.Command(
                 "view --mesh",
                 "raceway_view.mesh:mesh",
                 "Mesh the bodies of a scene: counts, quality, files.",
                 "raceway view --mesh examples/b7206_article_mesh.toml --picture",
-                {"form": Option("format", "NAME")},
+                {"form": rw.Option("format", "NAME")},
                 pictures=None,
             ),
         )
     }
 
 
-@hookimpl
+@rw.hookimpl
 def raceway_names() -> dict[str, str]:
     return {"View": "raceway_view.view", "view": "raceway_view.view"}

@@ -16,18 +16,15 @@ import numpy as np
 
 from raceway import RacewayError, SceneError
 from raceway.extend import (
-    FINITE, NONE, TEXT, NumberTable, Reader, is_numeral, nearest, read_heading, read_numbers, write_whole,
+    FINITE, LARGEST, NONE, TEXT, NumberTable, Reader, is_numeral, memory_for, nearest, read_heading, read_numbers, size_of,
+    write_whole,
 )  # fmt: skip
 from raceway_measure.fit.column_headers import IGNORE, ORBIT, columns_of
-from raceway.extend import LARGEST
-from raceway.extend import memory_for
-from raceway.extend import size_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from pandas import DataFrame
     from xarray import Dataset
-    import numpy as np
 
 #: A CSV file's path, columns by their headers, or labelled columns.
 Data: TypeAlias = "str | Path | Mapping[str, ArrayLike] | DataFrame | Dataset"
