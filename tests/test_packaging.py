@@ -18,7 +18,6 @@ from packaging.utils import canonicalize_name
 
 import raceway
 from checks.validation.command_line import install, python, several
-from checks.validation.command_line import raceway as command
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT, *DISTRIBUTIONS = (
@@ -126,17 +125,19 @@ def test_folders_import_one_way(folders):
     assert [(str(path.relative_to(ROOT)), word) for path in files for word in imported(path) if word in forbidden] == []
 
 
-#: The package's name and number, the list of commands, and a mistake in its table.
+#: The package's command, name and number, the list of commands, and a mistake in its table.
 WEIGHED = """
 import json, sys
 import raceway as rw
 from click.testing import CliRunner
 from raceway.cli.main import main
+done = CliRunner().invoke(main, ["weigh", sys.argv[1], "--counts", "1", "--out", sys.argv[2]])
 result = rw.run(sys.argv[1])
 listed = CliRunner().invoke(main, ["--help"])
 wrong = CliRunner().invoke(main, ["plan", sys.argv[1], "--set", "weighing.gravity=-1"])
 weight = rw.weigh(result.model.scene, [1]).newtons[0]
-print(json.dumps([weight, result.to_dict()["pressure_over_young"], listed.stdout, wrong.exit_code, wrong.stderr]))
+ratio = result.to_dict()["pressure_over_young"]
+print(json.dumps([done.exit_code, weight, ratio, listed.stdout, wrong.exit_code, wrong.stderr]))
 """
 
 
@@ -147,10 +148,8 @@ def test_an_ability_comes_from_a_package_alone(tmp_path):
     scene.write_text(
         'title = "w"\n[bearing]\npreset = "B7206C"\n[load]\naxial = 400.0\n[weighing]\ngravity = 1.62\n', encoding="utf-8"
     )
-    done = command("weigh", scene, "--counts", "1", "--out", tmp_path / "out", PYTHONPATH=tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {"weights.json", "weights.png"}
-    found = python("-c", WEIGHED, scene, PYTHONPATH=tmp_path)
-    weight, ratio, listed, code, wrong = json.loads(found.stdout)
+    found = python("-c", WEIGHED, scene, tmp_path / "out", PYTHONPATH=tmp_path)
+    done, weight, ratio, listed, code, wrong = json.loads(found.stdout)
+    assert done == 0 and {path.name for path in (tmp_path / "out").iterdir()} == {"weights.json", "weights.png"}
     assert weight == pytest.approx(1.62 * 7850.0 * np.pi / 6.0 * 9.525e-3**3, rel=0.01) and "largest" in ratio
     assert "weigh" in listed and code == 2 and "weighing.gravity" in wrong

@@ -12,6 +12,7 @@ from raceway_view.bodies import ball as solid_ball
 from raceway_view.pictures import LETTERS, ball_labels, contacts
 from raceway_view.view import at_peak, at_rest
 
+import raceway as rw
 from checks.validation.command_line import COARSE, MINIMAL, invoke, python
 from checks.validation.scenes import built_in
 from raceway import scene_from_dict
@@ -97,6 +98,15 @@ def flat(points):
     return 15.0 * points[:, 1:] + 800.0
 
 
+@pytest.mark.needs("pyvista")
+def test_a_motion_is_drawn_when_a_ball_carries_most_too_and_has_an_orbit(result, moving, monkeypatch):
+    for draws in ("overview", "figure_png"):
+        monkeypatch.setattr(f"raceway_view.view.{draws}", lambda *_: b"drawn")
+    still = {"bearing.png", "contacts.png", "ball-loads.png"}
+    assert {*rw.view(result).pictures} == still
+    assert {*rw.view(moving).pictures} == still | {"bearing-peak.png", "orbit.png"}
+
+
 @pytest.mark.parametrize(("ball_count", "every"), [(12, 1), (25, 2)])
 def test_labels_lie_on_no_arrow_and_on_no_other_label(ball_count, every):
     """On 12 balls all; on 25 small ones every second."""
@@ -169,14 +179,17 @@ for words in {commands!r}:
 @pytest.mark.slow
 @pytest.mark.needs("pyvista")
 def test_pictures_are_drawn_without_a_display_and_in_silence(tmp_path):
-    """Of the view at a static load, and of a mesh; ``test_commands`` looks at those of a motion."""
-    (tmp_path / "scene.toml").write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\nradial = [600.0, 0.0]\n')
+    """Of the view of a motion, and of a mesh; ``test_commands`` looks at those at rest."""
     view, mesh = (["--out", str(tmp_path / name), "--json"] for name in ("view", "mesh"))
-    commands = [["view", str(tmp_path / "scene.toml"), *view], ["view", "--mesh", MINIMAL, *COARSE, "--picture", *mesh]]
+    commands = [
+        ["view", str(MINIMAL), "--set", "load.radial=[600,0]", *view],
+        ["view", "--mesh", MINIMAL, *COARSE, "--picture", *mesh],
+    ]
     found = python("-c", DRAWING.format(commands=commands), DISPLAY="", PYTHONWARNINGS="always")
     assert found.returncode == 0 and found.stderr == "", found.stderr
     content, _ = json.JSONDecoder().raw_decode(found.stdout)
-    assert [Path(path).name for path in content["files"]] == ["bearing.png", "contacts.png", "ball-loads.png"]
+    names = "bearing bearing-peak contacts ball-loads orbit"
+    assert [Path(path).name for path in content["files"]] == [f"{name}.png" for name in names.split()]
     for path in [*tmp_path.glob("*/*.png")]:
         assert path.stat().st_size > 20_000, "empty pictures are smaller"
     assert (tmp_path / "mesh" / "mesh.png").is_file()
