@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import raceway as rw
-from raceway.pipeline.equilibrium import solve_equilibrium
+from raceway.extend import solve_equilibrium
 
 #: Times the smallest stable step of an element; speed [r/min].
 STEPS, RPM = 3.0, 12_000.0

@@ -32,10 +32,9 @@ from checks.validation.command_line import MINIMAL, invoke
 from checks.validation.figures import outside
 from checks.validation.records import made as a_record
 from checks.validation.stores import SPEEDS, as_list, made
-from raceway import law, scene_from_dict
+from raceway import Followed, law, scene_from_dict
 from raceway.answers import picture as writer
-from raceway.answers.picture import readable
-from raceway.extend import below_contacts, select
+from raceway.extend import Attractor, below_contacts, select
 from raceway.plugins.formats import pictures
 from raceway.points import band as band_picture
 from raceway.points import branch as followed
@@ -44,8 +43,7 @@ from raceway.points import law as law_picture
 from raceway.points import plot as store_picture
 from raceway.points import precision_picture as precision
 from raceway.points import sensitivities as bars
-from raceway.points.attractor import Attractor
-from raceway.points.branch import Followed, Label, Orbit
+from raceway.points.branch import Label, Orbit
 from raceway.points.plot import layout
 from raceway.testing import b7206c, run
 from tests import test_compare
@@ -247,7 +245,7 @@ MARKS = {of_stresses: [pytest.mark.slow, pytest.mark.needs("pyvista")], of_the_a
     "draw", [pytest.param(draw, id=draw.__name__, marks=MARKS.get(draw, ())) for draw in DRAWN.values()]
 )
 def test_every_drawn_point_lies_inside_its_axes_and_is_read_at_600_pixels(draw):
-    figures = [readable(figure) for figure in draw()]
+    figures = [writer.readable(figure) for figure in draw()]
     for figure in figures:
         figure.draw_without_rendering()  # when its limits are known
     assert figures and [line for figure in figures for line in outside(figure)] == []

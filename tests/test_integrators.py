@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 import attrs
 import numpy as np
 import pytest
 from raceway_checks.stability.catalogue import BASE
 
 from checks.validation import orders
+from checks.validation.command_line import EXAMPLES
 from checks.validation.scenes import built_in, rotating
 from raceway import PluginError, SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
 from raceway.core.ring.ring import Increment
 from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.signatures import Outer
 from raceway.core.time.compiled import outer_force
-from raceway.extend import Drivers, OneStep, Schedule, State, at_rest, integrate
+from raceway.extend import Drivers, OneStep, Schedule, at_rest, integrate
 from raceway.testing import Registry, model_of, settled, simulate, solve_equilibrium
 
 Newmark = built_in("integrator", "newmark")
@@ -128,40 +127,12 @@ BODIES = {
 }
 
 
-def trapezoidal(system, recorder):
-    """u1 = u0 + dt (v0 + v1) / 2, v1 = v0 + dt (a0 + a1) / 2."""
-    dt = recorder.schedule.dt
-    for step in range(1, recorder.schedule.steps + 1):
-        t, before = recorder.time_of(step), recorder.state
-        outer, u = recorder.load(t), before.u + dt * before.v
-        for _ in range(12):
-            v = 2.0 * (u - before.u) / dt - before.v
-            a = 2.0 * (v - before.v) / dt - before.a
-            rest = system.internal(t, dt, u, v) - outer
-            change = system.solve(1.0, 2.0 / dt, 4.0 / dt**2, system.mass_times(a) + rest)
-            u = u - change
-            if np.abs(change).max() <= 1e-13 * np.abs(u).max():
-                break
-        recorder.accept(State(u, v, a, rest))
+#: With a driver for systems that are stepped from Python, and no other.
+(ENTRY,) = Registry(third_party=False).load_file(EXAMPLES / "plugins" / "trapezoidal.py")
+Trapezoidal = ENTRY.plugin
 
 
-@attrs.frozen
-class Stepped:
-    """With a driver for systems that are stepped from Python, and no other."""
-
-    name: ClassVar[str] = "stepped"
-    order: ClassVar[int] = 2
-    implicit: ClassVar[bool] = True
-    inertial: ClassVar[bool] = True
-    steady: ClassVar[bool] = False
-    dissipative: ClassVar[bool] = False
-
-    @property
-    def scheme(self):
-        return Drivers(stepped=trapezoidal)
-
-
-class ByNumbers(Stepped):
+class ByNumbers(Trapezoidal):
     """By the numbers of a scheme of the core: Hilber, Hughes and Taylor's method."""
 
     name = "by_numbers"
@@ -173,7 +144,7 @@ class ByNumbers(Stepped):
         return OneStep(0.0, alpha, 0.25 * (1.0 + alpha) ** 2, 0.5 + alpha, 1e-11)
 
 
-class Compiled(Stepped):
+class Compiled(Trapezoidal):
     """For compiled rings only."""
 
     name = "compiled"
@@ -186,7 +157,7 @@ class Compiled(Stepped):
 class ThirdParty:
     @hookimpl
     def raceway_integrators(self):
-        return [Stepped, ByNumbers, Compiled]
+        return [Trapezoidal, ByNumbers, Compiled]
 
 
 def registry():
@@ -208,8 +179,8 @@ def scene(bodies, integrator):
 
 
 #: Points take seconds: once.
-WAYS = [(bodies, way) for bodies in BODIES for way in ("stepped", "by_numbers")]
-DEAR = {("nodal", "stepped"), ("nodal", "by_numbers"), ("elastic", "stepped"), ("elastic", "by_numbers")}
+WAYS = [(bodies, way) for bodies in BODIES for way in ("trapezoidal", "by_numbers")]
+DEAR = {("nodal", "trapezoidal"), ("nodal", "by_numbers"), ("elastic", "trapezoidal"), ("elastic", "by_numbers")}
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,6 @@ from raceway.extend import Drivers
 from raceway.testing import BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, suite_of
 from raceway.testing import suite as suites
 from raceway.testing.contact_law import exponents
-from raceway.testing.suite import EXPECTED_FAILURES
 from tests import broken_laws
 from tests.broken_bodies import BROKEN
 
@@ -292,7 +291,7 @@ def expecting(tmp_path, monkeypatch):
     def make(body, listed):
         name = f"expecting_{abs(hash((body, listed, str(tmp_path))))}"
         (tmp_path / f"{name}.py").write_text(EXPECTING.format(body=body))
-        (tmp_path / EXPECTED_FAILURES).write_text(listed)
+        (tmp_path / "raceway_expected_failures.toml").write_text(listed)
         importlib.invalidate_caches()
         return importlib.import_module(name).Loose()
 

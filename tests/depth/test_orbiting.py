@@ -13,8 +13,7 @@ from raceway.core.ring.kernels.layout import CENTRIFUGAL, place
 from raceway.core.signals import phasors
 from raceway.core.signatures import Constants
 from raceway.extend import CAGE, ball_pass
-from raceway.pipeline.quantities import stated_quantities
-from raceway.testing import b7206c, model_of, settled, simulate, solve_equilibrium
+from raceway.testing import b7206c, model_of, simulate, solve_equilibrium
 
 
 def test_inertia_amplifies_the_ball_pass_line_as_a_linear_oscillator_would():
@@ -154,8 +153,8 @@ def test_forces_know_one_cage_speed_which_the_table_has_beside_the_loaded_one():
         "load": {"axial": 2000.0},
         "kinematics": {"spin_speed_rpm": 15000.0, "orbiting": True},
     }
-    model, now = settled(tables)
-    row = stated_quantities(model, now, None).tables["ball_pass"]["rows"][0]
+    result = run(tables)
+    model, row = result.model, result.ball_pass["rows"][0]
     cage, b = row["ftf_in_forces"] * model.problem.spin_speed, model.scene.bearing
     assert model.system.scalars[CAGE] == pytest.approx(cage, rel=1e-14)
     centrifugal = model.geometry.ball_mass(b.balls.density) * 0.5 * b.pitch_diameter * cage**2
