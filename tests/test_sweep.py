@@ -6,9 +6,7 @@ import itertools
 import json
 import os
 import resource
-import signal
 import sqlite3
-import subprocess
 import sys
 import time
 from contextlib import closing, contextmanager, suppress
@@ -18,7 +16,7 @@ import attrs
 import numpy as np
 import pytest
 
-from checks.validation.command_line import ARTICLE, EXAMPLES, PATIENCE_S, invoke
+from checks.validation.command_line import ARTICLE, EXAMPLES, invoke
 from checks.validation.scenes import built_in
 from raceway import PluginError, RacewayError, SceneError, __version__, scene_from_dict
 from raceway import sweep as front
@@ -191,34 +189,6 @@ def test_what_is_finished_survives_a_stop_and_is_not_computed_again(tmp_path):
 
     # Nothing is left to do: no batch is asked for.
     assert swept(tmp_path / "s", design, Stopping(after=0), resume=True) == whole
-
-
-@pytest.mark.slow
-def test_killed_while_it_computes(tmp_path):
-    """The store of a process that was killed is whole, and goes on to the same values."""
-    grids = "--grid excitation.speed_rpm=10980:15000:16 --grid load.axial=400,900,2000"
-    words = [*grids.split(), "--out", str(tmp_path / "s")]
-    words = ["-m", "raceway", "sweep", ARTICLE, "--set", "integrator.kind=quasi_static", *words]
-    process = subprocess.Popen([sys.executable, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    file, done = tmp_path / "s" / "points.sqlite", 0
-    end = time.monotonic() + PATIENCE_S
-    while done < 3 and process.poll() is None and time.monotonic() < end:
-        time.sleep(0.02)
-        if file.is_file() and file.stat().st_size > 0:
-            try:
-                with open_store(tmp_path / "s") as store:
-                    done = store.status()["done"]
-            except RacewayError:
-                continue  # it is being made
-    process.send_signal(signal.SIGKILL)
-    error = process.communicate()[1].decode()
-    assert process.returncode == -signal.SIGKILL, error
-    found = invoke("sweep", *words[3:], "--resume", "--json")
-    assert found.exit_code == 0, found.output
-    content = json.loads(found.stdout)
-    assert content["states"]["done"] == 48
-    again = invoke("sweep", *words[3:-1], str(tmp_path / "whole"), "--json")
-    assert json.loads(again.stdout)["rows"] == content["rows"]
 
 
 DAMAGES = {

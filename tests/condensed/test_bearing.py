@@ -32,10 +32,6 @@ def at_rest(**changes):
     [
         ({"tilt": "locked"}, {0: 28.691, 1: 1.957}, (65.00, 254.8, 255.5)),
         ({"tilt": "free"}, {0: 26.921, 1: 13.676, 4: 1544.7}, (65.60, 267.5, 253.8)),
-        # That program sees displacements along the contacts' normals only, 1.3 % of kxx on this bed.
-        pytest.param(
-            {"tilt": "locked", "outer_seat": 500e9}, {0: 32.191, 1: 2.598}, (None, 191.7, None), marks=pytest.mark.slow
-        ),
     ],
 )
 def test_whole_bearing(supports, displacement, diagonal):
@@ -44,7 +40,7 @@ def test_whole_bearing(supports, displacement, diagonal):
     for index, value in displacement.items():
         assert 1e6 * found.displacement[index] == pytest.approx(value, rel=0.01)
     for index, value in enumerate(diagonal):
-        assert value is None or 1e-6 * found.stiffness[index, index] == pytest.approx(value, rel=0.01)
+        assert 1e-6 * found.stiffness[index, index] == pytest.approx(value, rel=0.01)
 
 
 @pytest.mark.slow

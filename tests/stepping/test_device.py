@@ -20,10 +20,11 @@ from raceway import (
     make_plan,
     scene_from_dict,
 )
+from raceway.contact_laws.hertz import three_halves
 from raceway.core import device
 from raceway.core.fem.elastic import device_steps
 from raceway.core.fem.elastic.device_steps import DeviceSteps
-from raceway.extend import Schedule, integrate, three_halves
+from raceway.extend import Schedule, integrate
 from tests.test_elastic_scene import EXCITED, scene
 
 CentralDifference = built_in("integrator", "central_difference")
