@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import raceway as rw
-from checks.validation.scenes import rotating
+from checks.validation.scenes import rotating, small_force
 from raceway import run
 from raceway.core.signals import stiffness, synchronous_phasor, turns_in, without_drift
 from raceway.extend import Motion, Record, Schedule, fit_harmonics, identification
@@ -138,23 +137,9 @@ def test_tangent_identifier_is_the_small_force_limit():
     assert orbit.dynamic_stiffness.real == pytest.approx(tangent.dynamic_stiffness.real, rel=1e-3)
 
 
-RPM = 12000.0
-
-
-def response(integrator, share, identifier="fft_1x", **changes):
-    """A run under a force of ``share`` of the axial load."""
-    tables = {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 400.0},
-        "supports": {"tilt": "locked"},
-        "kinematics": {"spin_speed_rpm": RPM, "gyroscopic": "none", "ring_growth": False},
-        "excitation": {"kind": "unidirectional", "amplitude": "constant", "force": 400.0 * share, "speed_rpm": RPM},
-        "integrator": {"kind": integrator},
-        "identifier": {"kind": identifier},
-    }
-    for name, table in changes.items():
-        tables[name] = {**tables.get(name, {}), **table}
-    return rw.run(tables)
+def response(integrator, share, identifier="fft_1x", kinematics=None, **changes):
+    still = {"gyroscopic": "none", "ring_growth": False}
+    return small_force(identifier, integrator, share, {"kinematics": still | (kinematics or {}), **changes})
 
 
 KINDS = [

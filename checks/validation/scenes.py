@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from raceway import Result, run
 from raceway.testing import Model, default_registry
 
 #: The rig's unbalance, 7.1 g at 90 mm; two bearings carry half of its force each.
@@ -53,6 +54,20 @@ def rotating(axial: float, tilt: str, speed_rpm: float, inertia: bool, integrato
 
 
 _BALL = 9.525e-3
+
+
+def small_force(identifier: str, integrator: str, share: float, changes: dict[str, Any] | None = None) -> Result:
+    """A run at 12 000 r/min under a force along one direction of a share of 400 N."""
+    tables: dict[str, Any] = {
+        "bearing": {"preset": "B7206C"},
+        "load": {"axial": 400.0},
+        "supports": {"tilt": "locked"},
+        "kinematics": {"spin_speed_rpm": 12000.0},
+        "excitation": {"kind": "unidirectional", "amplitude": "constant", "force": 400.0 * share, "speed_rpm": 12000.0},
+        "integrator": {"kind": integrator},
+        "identifier": {"kind": identifier},
+    }
+    return run(tables | {name: tables.get(name, {}) | table for name, table in (changes or {}).items()})
 
 
 def random_tables(rng: np.random.Generator, law: str = "hertz") -> dict[str, Any]:

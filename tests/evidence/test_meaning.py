@@ -10,6 +10,7 @@ import pytest
 
 import raceway as rw
 from checks.validation.command_line import python
+from checks.validation.scenes import small_force
 
 pytestmark = pytest.mark.night
 
@@ -130,22 +131,6 @@ def test_no_warnings_of_usual_scenes(claim):
     claim(quantity, len(alarms), at_most=0, basis="closed form", source="nothing is wrong with them")
 
 
-def small(identifier, integrator, share, speed, changes):
-    """Under a force along one direction of a share of 400 N."""
-    tables = {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 400.0},
-        "supports": {"tilt": "locked"},
-        "kinematics": {"spin_speed_rpm": speed},
-        "excitation": {"kind": "unidirectional", "amplitude": "constant", "force": 400.0 * share, "speed_rpm": speed},
-        "integrator": {"kind": integrator},
-        "identifier": {"kind": identifier},
-    }
-    for name, table in changes.items():
-        tables[name] = {**tables.get(name, {}), **table}
-    return rw.run(tables)
-
-
 def test_small_forces(claim):
     """Of what a motion is off the tangent for its own size, the square of the force is taken off."""
     ratios, last = [], []
@@ -153,9 +138,9 @@ def test_small_forces(claim):
         {}, {"kinematics": {"ball_inertia": False}}, {"kinematics": {"gyroscopic": "outer_race"}}, {"load": {"radial": [300.0, 0.0]}},
         {"supports": {"tilt": "free"}}, {"contact": {"time_constant": 1e-5}},
     ):  # fmt: skip
-        tangent = small("tangent", "periodic", 1e-4, 12000.0, changes).identification.dynamic_stiffness
+        tangent = small_force("tangent", "periodic", 1e-4, changes).identification.dynamic_stiffness
         for share in (1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3):
-            result = small("fft_1x", "periodic", share, 12000.0, changes)
+            result = small_force("fft_1x", "periodic", share, changes)
             off = abs(result.identification.dynamic_stiffness / tangent - 1.0)
             ratios.append(max(off - share**2, 0.0) / result.error["total"])
         last.append(off)
@@ -172,9 +157,9 @@ def test_small_forces(claim):
     )
     ratios, last = [], []
     for integrator in ("newmark", "generalized_alpha"):
-        tangent = small("tangent", integrator, 1e-4, 12000.0, {}).identification.dynamic_stiffness
+        tangent = small_force("tangent", integrator, 1e-4).identification.dynamic_stiffness
         for share in (1e-6, 1e-5, 1e-4):
-            result = small("fft_1x", integrator, share, 12000.0, {})
+            result = small_force("fft_1x", integrator, share)
             off = abs(result.identification.dynamic_stiffness / tangent - 1.0)
             ratios.append(off / result.error["total"])
         last.append(off)

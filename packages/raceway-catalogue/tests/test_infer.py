@@ -287,7 +287,8 @@ def test_the_catalogue_lists_shows_and_draws(tmp_path):
 
 
 def test_the_section_is_in_proportion():
-    from raceway_catalogue.catalogue import ring_outline
+    from matplotlib.patches import Circle
+    from raceway_catalogue.catalogue import ring_outline, section_drawing
 
     bearing = rw.Scene.from_dict({"bearing": {"preset": "7014C"}}).bearing
     inner, outer = (ring_outline(bearing, race) for race in (True, False))
@@ -297,3 +298,6 @@ def test_the_section_is_in_proportion():
     for ring in (inner, outer):
         gap = np.hypot(ring[2:-2, 0], ring[2:-2, 1] - 0.045) - 0.5 * bearing.ball_diameter
         assert -1e-9 < gap.min() < 1e-5
+    shapes = [shape for axes in section_drawing("7014C", bearing).axes for shape in axes.patches]
+    balls = np.array([(*shape.center, 2.0 * shape.radius) for shape in shapes if isinstance(shape, Circle)])
+    assert balls == pytest.approx(np.array([[0.0, r, 1e3 * bearing.ball_diameter] for r in (45.0, -45.0, 45.0)]))
