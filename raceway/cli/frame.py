@@ -160,10 +160,7 @@ def changed_tables(scene: Path, changes: tuple[str, ...], registry: Registry) ->
 
 
 def load(scene: Path, changes: tuple[str, ...], registry: Registry) -> Scene:
-    """A scene from its file and the changes.
-
-    SceneError: With the mistakes of both.
-    """
+    """A scene from its file and the changes; SceneError with the mistakes of both."""
     scene_input, mistakes = _with_changes(scene, changes)
     try:
         read = scene_input.scene(registry)
@@ -284,8 +281,6 @@ def keep_state(error: RacewayError, scene: Scene, folder: Path) -> None:
 
     The result of another run is not the answer of this one: it stays, under the name ``result-older.json``.
 
-    Parameters
-    ----------
     error : with ``state``, arrays by name: t [s]; q, v, a (5,) displacement [m, rad] and its rates; ball (Z, 2) [m]
     """
     import io

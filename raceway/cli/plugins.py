@@ -311,20 +311,11 @@ def new_plugin(kind: str, name: str, folder: str | Path = ".", registry: Registr
     The templates are package data, ``data/templates/KIND``; a file package_x.py.txt becomes x.py in the package's folder, tests_x.py.txt
     a file in tests, the rest stands at the top.
 
-    Parameters
-    ----------
     kind : of ``raceway.framework.contracts.KINDS``
     name : the word that a scene will write as ``kind``
     folder : where the package's own folder is made
 
-    Returns
-    -------
-    Path : the package's folder
-
-    Raises
-    ------
-    PluginError
-        An unknown kind, a name that cannot be used, or a folder that exists; nothing is written then.
+    PluginError: An unknown kind, a name that cannot be used, or a folder that exists; nothing is written then.
     """
     kind = kind.replace("-", "_")
     if kind not in KINDS:

@@ -38,10 +38,7 @@ _NUMBER = re.compile(r"\d+(\.\d+)?(e[+-]?\d+)?")
 
 @attrs.frozen(eq=False, repr=False, slots=False)
 class _Swept(Answer):
-    """What a store holds.
-
-    files : that were written;  fault : why points or files are missing
-    """
+    """What a store holds, and files that were written; ``fault`` is why points or files are missing."""
 
     stem: ClassVar[str] = "sweep"
     store: Path
@@ -264,10 +261,7 @@ def _answer(
     task: Sweep, pool: Executor, force: bool, retry_failed: bool, scheduler: str | None, csv: bool, choice: _Choice,
     progress: ShowProgress,
 ) -> Answer:  # fmt: skip
-    """What the store holds once the points are computed, and its files.
-
-    Interrupted: after Ctrl-C.
-    """
+    """What the store holds once the points are computed, and its files; Interrupted after Ctrl-C."""
     from raceway.points.sweep import fill_store, refuse_large
 
     refuse_large(task, pool, force)

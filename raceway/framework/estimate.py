@@ -8,12 +8,7 @@ from enum import Enum, unique
 
 
 class Note(str):
-    """A sentence, with the few words in which a screen says it.
-
-    Attributes
-    ----------
-    short : those words;  estimate : the member that the note is made of
-    """
+    """A sentence, ``short`` as a screen says it, and the member of the estimate that the note is made of."""
 
     short: str
     estimate: "Estimate | None"

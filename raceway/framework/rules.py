@@ -15,8 +15,6 @@ S = TypeVar("S")
 class Rule(Generic[S]):
     """One rule.
 
-    Attributes
-    ----------
     keys : one or several, such as "contact.kind", or what finds the one at fault;  when : whether the rule speaks
     words : the reason, and the remedy where there is one; or what makes them of the tables
     """

@@ -102,10 +102,7 @@ class blamed:
 
 
 def import_file(path: Path) -> tuple[Any, str]:
-    """The module of a plug-in file, and a hash of the file; one module for each content.
-
-    PluginError: A file that is missing or fails to import.
-    """
+    """The module of a plug-in file, one for each content, and its hash; PluginError: missing, or fails to import."""
     try:
         size_of(path, _LONGEST)
         content = path.read_bytes()

@@ -14,8 +14,6 @@ are taken from values without a transient: leakage has no order.
 
 K and C of several whirl speeds are compared with Z of the motions at those speeds, and at the scene's own.
 
-References
-----------
 Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (2nd ed., 1993), section II.4 (step halving).
 Trefethen, Weideman, SIAM Review 56 (2014), 385 (aliasing of the trapezoidal rule).
 """
@@ -319,12 +317,8 @@ def _transient(run: Identified, step: Part) -> Part:
 def window_misses_transient(model: Model, simulation: Simulation, clean: Clean, leakage: float) -> bool:
     """Whether the window over the turns may miss a part of the transient.
 
-    Parameters
-    ----------
     leakage : that the window finds [N/m]
 
-    Notes
-    -----
     What began on no stable orbit may be on its way from one motion to another.  What began on none at all may beat with 1x:
     then the halves of the turns are further apart than the window over all turns accounts for.
     """

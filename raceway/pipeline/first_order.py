@@ -105,9 +105,8 @@ def first_order_band(
 ) -> Tables | None:
     """The table ``tolerances`` of result.json, of the scene's own tolerances or of others; None without any.
 
-    Returns
-    -------
-    quantities : name -> value, unit, definition, low, high, and ``shares`` of the variance by key;  left_out : keys without a derivative, with reasons
+    quantities : name -> value, unit, definition, low, high, and ``shares`` of the variance by key
+    left_out : keys without a derivative, with reasons
     why : why there are no quantities, none of the motion, or intervals of a part of the tolerances; empty else
     """
     scene = model.scene

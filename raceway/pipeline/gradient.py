@@ -65,8 +65,6 @@ class NoDerivative(Exception):  # noqa: N818  (an answer, stated in the table, n
 class StaticGradient:
     """Derivatives of an equilibrium by the number at one key.
 
-    Attributes
-    ----------
     step : of the differences, in the unit of the key; 0 where it changes nothing at rest
     displacement : (5,) [m, rad];  stiffness, damping : (5, 5) of the contacts;  contact_force : (2 Z,) inner races first [N]
     stated : of ``Gradients.stated``
@@ -114,12 +112,7 @@ class Gradient:
 
 @attrs.define(eq=False)
 class SteadyOrbit:
-    """The steady orbit of a model under its excitation.
-
-    Attributes
-    ----------
-    orbit : that is taken, with others beside it
-    """
+    """The steady orbit of a model under its excitation that is taken, with others beside it."""
 
     model: Model
     orbit: PeriodicMotion
@@ -178,8 +171,6 @@ def _line_numbers(solution: Solved, mass: float) -> np.ndarray:
 class Gradients:
     """Derivatives of an equilibrium, and of the steady orbit about it.
 
-    Attributes
-    ----------
     moving : False leaves the orbit out
 
     SceneError: Bodies whose contacts are pressures at surface points, or are not compiled.
@@ -194,10 +185,7 @@ class Gradients:
 
     @cached_property
     def orbit(self) -> SteadyOrbit | None:
-        """The steady orbit, searched for once; None in a static scene.
-
-        SceneError, ConvergenceError: The force has none, or none was found.
-        """
+        """The steady orbit, searched for once, None in a static scene; SceneError, ConvergenceError: none, or none found."""
         has_orbit = self.moving and self.model.excitation is not None
         return SteadyOrbit.of(self.model, self.equilibrium) if has_orbit else None
 
@@ -214,10 +202,7 @@ class Gradients:
         return {name: float(value[0]) for name, value in numbers.items() if np.isfinite(value[0])}
 
     def by_path(self, path: str) -> Gradient:
-        """By the key of a path, such as "load.axial".
-
-        SceneError: No continuous key, or one without a derivative.
-        """
+        """By the key of a path, such as "load.axial"; SceneError: no continuous key, or one without a derivative."""
         answer = self.by_all([key_of(self.model.scene, path)])[0]
         if isinstance(answer, NoDerivative):
             raise SceneError.at(path, None, str(answer))
@@ -228,8 +213,6 @@ class Gradients:
     ) -> list[Gradient | NoDerivative]:
         """By several keys; of those that have no derivative, why.
 
-        Parameters
-        ----------
         on_progress : called as ``on_progress(what, done, total)``
         """
         answers: dict[str, Gradient | NoDerivative] = dict(self._ends(keys))
@@ -316,10 +299,7 @@ class Gradients:
         return answers
 
     def _by_models(self, key: Key, relative: float = _STEP) -> Gradient:
-        """Of a key whose neighbours are models of their own.
-
-        NoDerivative: there is none, with the reason.
-        """
+        """Of a key whose neighbours are models of their own; NoDerivative with the reason where there is none."""
         if self.model.scene.heat is not None:
             raise NoDerivative(
                 "also changes the steady temperatures, which derivatives do not solve for. Sample it: raceway band --samples"
@@ -389,10 +369,7 @@ def other_meshes(problem: Problem, other: Problem) -> str:
 
 
 def _has_other_contacts(model: Model, neighbour: Model) -> bool:
-    """Whether anything differs, to the last bit.
-
-    NoDerivative: parts of one that the other does not have.
-    """
+    """Whether anything differs, to the last bit; NoDerivative: parts of one that the other does not have."""
     systems = surrogate(model.system), surrogate(neighbour.system)
     pairs = [tuple(getattr(system, name) for system in systems) for name in _ARRAYS]
     if any(value.shape != other.shape for value, other in pairs):

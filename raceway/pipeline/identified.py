@@ -23,8 +23,6 @@ _MUCH = 0.05
 class Identified:
     """Motions of a scene, and what is identified from them: of this errors are estimated.
 
-    Attributes
-    ----------
     model, equilibrium : of the scene
     motions : one at each speed; empty where the identifier needs no motion
     on_progress : called in further runs and searches; the error of one that it ends is not known
@@ -71,12 +69,8 @@ def start_warnings(model: Model, size: float | None, how: str) -> list[str]:
 def with_series_error(run: Identified, time_step: float | None) -> Identification:
     """The identification with ``series_error`` from steady motions where the speed changes.
 
-    Parameters
-    ----------
     time_step : relative error of the time step
 
-    Notes
-    -----
     Of windows whose search is ended by ``run.on_progress`` no error is stated.
     """
     identification, errors = run.identification, list[float | None]()

@@ -248,12 +248,7 @@ def _bound_of(model: Model, equilibrium: Equilibrium, keys: Collection[str]) -> 
 
 
 def column_bounds(example: Problem, bearing: ColumnBearing, force: np.ndarray) -> np.ndarray:
-    """The same (n,) of the rigid bearing at n points under contact forces (n, 2 Z); nan where there is none.
-
-    Parameters
-    ----------
-    example : problem of one of the points
-    """
+    """The same (n,) of the rigid bearing at n points, one ``example``, under contact forces (n, 2 Z); nan: none."""
     values, _ = _alternatives(example, True)
     if not values:
         return np.full(len(force), np.nan)

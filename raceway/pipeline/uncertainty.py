@@ -5,8 +5,6 @@ is inferred, whose bearing it is, and [tolerances]; ``contact``, exact Hertz ins
 rigid ones.  Nobody prints how loads, pressures and lives differ between bearings: there inferred numbers go to the ends of their scatter,
 one by one, in the equilibrium of rigid rings under the constant loads.
 
-References
-----------
 JCGM 100:2008, Guide to the expression of uncertainty in measurement, 5.1.2 (squares of independent parts) and F.2.4.5 (known effects
 that are not corrected widen one side).
 """
@@ -336,13 +334,9 @@ _ITERATIONS, _LEAST = 20, 1e-3
 def elastic_change(model: Model, equilibrium: Equilibrium) -> dict[str, float] | str:
     """Relative change of ``kxx`` and ``kyy`` on rigid seats, at most; or why there is none.
 
-    Parameters
-    ----------
     model : rigid bodies
     equilibrium : its static state
 
-    Notes
-    -----
     Half-spaces under a Hertz contact give way by more than a ring's wall on a rigid seat and a ball of finite size.  The difference
     c, the structural compliance of ``bodies.kind = "condensed"`` with its sign changed, is that of a layer: a ring's wall t below
     its groove takes ``_RING`` cos^2(alpha) / (E' t), a ball ``_BALL`` / (E' D) for both of its contacts (E' = E / (1 - nu^2)).  Each
@@ -350,8 +344,6 @@ def elastic_change(model: Model, equilibrium: Equilibrium) -> dict[str, float] |
     axially its stiffness is k sin^2(alpha) + (Q / s) cos^2(alpha), radially that with sine and cosine exchanged, 1 / k = h - c
     (h Hertz's compliance).  Seats that give way change the sign: ``supports.outer_seat`` and ``inner_seat`` of condensed bodies.
 
-    References
-    ----------
     Fitted to condensed bodies of 23 bearings of eight series under 0.5, 2 and 8 % of C0: their changes are met within ``_WITHIN`` of
     themselves (``python -m checks uncertainty``).
     """

@@ -65,8 +65,6 @@ Solve = Callable[[Mapping[str, np.ndarray], np.ndarray, list[np.ndarray]], np.nd
 class Warmth:
     """Steady temperatures of n points.
 
-    Attributes
-    ----------
     columns : of the keys of temperatures (n,), those of the cold bearing where nothing is steady
     temperatures : (n, 6) of all nodes [C]
     runaway : (n,) whether there are none: heat outgrows what can leave
@@ -80,8 +78,6 @@ class Warmth:
 def warm(scene: Scene, columns: Mapping[str, np.ndarray], plan: ScenePlan, factors: Sequence[np.ndarray] = ()) -> Warmth:
     """Steady temperatures of a scene with [heat] at points.
 
-    Parameters
-    ----------
     columns : (n,) of continuous keys of the scene, at least one;  plan : of one of the points
     factors : (n,) of ``thermal_network``
     """
@@ -134,12 +130,8 @@ def warm_plan(scene: Scene) -> ScenePlan:
 def band_of_heat(scene: Scene, friction: tuple[float, float]) -> Tables:
     """``heat.band`` of result.json: [low, high] of temperatures, heat, preload, stiffness and life over the bands of friction and conductances.
 
-    Parameters
-    ----------
     friction : ends of the band of its torque, over the torque
 
-    Notes
-    -----
     Ends are those of the eight combinations of friction, the inner rings' conductance to the oil and the other conductances at the ends of
     their bands.  Where some of them have no steady temperature, or close the bearing, the upper ends are None, of life the lower one; both ends
     where all do.  Stiffness and life are left out where bodies are simplified for the temperatures (``_simple``).

@@ -31,12 +31,7 @@ _KEYS = frozenset([
 
 
 def why_not(problem: Problem, moving: bool) -> str:
-    """Why the points of a scene are computed one by one; empty where the compiled loops do.
-
-    Parameters
-    ----------
-    moving : whether their motions are asked for
-    """
+    """Why points of a scene, or their motions (``moving``), are computed one by one; empty where compiled loops do."""
     scene = problem.scene
     bearing, law = scene.bearing, scene.contact.law
     if why := problem.body_kind.why_no_columns():

@@ -474,8 +474,6 @@ def recorded_per_turn(steps_per_turn: int, turns: int, inertial: bool = True) ->
 def samples_per_turn(turns: int, inertial: bool = True) -> int:
     """Samples a turn that are recorded: 360, fewer in runs of more than 200 turns, never below 24.
 
-    Parameters
-    ----------
     inertial : False for a series of equilibria, of which up to 72 000 are recorded in all: no inertia keeps the harmonics
         of the contacts small, and those beyond the samples would show as 1x
     """

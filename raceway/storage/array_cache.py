@@ -51,22 +51,14 @@ def folder() -> Path:
 def kept(
     kind: str, label: str, inputs: ReadTables, sources: Iterable[str], make: Callable[[], Mapping[str, np.ndarray]]
 ) -> dict[str, np.ndarray]:
-    """The arrays that ``make`` returns, from the cache where they are there.
+    """The arrays that ``make`` returns, C-contiguous; from the cache where they are there, then read-only.
 
-    Parameters
-    ----------
     kind : what sort of entry, one word
     label : one short line for people
     inputs : everything that the arrays depend on, by name: numbers, strings, None, arrays, and sequences of these
     sources : files or folders of this package, such as "core/fem/revolution", whose code makes the arrays
     make : makes them, when they are not there
 
-    Returns
-    -------
-    arrays : name -> array, C-contiguous; those from the cache are read-only
-
-    Notes
-    -----
     A folder that cannot be written, or must not be used, costs one warning a process and nothing else.
     """
     if fault := refusal(folder()):
@@ -99,10 +91,7 @@ class Entry:
 
 
 def entries() -> list[Entry]:
-    """All entries, those used last first; damaged ones are called so.
-
-    OSError: A folder that cannot be listed.
-    """
+    """All entries, those used last first; damaged ones are called so.  OSError: a folder that cannot be listed."""
     out = []
     for path in _files():
         with suppress(FileNotFoundError):
@@ -118,10 +107,7 @@ def entries() -> list[Entry]:
 
 
 def clear() -> None:
-    """Remove every entry.
-
-    OSError: What cannot be removed.
-    """
+    """Remove every entry; OSError where one cannot be removed."""
     if folder().exists():
         shutil.rmtree(folder())
 

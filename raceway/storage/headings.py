@@ -184,10 +184,7 @@ def _name(names: Sequence[str], units: Sequence[str], field: int) -> str:
 
 
 def _with_clock(heading: Heading, preamble: str, begin: Sequence[float]) -> Heading:
-    """The heading with its times: those of a column, or of the interval or rate that the text above the table states.
-
-    begin : of the first column
-    """
+    """The heading with its times: of its first column, or by the interval or rate that the text above the table states."""
     header, notes = heading.header, heading.notes
     times = [k for k, name in enumerate(header) if _TIME.match(name)]
     if len({header[k] for k in times}) < len(times):

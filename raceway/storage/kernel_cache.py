@@ -55,10 +55,7 @@ def refusal(folder: Path) -> str | None:
 
 
 def make(folder: Path) -> None:
-    """Make a folder of the cache, closed to others where it is new.
-
-    OSError: It cannot be made.
-    """
+    """Make a folder of the cache, closed to others where it is new; OSError where it cannot be made."""
     root = cache_root()
     root.parent.mkdir(parents=True, exist_ok=True)
     for parent in (*reversed(folder.parents), folder):
@@ -104,10 +101,7 @@ class _KernelFolder:
 
 
 def kernel_folders() -> list[_KernelFolder]:
-    """All of them, the current one first.
-
-    OSError: A cache folder that cannot be listed.
-    """
+    """All of them, the current one first; OSError: a cache folder that cannot be listed."""
     root = cache_root() / "kernels"
     folders = []
     for folder in root.iterdir() if root.is_dir() else ():
@@ -121,10 +115,7 @@ def kernel_folders() -> list[_KernelFolder]:
 
 
 def clear() -> None:
-    """Remove every folder of compiled kernels.
-
-    OSError: What cannot be removed.
-    """
+    """Remove every folder of compiled kernels; OSError where one cannot be removed."""
     root = cache_root() / "kernels"
     if root.exists():
         shutil.rmtree(root)
@@ -173,8 +164,6 @@ def opened(folder: Path) -> OpenFolder | str:
 class FilesOfKernel:
     """The cache files of one kernel.
 
-    Attributes
-    ----------
     base : how their names begin
     folder : folder of numba's for the function's source file
     """
