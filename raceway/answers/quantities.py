@@ -3,7 +3,7 @@
 Data sets, CSV heads, axes of pictures, screens and JSON look here; nothing else holds the unit or the words of a quantity.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import attrs
@@ -11,7 +11,6 @@ import attrs
 from raceway.errors import PluginError
 from raceway.framework.registry import Registry, default_registry
 from raceway.framework.shown import Fact, number, number_within
-from raceway.storage.tables import Tables
 
 #: Units that people read, with their factors.
 _READ = {"N/m": (1e-6, "N/µm"), "m": (1e6, "µm"), "Pa": (1e-6, "MPa")}
@@ -122,18 +121,6 @@ def entry_unit(unit: str, entry: Sequence[str]) -> str:
     for coordinate in entry:
         index = 2 * index + coordinate.startswith("tilt")
     return unit.split(", ")[index] if ", " in unit else unit
-
-
-def nested(quantities: Iterable[Quantity], result: object) -> Tables:
-    """Their values in tables as result.json has them."""
-    content: Tables = {}
-    for quantity in quantities:
-        *heads, key = quantity.path.split(".")
-        table = content
-        for head in heads:
-            table = table.setdefault(head, {})
-        table[key] = quantity.of(result)
-    return content
 
 
 #: One line per quantity: name, unit, words, path, attribute.

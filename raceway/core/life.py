@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 _SLOPE = 10.0 / 9.0
 #: Smallest life of any reliability, in basic lives, and the slope of the distribution above it (ISO/TR 1281-2).
 _SMALLEST_LIFE, _SLOPE_OF_RELIABILITY = 0.05, 1.5
-#: Reliabilities that ISO 281's table of a_1 spans, and viscosity ratios and a_ISO that its equations do.
-RELIABILITIES, VISCOSITY_RATIOS, _LARGEST_FACTOR = (0.9, 0.9995), (0.1, 4.0), 50.0
+#: Viscosity ratios and the largest a_ISO that ISO 281's equations span.
+VISCOSITY_RATIOS, _LARGEST_FACTOR = (0.1, 4.0), 50.0
 #: Numerator and exponent of kappa in a_ISO of radial ball bearings, from a viscosity ratio on.
 _LUBRICATION = (2.2649, 0.054381, 0.1), (1.9987, 0.19087, 0.4), (1.9987, 0.071739, 1.0)
 

@@ -14,7 +14,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Part
-from raceway.answers.quantities import C_ERROR, DRY, IDENTIFIED, KXX, KYY, KYY_TILTS_FOLLOW, C, K, X, Z, nested
+from raceway.answers.quantities import C_ERROR, DRY, IDENTIFIED, KXX, KYY, KYY_TILTS_FOLLOW, C, K, X, Z
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.core.signals import Identification, Line
 from raceway.errors import PluginError, RacewayError
@@ -37,7 +37,7 @@ from raceway.planning.resolve import Problem
 from raceway.scene.catalogue import geometry_of
 from raceway.scene.tables import TIME_CONSTANTS
 from raceway.storage.files import without_nan
-from raceway.storage.tables import Tables
+from raceway.storage.tables import Tables, nested
 
 if TYPE_CHECKING:
     import xarray
@@ -385,7 +385,7 @@ class Result(Answer):
             return None
         return {
             "definition": z.definition,
-            **nested(IDENTIFIED, self)["identification"],
+            **nested((quantity.path, quantity.of(self)) for quantity in IDENTIFIED)["identification"],
             "damping_origin": damping_origin(self.model.problem),
             "band": self.band,
             "tilt": self.model.problem.supports.tilt,

@@ -27,7 +27,7 @@ from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.bearing import Material
 from raceway.scene.sets import RATINGS
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import ReadTables, Tables, nested
 
 if TYPE_CHECKING:
     from raceway.scene.designation import Designation
@@ -103,12 +103,12 @@ class Preset:
     @property
     def table(self) -> Tables:
         """The [bearing] table that the preset stands for, without the printed ratings."""
-        return _tables(fact for fact in self.facts if fact.key not in RATINGS and _of_bearing(fact.key))
+        return nested((fact.key, fact.value) for fact in self.facts if fact.key not in RATINGS and _of_bearing(fact.key))
 
     @property
     def other_tables(self) -> Tables:
         """Further tables of a scene with this bearing, such as [bodies] of rollers; empty for ball bearings."""
-        return _tables(fact for fact in self.facts if not _of_bearing(fact.key))
+        return nested((fact.key, fact.value) for fact in self.facts if not _of_bearing(fact.key))
 
     @property
     def ratings(self) -> dict[str, float]:
@@ -118,18 +118,6 @@ class Preset:
 
 def _of_bearing(key: str) -> bool:
     return key.partition(".")[0] not in ("bodies", "contact", "supports")
-
-
-def _tables(facts: Iterable[Fact]) -> Tables:
-    """Nested tables of facts by their paths."""
-    tables: Tables = {}
-    for fact in facts:
-        table = tables
-        *parents, last = fact.key.split(".")
-        for parent in parents:
-            table = table.setdefault(parent, {})
-        table[last] = fact.value
-    return tables
 
 
 @cache

@@ -270,16 +270,12 @@ def _result_numbers(result: ReadTables) -> Tables:
     }
 
 
-def _from_hertz(row: ReadTables) -> Tables:
-    """Nodal peak pressures over Hertz's at the same ball load, less 1.
-
-    Returns table : for each race ``ball``, ``load_n`` and ``peak_pressure_pa`` of its most loaded ball with ``most_loaded``, its
-        deviation, and ``largest``, the deviation of largest size over all loaded balls; None of rigid bodies, which have no points
-    """
-    return {race: _pressures(row["balls"], race) for race in RACES}
-
-
 def _pressures(balls: list[ReadTables], race: str) -> Tables | None:
+    """Nodal peak pressures of a race over Hertz's at the same ball load, less 1; None of rigid bodies, which have no points.
+
+    ``ball``, ``load_n`` and ``peak_pressure_pa`` are of the most loaded ball, with ``most_loaded``, its deviation; ``largest`` is the
+    deviation of largest size over all loaded balls.
+    """
     nodal, hertz, load = f"peak_pressure_nodal_{race}_pa", f"peak_pressure_{race}_pa", f"load_{race}_n"
     most = max(balls, key=lambda ball: ball[load])
     loaded_balls = [ball for ball in balls if ball[load] > _LOADED * most[load] and ball.get(nodal) is not None]
@@ -452,7 +448,7 @@ class ElasticArticle(Answer):
         if run.excitation is None:
             # Below the most loaded contacts: over Hertz's, less 1.
             table |= {
-                "from_hertz": _from_hertz(row),
+                "from_hertz": {race: _pressures(row["balls"], race) for race in RACES},
                 "below_contact": [
                     {
                         **side,
