@@ -130,17 +130,6 @@ def root(builder: _Numba, x: _Numba) -> _Numba:
     return _call(builder, f"sqrt.v{WIDTH}f64", _NUMBERS, x)
 
 
-@_lanewise(LANES, (LANES, LANES))
-def angle_of(builder: _Numba, sine: _Numba, cosine: _Numba) -> _Numba:
-    """The angle of each lane's sine and cosine, or multiples of them: by the C library, one after the other."""
-    kind = ir.FunctionType(ir.DoubleType(), 2 * [ir.DoubleType()])
-    function, angles = cgutils.get_or_insert_function(builder.module, kind, "atan2"), ir.Constant(_NUMBERS, ir.Undefined)
-    for lane in range(WIDTH):
-        angle = builder.call(function, [builder.extract_element(part, _INDEX(lane)) for part in (sine, cosine)])
-        angles = builder.insert_element(angles, angle, _INDEX(lane))
-    return angles
-
-
 @_lanewise(LANES, *_TWO)
 def larger(builder: _Numba, x: _Numba, y: _Numba) -> _Numba:
     """The larger one in each lane; the second one beside NaN."""
@@ -208,7 +197,13 @@ def take(context: _Numba, builder: _Numba, matrix: _Numba, row: _Numba, column: 
 def put(context: _Numba, builder: _Numba, matrix: _Numba, row: _Numba, column: _Numba, live: _Numba, x: _Numba) -> _Numba:
     """The live lanes to the entries [row, column], [row, column + 1] and so on."""
     place = builder.bitcast(_place(context, builder, matrix, row, column), _NUMBERS.as_pointer())
-    _call(builder, f"masked.store.v{WIDTH}f64.p0", ir.VoidType(), _spread(builder, x), place, _INDEX(8), live)
+    bits = builder.bitcast(live, ir.IntType(WIDTH))
+    x = _spread(builder, x)
+    with builder.if_else(builder.icmp_unsigned("==", bits, bits.type(2**WIDTH - 1)), likely=True) as (whole, part):
+        with whole:
+            builder.store(x, place, align=8)
+        with part:
+            _call(builder, f"masked.store.v{WIDTH}f64.p0", ir.VoidType(), x, place, _INDEX(8), live)
     return context.get_dummy_value()
 
 

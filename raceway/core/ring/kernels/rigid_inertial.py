@@ -117,10 +117,11 @@ def _moving(k, live, rolls, attempt, ball_gain, scalars, work):
     j, longest = at.regular(balance.j), 0.2 * lo
     inverse = -1.0 / (j.aa * j.rr - j.ar * j.ra)
     sa, sr = (j.rr * ra - j.ar * rr) * inverse, (j.aa * rr - j.ra * ra) * inverse
-    reach = root(sa * sa + sr * sr)
-    scale = where(reach > longest, longest / reach, 1.0)
-    sa, sr = sa * scale, sr * scale
-    ends = active & ~back & (root(sa * sa + sr * sr) <= least)
+    reach = sa * sa + sr * sr
+    ends = active & ~back & (reach <= least * least)
+    if any_of(reach > longest * longest):
+        scale = where(reach > longest * longest, longest / root(reach), 1.0)
+        sa, sr = sa * scale, sr * scale
     da, dr = where(back, 0.5 * da, sa), where(back, 0.5 * dr, sr)
     put_pair(work, rows.PLACE, k, active, where(back, pa - da, pa + da), where(back, pr - dr, pr + dr))
     put_pair(work, at.STEP, k, active, da, dr)

@@ -2,11 +2,12 @@
 
 from typing import NamedTuple
 
+import numpy as np
 from numba import float64, int64, types
 from numba.extending import register_jitable
 
 from raceway.core.jit import jit
-from raceway.core.lanes import LANES, MASK, angle_of, any_of, larger, root, smaller, spread, take, where
+from raceway.core.lanes import LANES, MASK, any_of, larger, root, smaller, spread, take, where
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.tensors import LANES_PAIR, LANES_TENSOR, Pair, Tensor, pair_of
@@ -192,6 +193,25 @@ def with_gyroscopic(k, live, contacts, rub, rolling, work):
         rub.couple_by_length + groove * grows, rub.couple_by_inner + groove * share_i * by_i, groove * share_i * by_o,
         rub.couple_by_turn, rub.inner_by_turn, coupling, rub.couple_by_shift - groove * grows,
     )  # fmt: skip
+
+
+@jit(LANES(LANES, LANES), inline=True)
+def angle_of(sine, cosine):
+    """The angle of each lane's sine and cosine, or multiples of them, to 4e-16 of it.
+
+    Moshier's rational function for arc tangents (Cephes, atan.c), within a sixteenth of a turn of an axis or a diagonal.
+    """
+    s, c = larger(sine, -sine), larger(cosine, -cosine)
+    low, high = smaller(s, c), larger(s, c)
+    diagonal = low > 0.41421356237309503 * high
+    x = where(diagonal, low - high, low) / where(diagonal, low + high, where(high > 0.0, high, 1.0))
+    z = x * x
+    p = (((-8.750608600031904e-1 * z - 1.615753718733365e1) * z - 7.500855792314705e1) * z - 1.228866684490136e2) * z
+    q = ((((z + 2.485846490142306e1) * z + 1.650270098316989e2) * z + 4.328810604912903e2) * z + 4.853903996359137e2) * z
+    angle = x + x * (z * (p - 6.485021904942025e1) / (q + 1.945506571482614e2)) + where(diagonal, 0.25 * np.pi, 0.0)
+    angle = where(s > c, 0.5 * np.pi - angle, angle)
+    angle = where(cosine < 0.0, np.pi - angle, angle)
+    return where(sine < 0.0, -angle, angle)
 
 
 class _Grip(NamedTuple):
