@@ -69,6 +69,14 @@ def test_restart_equals_going_on(integrator):
     assert np.abs(rest.displacement - whole.displacement[steps:])[:, :3].max() <= 1e-8 * size
 
 
+@pytest.mark.parametrize("integrator", ["newmark", "generalized_alpha"])
+def test_forces_of_a_smooth_motion_are_asked_for_once_a_step(integrator):
+    """The tangent and the extrapolation of what it leaves foretell them within a step's tolerance; the rest are first steps."""
+    model = model_of(rotating(1000.0, "locked", 12000.0, True, integrator))
+    record = simulate(model, solve_equilibrium(model)).whole
+    assert 1.0 <= record.counts["evaluations"] / record.counts["steps"] <= 1.1
+
+
 def test_same_answer_twice():
     model = model_of(rotating(400.0, "free", 15000.0, True, "newmark"))
     now = solve_equilibrium(model)

@@ -105,7 +105,7 @@ class Record:
     def last(self, turns: int) -> "Record":
         """The part that belongs to the last turns."""
         first = self.schedule.first + self.schedule.steps - turns * self.schedule.steps_per_turn
-        keep = self.time > (first + 0.5 * self.schedule.stride) * self.schedule.dt
+        keep = slice(int(np.searchsorted(self.time, (first + 0.5 * self.schedule.stride) * self.schedule.dt, "right")), None)
         names = ("time", "displacement", "velocity", "force", "gap", "contact_force", "ball")
         energies = {name: values[keep] for name, values in self.energies.items()}
         return attrs.evolve(self, energies=energies, **{name: getattr(self, name)[keep] for name in names})

@@ -136,24 +136,35 @@ def turns_in(time: np.ndarray, frequency_hz: float) -> float:
     return float(len(time) * (time[1] - time[0]) * frequency_hz)
 
 
-def without_drift(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
-    """The signal (n, k) less mean and straight line through the means of its whole turns; of one turn the mean only."""
+def _drift(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> tuple[np.ndarray, np.ndarray, np.ndarray | float]:
+    """Times (n,) from the middle of a signal's whole turns, its mean (k,) over them, and the slope through their means; 0 of one turn."""
     turns = max(int(turns_in(time, frequency_hz) + 1e-6), 1)
     samples_per_turn = round(1.0 / (frequency_hz * (time[1] - time[0])))
     samples = min(turns * samples_per_turn, len(time))
     if turns < 2:
-        return signal - signal[:samples].mean(axis=0)
+        return time, signal[:samples].mean(axis=0), 0.0
     means = signal[:samples].reshape(turns, samples_per_turn, -1).mean(axis=1)
     centres = time[:samples].reshape(turns, samples_per_turn).mean(axis=1)
     offset = centres - centres.mean()
     slope = offset @ (means - means.mean(axis=0)) / (offset @ offset)
-    return signal - means.mean(axis=0) - (time - centres.mean())[:, None] * slope
+    return time - centres.mean(), means.mean(axis=0), slope
 
 
-def synchronous_phasor(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
-    """1x phasor (k,) of a signal (n, k) over whole turns, after its drift over those turns is removed."""
-    kernel = np.exp(-2j * np.pi * frequency_hz * time)
-    return 2.0 * (kernel[:, None] * without_drift(time, signal, frequency_hz)).mean(axis=0)
+def without_drift(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.ndarray:
+    """The signal (n, k) less mean and straight line through the means of its whole turns; of one turn the mean only."""
+    offset, mean, slope = _drift(time, signal, frequency_hz)
+    return np.asarray(signal - mean - offset[:, None] * slope)
+
+
+def synchronous_phasor(
+    time: np.ndarray, signal: np.ndarray, frequency_hz: float, window: np.ndarray | float = 1.0
+) -> np.ndarray:
+    """1x phasor (k,) of a signal (n, k) over whole turns, after its drift over those turns is removed; ``window`` (n,) weighs samples."""
+    kernel, (offset, mean, slope) = window * np.exp(-2j * np.pi * frequency_hz * time), _drift(time, signal, frequency_hz)
+    parts = [
+        part @ signal - part.sum() * mean - (part @ offset) * slope for part in (kernel.real.copy(), kernel.imag.copy())
+    ]
+    return np.asarray((parts[0] + 1j * parts[1]) * (2.0 / len(time)))
 
 
 @attrs.frozen

@@ -211,7 +211,7 @@ class State(NamedTuple):
 
 
 class Recording(NamedTuple):
-    """Every ``stride``-th step is noted in rows (n, 16) and probes (n, 3, 4 or 5, 2 Z); counters (8,)."""
+    """Every ``stride``-th step is noted in rows (n, 16) and probes (n, 3 to 6, 2 Z); counters (8,)."""
 
     stride: int
     rows: np.ndarray

@@ -31,7 +31,7 @@ import attrs
 import numpy as np
 
 from raceway.core.record import Record
-from raceway.core.signals import stiffness, synchronous_phasor, without_drift
+from raceway.core.signals import stiffness, synchronous_phasor
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.framework.duties import ramp_turns
 from raceway.framework.estimate import Estimate, Note
@@ -132,9 +132,9 @@ def hann_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.n
 
     The window's spectrum ends two lines from its middle: mean and harmonics of a periodic signal leak nothing.
     """
-    window = 1.0 - np.cos(2.0 * np.pi * (np.arange(len(time)) + 0.5) / len(time))
-    kernel = window * np.exp(-2j * np.pi * frequency_hz * time)
-    return 2.0 * (kernel[:, None] * without_drift(time, signal, frequency_hz)).mean(axis=0)
+    return synchronous_phasor(
+        time, signal, frequency_hz, 1.0 - np.cos(2.0 * np.pi * (np.arange(len(time)) + 0.5) / len(time))
+    )
 
 
 def _lasting(motion: Simulation, record: Record, value: complex) -> complex:

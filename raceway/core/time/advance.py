@@ -26,15 +26,10 @@ def advance(
 ) -> Record:
     """Take all steps of a schedule.
 
-    Parameters
-    ----------
     loop : kernel with the signature ``raceway.core.signatures.LOOP``
     coefficients : (k,) the method's own numbers
 
-    Raises
-    ------
-    ConvergenceError, StabilityError
-        With the reason, the time and the last good motion in ``state``.
+    ConvergenceError, StabilityError: With the reason, the time and the last good motion in ``state``.
     """
     check_start(system, start)
     z = system.ball_count
@@ -73,7 +68,6 @@ def _record(recording: Recording, schedule: Schedule, final: Motion) -> Record:
     counters = recording.counters
     count = int(counters[compiled.ROWS])
     rows, probes = recording.rows[:count], recording.probes[:count]
-    pairs = [part.reshape(count, -1, 2) for part in np.moveaxis(probes[:, 2:], 1, 0)]  # positions and, with friction, slips
     return Record(
         time=rows[:, 0],
         displacement=rows[:, 1:6],
@@ -81,7 +75,7 @@ def _record(recording: Recording, schedule: Schedule, final: Motion) -> Record:
         force=rows[:, 11:16],
         gap=probes[:, 0],
         contact_force=probes[:, 1],
-        ball=pairs[0] if len(pairs) == 1 else np.concatenate(pairs, axis=2),
+        ball=probes[:, 2:].reshape(count, *final.ball.shape),
         final=final,
         schedule=schedule,
         counts={

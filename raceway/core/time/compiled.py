@@ -8,8 +8,8 @@ Every loop has the signature ``raceway.core.signatures.LOOP``, whose records sta
     coefficients   the method's own numbers.  ``implicit``: am, af, beta, gamma, tolerance, imbalance that is rounding [N];
                    ``quasi_static``: tolerance
     state          moved on in place, only by accepted steps
-    recording      rows (n, 16): t, q, v, outer force; probes (n, 3, 4 or 5, 2 Z): gaps, contact forces, ball positions, slips,
-                   structural approaches; counters (8,): see ``COUNTERS``
+    recording      rows (n, 16): t, q, v, outer force; probes (n, 3 to 6, 2 Z): gaps, contact forces, then ``ball`` (Z, 2 to 8) as
+                   it is; counters (8,): see ``COUNTERS``
 
 A loop that returns less than ``steps.total`` failed at the next step; ``state`` is then the last good one.
 """
@@ -21,7 +21,7 @@ import numpy as np
 from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import Kernel, jit
-from raceway.core.ring.elimination import copy_matrix, solve
+from raceway.core.ring.elimination import copy_matrix, eliminate, solve
 from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, NOT_FINITE, at_rest
 from raceway.core.ring.equilibrium import RESIDUAL as LEFT
 from raceway.core.ring.kernels import CONTACT_FORCE as CONTACT_FORCE_ROW
@@ -86,14 +86,16 @@ def _note_step(recording, number, t, motion, outer, work, ball):
     for i in range(n):
         probes[row, 0, i] = work[GAP, i]
         probes[row, 1, i] = work[CONTACT_FORCE_ROW, i]
-    for pair in range(ball.shape[1] // 2):
-        for k in range(ball.shape[0]):
-            probes[row, 2 + pair, 2 * k] = ball[k, 2 * pair]
-            probes[row, 2 + pair, 2 * k + 1] = ball[k, 2 * pair + 1]
+    for k in range(ball.shape[0]):
+        for c in range(ball.shape[1]):
+            place = k * ball.shape[1] + c
+            probes[row, 2 + place // n, place % n] = ball[k, c]
 
 
 _NEWTON_LIMIT = 40
 _HALVINGS = 8
+#: Orders of extrapolation of what the tangent leaves of the contacts' forces: 0 keeps it constant.
+_ORDERS = 5
 #: A force that is none [N]: a motion that has died out is not resolved further.
 _NOTHING = 1e-30
 
@@ -120,8 +122,17 @@ class _Trial(NamedTuple):
     residual: np.ndarray
 
 
+class _Tangent(NamedTuple):
+    """Stiffness and damping of the contacts (5, 5) where forces are linearised, and behind a scratch (5, 5) the step's inverse."""
+
+    K: np.ndarray
+    C: np.ndarray
+    inverse: np.ndarray
+
+
 FORMULA = record(_Formula, *[float64] * 7)
 TRIAL = record(_Trial, *[VECTOR] * 5)
+TANGENT = record(_Tangent, *[MATRIX] * 3)
 
 
 @jit(FORMULA(VECTOR, float64), inline=True)
@@ -165,25 +176,76 @@ def _imbalance(formula, linear, motion, trial, response, push, arm):
     return norm, moving, max(scale, moving)
 
 
-@jit(boolean(FORMULA, LINEAR, RESPONSE, VECTOR, MATRIX, VECTOR), inline=True)
-def _time_step_newton(formula, linear, response, residual, J, dq):
-    """dq (5,) that takes the residual away; J (5, 6) is scratch.  False where the matrix is singular."""
+@jit(boolean(FORMULA, LINEAR, RESPONSE, TANGENT, MATRIX, int64), inline=True)
+def _linearise(formula, linear, response, tangent, differences, known):
+    """Take the tangent of the last evaluation, also in what ``_extend`` has of ``known`` steps; False where it is singular."""
     mass, damping, stiffness, free, _ = linear
+    K, C, inverse = tangent
+    for k in range(min(known, differences.shape[0])):
+        for i in range(5):
+            for j in range(5):
+                differences[k, 10 + i] -= (response.K[i, j] - K[i, j]) * differences[k, j]
+                differences[k, 10 + i] -= (response.C[i, j] - C[i, j]) * differences[k, 5 + j]
+    copy_matrix(response.K, K)
+    copy_matrix(response.C, C)
     for i in range(5):
-        J[i, 5] = -residual[i]
         for j in range(5):
-            J[i, j] = (
+            inverse[i, j], inverse[i, 5 + j] = (
                 (1.0 - formula.am) * formula.to_a * mass[i, j]
-                + (1.0 - formula.af)
-                * (response.K[i, j] + stiffness[i, j] + formula.to_v * (response.C[i, j] + damping[i, j]))
-            ) * free[i] * free[j]  # fmt: skip
+                + (1.0 - formula.af) * (K[i, j] + stiffness[i, j] + formula.to_v * (C[i, j] + damping[i, j]))
+            ) * free[i] * free[j], 0.0  # fmt: skip
+        inverse[i, 5 + i] = 1.0
         if free[i] == 0.0:
-            J[i, i] = 1.0
-    if not solve(J):
-        return False
+            inverse[i, i] = 1.0
+    return eliminate(inverse)
+
+
+@jit(void(TANGENT, MATRIX, int64, TRIAL, VECTOR), inline=True)
+def _foretell(tangent, differences, order, trial, f):
+    """f (5,): forces of the contacts at q and v, by the tangent and what it leaves, extrapolated from steps before."""
     for i in range(5):
-        dq[i] = J[i, 5]
-    return True
+        force = 0.0
+        for k in range(order + 1):
+            force += differences[k, 10 + i]
+        for j in range(5):
+            force += tangent.K[i, j] * trial.q[j] + tangent.C[i, j] * trial.v[j]
+        f[i] = force
+
+
+@jit(void(FORMULA, LINEAR, RESPONSE, VECTOR, VECTOR), inline=True)
+def _follow(formula, linear, response, dq, net_force):
+    """Forces of the contacts, and of all but inertia, after a last small change of q by dq."""
+    for i in range(5):
+        for j in range(5):
+            own = response.K[i, j] + formula.to_v * response.C[i, j]
+            response.f[i] += own * dq[j]
+            net_force[i] += (own + linear.stiffness[i, j] + formula.to_v * linear.damping[i, j]) * dq[j]
+
+
+@jit(int64(TANGENT, MATRIX, int64, TRIAL, VECTOR, float64), inline=True)
+def _extend(tangent, differences, known, trial, f, arm):
+    """Add a step to ``known`` ones in the backward differences (m, 15) of q, v, and f less the tangent's part.
+
+    Returns the order of extrapolation that would have foretold the latter best.
+    """
+    rows, best, least = min(known, differences.shape[0] - 1), 0, np.inf
+    for i in range(5):
+        rest = f[i]
+        for j in range(5):
+            rest -= tangent.K[i, j] * trial.q[j] + tangent.C[i, j] * trial.v[j]
+        q, v = trial.q[i], trial.v[i]
+        for k in range(rows + 1):
+            q, differences[k, i] = q - differences[k, i], q
+            v, differences[k, 5 + i] = v - differences[k, 5 + i], v
+            rest, differences[k, 10 + i] = rest - differences[k, 10 + i], rest
+    for order in range(rows):
+        size = 0.0
+        for i in range(5):
+            # The difference that an order leaves out is its error.
+            size = max(size, abs(differences[order + 1, 10 + i]) * (1.0 if i < 3 else 1.0 / arm))
+        if size < least:
+            best, least = order, size
+    return best
 
 
 @jit(boolean(TRIAL, MATRIX), inline=True)
@@ -204,8 +266,10 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
     arm, formula = constants.scalars[TILT_ARM], _formula_of(coefficients, dt)
     tolerance, rounding = coefficients[4], coefficients[5]
     trial = _Trial(np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5))
-    q, J, dq, push, norm = trial.q, np.empty((5, 6)), np.zeros(5), np.empty(5), np.inf
+    tangent = _Tangent(np.zeros((5, 5)), np.zeros((5, 5)), np.zeros((5, 10)))
+    q, dq, push, norm, order = trial.q, np.zeros(5), np.empty(5), np.inf, 0
     balls = Balls(np.empty_like(state.ball), 1.5 / dt, np.empty_like(state.ball))
+    bend, differences = np.zeros_like(state.ball), np.zeros((_ORDERS + 1, 15))
     contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), dt)
     work = np.zeros((work_rows(constants.scalars, constants.table), 2 * constants.table.shape[0]))
     response = Response(np.empty(5), np.empty((5, 5)), np.empty((5, 5)), work)
@@ -219,39 +283,51 @@ def implicit(forces, linear, outer, coefficients, steps, state, recording):
             counters[EXCITATION] = max(counters[EXCITATION], abs(push[i]) * (1.0 if i < 3 else 1.0 / arm))
             q[i] = motion[0, i] + dt * motion[1, i] + 0.5 * dt * dt * motion[2, i]
         before, halvings, in_balance = np.inf, 0, False
-        for _ in range(_NEWTON_LIMIT):
+        for iteration in range(_NEWTON_LIMIT):
             _differences(formula, linear.free, motion, trial)
-            counters[EVALUATIONS] += 1.0
-            if forces.system(t, q, trial.v, balls, contacts, constants, response) != 0:
-                counters[REASON] = BALLS
-                return step
+            foretold = iteration == 0 and step > 0
+            if foretold:
+                _foretell(tangent, differences, order, trial, response.f)
+            else:
+                counters[EVALUATIONS] += 1.0
+                if forces.system(t, q, trial.v, balls, contacts, constants, response) != 0:
+                    counters[REASON] = BALLS
+                    return step
             norm, moving, scale = _imbalance(formula, linear, motion, trial, response, push, arm)
             if not np.isfinite(norm):
                 counters[REASON] = UNBOUNDED
                 return step
-            enough = tolerance * max(counters[EXCITATION], moving) + rounding + _NOTHING
-            # Forces of a law that iterates may be rougher than rounding: what no longer shrinks is measured by the largest of all.
-            if norm <= enough or 0.5 * before < norm <= tolerance * scale:
-                in_balance = True
-                break
-            if norm > 2.0 * before and halvings < _HALVINGS:
-                halvings += 1
-                for i in range(5):
-                    dq[i] *= 0.5
-                    q[i] -= dq[i]
-                continue
-            halvings, before = 0, norm
-            if not _time_step_newton(formula, linear, response, trial.residual, J, dq):
-                break
+            if not foretold:
+                enough = tolerance * max(counters[EXCITATION], moving) + rounding + _NOTHING
+                # Forces of a law that iterates may be rougher than rounding: what no longer shrinks is measured by the largest of all.
+                in_balance = norm <= enough or 0.5 * before < norm <= tolerance * scale
+                if not in_balance and norm > 2.0 * before and halvings < _HALVINGS:
+                    halvings += 1
+                    for i in range(5):
+                        dq[i] *= 0.5
+                        q[i] -= dq[i]
+                    continue
+                halvings, before = 0, norm
+                if not in_balance and not _linearise(formula, linear, response, tangent, differences, step):
+                    break
             for i in range(5):
+                dq[i] = 0.0
+                for j in range(5):
+                    dq[i] -= tangent.inverse[i, 5 + j] * trial.residual[j]
                 q[i] += dq[i]
+            if in_balance:
+                # The last change is too small to ask for the forces again.
+                _differences(formula, linear.free, motion, trial)
+                _follow(formula, linear, response, dq, trial.net_force)
+                break
         if not in_balance:
             counters[REASON], counters[RESIDUAL] = NEWTON, norm
             return step
         if not _commit(trial, motion):
             counters[REASON] = UNBOUNDED
             return step
-        accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position)
+        order = _extend(tangent, differences, step, trial, response.f, arm)
+        accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position, bend)
         copy_matrix(contacts.new, state.memory)
         _note_step(recording, number, t, motion, push, work, state.ball)
     return steps.total
@@ -296,7 +372,7 @@ def central_difference(forces, linear, outer, coefficients, steps, state, record
     balls = Balls(np.empty_like(state.ball), 1.5 / dt, np.empty_like(state.ball))
     contacts = Contacts(forces.law, forces.law_params, state.memory, state.memory.copy(), dt)
     next_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position)
-    effective = np.empty((5, 10))
+    effective, straight = np.empty((5, 10)), np.empty((0, 0))
     if not _effective_inverse(linear, dt, effective):
         counters[REASON] = NEWTON
         return 0
@@ -328,7 +404,7 @@ def central_difference(forces, linear, outer, coefficients, steps, state, record
             break
         for i in range(5):
             motion[0, i], motion[1, i], motion[2, i] = q[i], half[i] + 0.5 * dt * a[i], a[i]
-        accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position)
+        accept_balls(constants.scalars, dt, state.ball, state.ball_before, balls.history, balls.position, straight)
         copy_matrix(contacts.new, state.memory)
         _note_step(recording, number, t, motion, push, work, state.ball)
         steps_taken += 1

@@ -391,17 +391,22 @@ def next_balls(scalars, dt, ball, before, history, trial):
             trial[k, c] = now if is_slip else 2.0 * now - last
 
 
-@jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
-def accept_balls(scalars, dt, ball, before, history, trial):
-    """Commit ``trial``, then what ``next_balls`` gives for the step after it: in one pass."""
+@jit(void(VECTOR, float64, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX), inline=True)
+def accept_balls(scalars, dt, ball, before, history, trial, bend):
+    """Commit ``trial``, then what ``next_balls`` gives for the step after it: in one pass.
+
+    bend : their second differences, like ball and at first zeros, which foretell the balls to the third order; none: to the first
+    """
     end, inverse = slips_end(scalars, ball), 1.0 / dt
     for k in range(ball.shape[0]):
         for c in range(ball.shape[1]):
-            now, last = trial[k, c], ball[k, c]
-            is_slip = SLIPS <= c < end
+            now, last, further, is_slip = trial[k, c], ball[k, c], 0.0, SLIPS <= c < end
+            if bend.shape[0] > 0:
+                second = now - 2.0 * last + before[k, c]
+                further, bend[k, c] = 2.0 * second - bend[k, c], second
             before[k, c], ball[k, c] = last, now
             history[k, c] = now if is_slip else (0.5 * last - 2.0 * now) * inverse
-            trial[k, c] = now if is_slip else 2.0 * now - last
+            trial[k, c] = now if is_slip else 2.0 * now - last + further
 
 
 @jit(SEAT(int64, float64, MATRIX, MATRIX, int64), inline=True)
