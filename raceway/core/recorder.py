@@ -36,13 +36,9 @@ def unbounded(schedule: Schedule, when: str, limit: float, state: dict[str, Any]
 class Recorder:
     """Follows one integration.
 
-    Parameters
-    ----------
     system, schedule : what is integrated, over which times
     on_chunk : called with the steps done and the steps in all
 
-    Attributes
-    ----------
     state : the last accepted ``State``
     device : that takes the steps
     evaluations : of the internal forces, all steps together

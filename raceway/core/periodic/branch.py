@@ -38,8 +38,6 @@ _DIFFERENCE = 1e-6
 class Point:
     """One motion of a branch.
 
-    Attributes
-    ----------
     parameter : p;  solved : the motion;  error : estimated, over its size
     tangent : (2 n + 1,) direction of the branch in scaled state and parameter;  folded : the parameter turned back since
         the point before
@@ -71,8 +69,6 @@ class Point:
 class Branch:
     """Follows one branch of periodic motions.
 
-    Parameters
-    ----------
     problem_at : parameter -> Problem; unknown coordinates, span and balls' numbers stay the same
     unit : a typical change of the parameter;  length : a typical size of the motion [m]
     tolerance : error of the motion over its size that meshes are refined for;  most_intervals : that they may have

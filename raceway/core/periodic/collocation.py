@@ -98,8 +98,6 @@ class Problem:
 class Path:
     """A motion over one span, its derivatives by the angle.
 
-    Attributes
-    ----------
     nodes : (m + 1,) angles, from 0 to the span;  q, v : (m + 1, 5) at nodes;  a : (m s, 5) at Gauss points
     ball, rate : (m s, Z, c) columns of ``System.evaluate`` and their rates [m/s]
     """
@@ -152,12 +150,8 @@ def stiff(problem: Problem, path: Path) -> bool:
 def renew(problem: Problem, path: Path, solved: bool) -> None:
     """Put the rates that belong to the places of the balls into ``path.rate``.
 
-    Parameters
-    ----------
     solved : one step of Newton's iteration instead of plain substitution
 
-    Notes
-    -----
     A ball has no mass along its groove: its place b follows from the ring's motion and, where contacts have dashpots, from
     its own rate r. So r = D b(r), D the derivative over one span and round its end. Dashpots are weak as a rule (1e-11 s of
     lag behind the motion with the default), and putting the last rates in converges at once: the compiled iteration does so
@@ -244,8 +238,6 @@ _RATES, _LEFT = 20, 1e-9
 class Solved:
     """A periodic motion on one mesh.
 
-    Attributes
-    ----------
     eliminated : the last linearisation
     size : largest derivative by the angle [m], the amplitude of a 1x motion; tilts as lengths at the arm
     direct : whether full steps of Newton's iteration sufficed
@@ -278,19 +270,12 @@ def gap(problem: Problem, path: Path) -> np.ndarray:
 def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, limit: int = 40) -> Solved:
     """Newton's iteration from a first guess.
 
-    Parameters
-    ----------
     tolerance : largest last correction over the motion's size
     patience : halvings of a step that may follow each other
 
-    Notes
-    -----
     Where dashpots make the balls lag, the motion with given rates and the rates of that motion are found in turn.
 
-    Raises
-    ------
-    ConvergenceError
-        With the state at the start of the span that the iteration ended at, finite or the first guess.
+    ConvergenceError: With the state at the start of the span that the iteration ended at, finite or the first guess.
     """
     if not stiff(problem, path):
         return newton_iteration(problem, path, tolerance, patience, limit, np.array(problem.system.rated_columns))

@@ -28,8 +28,6 @@ _PHASE = 1.05
 class Floquet:
     """Multipliers of one turn, the largest first.
 
-    Attributes
-    ----------
     multipliers : (2 n,) complex, over a turn of the force;  of_span : (2 n,) over one span
     """
 
@@ -71,12 +69,8 @@ class Floquet:
 def floquet(solution: Solved, highest: float = 0.0) -> Floquet:
     """Multipliers of a periodic motion, from its last linearisation.
 
-    Parameters
-    ----------
     highest : order of the fastest vibration about the motion: a mesh that is fit for the motion may be too coarse for it
 
-    Notes
-    -----
     The rates of the balls are taken as they are along the motion.  That leaves the phases as they are, and the decay that the
     contacts' dashpots bring off by the difference of the races' compliances over their sum (2 % of the decay for B7206C).
     """

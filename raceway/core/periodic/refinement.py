@@ -59,8 +59,6 @@ def _defects(problem: Problem, path: Path) -> np.ndarray:
 class Estimate:
     """Error of a motion on one mesh.
 
-    Attributes
-    ----------
     error : largest error of a displacement over the motion's size;  defect, between : (m,) where it is made [m]
     field : (m + 1, 5) estimated error of q at the nodes
     """
@@ -74,8 +72,6 @@ class Estimate:
 def estimate(solution: Solved, closure: Callable[[np.ndarray], np.ndarray] | None = None) -> Estimate:
     """The error of a motion by its defects, carried round, and by the tail of its polynomials.
 
-    Parameters
-    ----------
     closure : change of the state at the start (2 n,) with which the span closes after a gap (2 n,) at its end; None: the parameter
         of a branch stays as it is, which has no answer at a fold
     """
@@ -134,8 +130,6 @@ def sampled_at(problem: Problem, path: Path, nodes: np.ndarray) -> Path:
 class Refined:
     """A periodic motion on a mesh that is fit for it.
 
-    Attributes
-    ----------
     error : estimated, of a displacement over the motion's size;  rounds : of dividing
     sweeps, evaluations : of all meshes together
     """
@@ -220,8 +214,6 @@ def _spans(span: float, angles: np.ndarray) -> np.ndarray:
 def record(solution: Solved, schedule: Schedule, counts: Tables) -> Record:
     """Samples at every ``stride``-th step of a schedule, which begins at angle zero.
 
-    Parameters
-    ----------
     counts : what the record says about its making; penetration and contact force are added
     """
     problem = solution.problem

@@ -80,8 +80,6 @@ ROUGH = 1e-4
 def problem_of(system: System, speed: float, q: np.ndarray, symmetric: bool = True) -> Problem:
     """The boundary-value problem of one pitch where forces and bodies allow it, else of one turn.
 
-    Parameters
-    ----------
     speed : of the force [rad/s];  q : (5,) static equilibrium
     """
     pitch = one_pitch(system, speed, q) if symmetric else None
@@ -169,8 +167,6 @@ class Neighbour:
 class Recorded:
     """A turn of a motion that was integrated, to be followed to the periodic one that it converges to.
 
-    Attributes
-    ----------
     period : [s];  displacement, velocity, acceleration : (n, 5) at equidistant times from 0 on
     """
 
@@ -202,8 +198,6 @@ def neighbour_of(solved: Solved, q: np.ndarray, tangent: np.ndarray) -> Neighbou
 class PeriodicMotion:
     """A periodic motion.
 
-    Attributes
-    ----------
     refined : the motion with its error
     highest : order of the highest natural frequency at the equilibrium
     how : "directly", "from rest" (the force grows), "from a higher speed", "from a lower speed", "from a heavier axial load", "from no

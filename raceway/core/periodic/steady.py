@@ -97,18 +97,12 @@ def steady(
 ) -> Record:
     """The motion that repeats itself after a turn of ``schedule``, sampled at its steps.
 
-    Parameters
-    ----------
     start : near a static equilibrium, from which the motion is searched for; its ``near`` is the solution of a similar problem,
         or a turn that was recorded
 
-    Raises
-    ------
-    SceneError
-        Bodies that are stepped from Python, friction, a law with memory, a force that does not repeat itself, or balls that orbit
+    SceneError: Bodies that are stepped from Python, friction, a law with memory, a force that does not repeat itself, or balls that orbit
         without the symmetry of a pitch.
-    ConvergenceError
-        No such motion found.
+    ConvergenceError: No such motion found.
     """
     refuse(ring, schedule)
     system = surrogate(ring)
@@ -195,18 +189,11 @@ def starting_orbit(
 
     None where it is not searched for, because each try would take seconds; no motions where nothing could be said.
 
-    Parameters
-    ----------
     system : with compiled forces, without friction, memory and orbiting balls;  q : (5,) static equilibrium
     watch : called in the search, which what it raises ends;  near, stay : see ``find``
 
-    Raises
-    ------
-    ConvergenceError
-        No periodic motion found.
+    ConvergenceError: No periodic motion found.
 
-    Notes
-    -----
     The search of ``raceway.core.periodic.search``, so that a transient and the steady orbit that is solved for directly are
     of one motion. Where it finds nothing, Fourier collocation (``raceway.core.ring.orbit``) may: its damped iteration ends
     on any motion.
@@ -259,14 +246,10 @@ def find(
 ) -> PeriodicMotion:  # fmt: skip
     """The periodic motion of a ring about the equilibrium q (5,), to a relative tolerance, and others beside it.
 
-    Parameters
-    ----------
     near : a motion to start from
     stay : on that one, or else on the first that is not unstable, instead of searching for all that may exist; and where branches are not followed and nothing
         is found directly, give up instead of letting the force grow on a mesh of thousands of intervals
 
-    Notes
-    -----
     Newton's iteration from the linear response, with full steps only: one that has to be shortened may end on a resonant
     branch far away.  Where it fails, is unstable, or ends far from the linear response, there may be several motions: the
     branch that leads from the resting ring is followed round its folds, and every place where it meets the full force is a
@@ -274,10 +257,7 @@ def find(
     leads to are tried, and else the one is taken that is left slowest.  Where the branch never reaches the full force and all
     found so far are unstable, motions at other speeds and loads are followed to this one.
 
-    Raises
-    ------
-    ConvergenceError
-        No periodic motion found, with what was tried.
+    ConvergenceError: No periodic motion found, with what was tried.
     """
     highest = search.highest_order(problem, tangent)
     if near is not None and (stay or near.near_linear):

@@ -82,8 +82,6 @@ _SAME = 1e-9
 class Symmetry:
     """The motion repeats itself after ``span`` [rad of the force's angle], rotated.
 
-    Attributes
-    ----------
     rotation : (5, 5) P;  angle : by which P rotates about x [rad]
     order : (Z,) the ball that stood where each ball stands one span later
     pitch : whether the span is one ball pitch
@@ -115,12 +113,8 @@ def one_turn(system: System) -> Symmetry:
 def one_pitch(system: System, speed: float, q: np.ndarray) -> Symmetry | None:
     """The symmetry of one ball pitch, or None where forces or bodies do not have it.
 
-    Parameters
-    ----------
     speed : of the force [rad/s];  q : (5,) equilibrium; bodies are tried some way off it
 
-    Notes
-    -----
     A force that turns with w over equal, equally spaced balls meets the same bearing again after it has passed one pitch:
     q(theta + Theta) = P q(theta), P the rotation by the angle that the force has turned meanwhile, ball k then standing
     where ball ``order[k]`` stood. With balls at rest Theta = 2 pi / Z; balls that travel with w_c are passed more slowly,

@@ -135,8 +135,6 @@ class ChangingSpeed:
 class Ring(ABC):
     """M q'' + C q' + K q + f(q, q') = load + force(t) for the ring's reference point.
 
-    Attributes
-    ----------
     scalars, table : constants of geometry and balls, see ``raceway.core.ring.kernels``
     mass, damping, stiffness : (5, 5) linear parts
     free : (5,) 1 for unknowns, 0 for coordinates that are held
@@ -182,18 +180,12 @@ class Ring(ABC):
     ) -> Evaluation:
         """Contact forces and tangents at displacement q (5,) and velocity v (5,).
 
-        Parameters
-        ----------
         ball : (Z, ``ball_columns``) a first guess, and the slips that were committed last
         ball_rate : (Z, ``ball_columns``), the rate of a ball is step.gain * ball + ball_rate [m/s]
         step : since the law's memory was committed
 
-        Raises
-        ------
-        ConvergenceError
-            When the balls find no equilibrium between the races.
-        PluginError
-            An array of another shape: a compiled kernel would write beyond it.
+        ConvergenceError: When the balls find no equilibrium between the races.
+        PluginError: An array of another shape: a compiled kernel would write beyond it.
         """
 
     @abstractmethod

@@ -91,10 +91,7 @@ def _implicit_step(
 def central_difference(system: SteppedSystem, recorder: Recorder, device: str = "cpu") -> None:
     """Take all steps of the recorder's schedule; ``device``: see ``SteppedSystem``.
 
-    Raises
-    ------
-    StabilityError
-        A step above the stable limit, with the limit: of the start, or of a later state whose contacts have closed or
+    StabilityError: A step above the stable limit, with the limit: of the start, or of a later state whose contacts have closed or
         stiffened; or a motion that grows without bound.
     """
     start, schedule = recorder.state, recorder.schedule
@@ -150,8 +147,6 @@ def compare(limit: float, system: SteppedSystem, recorder: Recorder, where: str)
 def quasi_static(system: SteppedSystem, recorder: Recorder, tolerance: float) -> None:
     """Take all steps of the recorder's schedule.
 
-    Notes
-    -----
     Each step starts from the last two equilibria, extrapolated; ``State.v`` is not a velocity here but the change over
     the last step.
     """

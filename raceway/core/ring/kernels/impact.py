@@ -96,8 +96,6 @@ def impact_system(
 def single_contact(bearing: System, contact: int) -> System:
     """One contact of a bearing, with its law, parameters and normal damping, whose approach is x.
 
-    Parameters
-    ----------
     contact : its number, inner races first, then outer
     """
     system = impact_system(1.0, bearing.law, bearing.law_params[contact])
