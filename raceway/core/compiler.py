@@ -3,24 +3,26 @@
 import gc
 import hashlib
 import marshal
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
+from importlib import import_module
 from itertools import count
 from pathlib import Path
-from types import CodeType, FunctionType
+from types import CodeType, FunctionType, ModuleType, SimpleNamespace
 from typing import Any
 
 import llvmlite.binding as llvm
 import numba
-from numba.core import runtime, untyped_passes
+from numba.core import base, environment, runtime, untyped_passes
 from numba.core.bytecode import FunctionIdentity
-from numba.core.codegen import JITCodeLibrary
+from numba.core.codegen import CPUCodeLibrary, JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
 from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
 from numba.core.targetconfig import ConfigStack
-from numba.core.typed_passes import DumpParforDiagnostics, NopythonRewrites
+from numba.core.typed_passes import AnnotateTypes, DumpParforDiagnostics, NopythonRewrites
 from numba.core.types.functions import BaseFunction
 from numba.core.typing.templates import Signature, _OverloadFunctionTemplate
 
@@ -28,8 +30,6 @@ from raceway.storage.kernel_cache import SHARED
 
 #: Objects that may wait for Python's search for cycles once kernels were compiled, and how many before.
 _WAITING = 3_000_000
-
-
 _thresholds: list[tuple[int, int, int]] = []
 
 
@@ -59,17 +59,11 @@ def _search_as_before(_phase: str, _counts: dict[str, int]) -> None:
 
 #: A part of numba's compiler, which types some of itself only.
 Numba = Any
-
-
 _Function: Numba = BaseFunction
-
-
 _resolve = _Function.get_call_type
-
-
-_Overload: Numba = _OverloadFunctionTemplate
-
-
+_base: Numba = base
+_has_location = cache(_base._has_loc)
+_size = cache(lambda target_data, kind: kind.get_abi_size(target_data))
 #: Signatures and implementations of operators and functions of numba's own, by their arguments' types and the compiler's flags.
 _resolved: dict[tuple[Numba, ...], tuple[Signature, Numba]] = {}
 
@@ -78,7 +72,8 @@ _resolved: dict[tuple[Numba, ...], tuple[Signature, Numba]] = {}
 def resolved_once() -> Iterator[None]:
     """numba tries some ten templates at each ``a + b`` and ``a[i]``, an eighth of the time that it compiles for; here once per types.
 
-    Functions of numba's own become parts of their callers, once for all kernels that may allocate and once for the others.
+    Functions of numba's own become parts of their callers, once for all kernels that may allocate and once for the others.  Sizes of
+    types are asked for once; neither what callers link nor modules of numba's own that parts come from are read with machine code.
     """
 
     def resolve(function: Numba, context: Numba, args: Numba, kws: Numba) -> Signature:
@@ -95,12 +90,23 @@ def resolved_once() -> Iterator[None]:
     def compiler(_template: Numba) -> Numba:
         return lambda **options: lambda function: _Helper(function, targetoptions=options)
 
-    before, _Function.get_call_type = _Function.get_call_type, resolve
-    jitter, _Overload._get_jit_decorator = _Overload._get_jit_decorator, compiler
+    def module(name: str) -> ModuleType:
+        return import_module(name) if name in sys.modules or not name.startswith("numba.") else ModuleType(name)
+
+    own: tuple[tuple[Numba, str, Numba], ...] = (
+        (_Function, "get_call_type", resolve), (_OverloadFunctionTemplate, "_get_jit_decorator", compiler),
+        (_base, "_has_loc", _has_location), (llvm.ffi.lib._lock, "_cblist", []), (CPUCodeLibrary, "_unserialize", _Cached.read),
+        (_base.BaseContext, "get_abi_sizeof", lambda context, kind: _size(context.target_data, kind)),
+        (environment, "importlib", SimpleNamespace(import_module=module)),
+    )  # fmt: skip
+    before = [(holder, name, vars(holder)[name]) for holder, name, _ in own]
+    for each in own:
+        setattr(*each)
     try:
         yield
     finally:
-        _Function.get_call_type, _Overload._get_jit_decorator = before, jitter
+        for each in before:
+            setattr(*each)
 
 
 @cache
@@ -141,7 +147,7 @@ def numbered_from(base: str) -> Iterator[None]:
 #: For closures, ``with``, ``literal_unroll``, functions that are written into their callers, parallel loops, and one loop for several
 #: operators of arrays: kernels have none of them.
 _NEEDLESS = {
-    DumpParforDiagnostics, NopythonRewrites, untyped_passes.FindLiterallyCalls, untyped_passes.InlineClosureLikes,
+    AnnotateTypes, DumpParforDiagnostics, NopythonRewrites, untyped_passes.FindLiterallyCalls, untyped_passes.InlineClosureLikes,
     untyped_passes.InlineInlinables, untyped_passes.LiteralPropagationSubPipelinePass, untyped_passes.LiteralUnroll,
     untyped_passes.MakeFunctionToJitFunction, untyped_passes.RewriteDynamicRaises, untyped_passes.WithLifting,
 }  # fmt: skip
@@ -190,6 +196,28 @@ def marks(value: Numba, above: list[Numba]) -> Any:
 def _without_place(code: CodeType) -> CodeType:
     inner = tuple(_without_place(const) if isinstance(const, CodeType) else const for const in code.co_consts)
     return code.replace(co_filename="", co_consts=inner)
+
+
+class _Cached(JITCodeLibrary):
+    """Machine code that was read, with the bytes of what callers link until one is compiled."""
+
+    @staticmethod
+    def read(codegen: Numba, state: Numba) -> Numba:
+        name, _, (code, linked) = state
+        library = codegen.create_library(name)
+        library.__class__, library._shared_module = _Cached, linked
+        library.enable_object_caching()
+        library._set_compiled_object(code)
+        library._finalize_final_module()
+        return library
+
+    def _get_module_for_linking(self) -> Numba:
+        if isinstance(self._shared_module, bytes):
+            self._shared_module = llvm.parse_bitcode(self._shared_module)
+        return self._shared_module
+
+    def get_pointer_to_function(self, name: str) -> int:
+        return int(self._codegen._engine.get_function_address(name))
 
 
 class _Linked(JITCodeLibrary):

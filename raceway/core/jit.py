@@ -163,7 +163,7 @@ class Kernel(Dispatcher):
         module, name = self.py_func.__module__, self.py_func.__qualname__
         found = getattr(sys.modules.get(module), name, None)
         if getattr(found, "kernel", found) is self:  # of a file that is read without this module
-            return _named, (module, name)
+            return kernel_named, (module, name)
         return super().__reduce__()
 
     def _reduce_states(self) -> dict[str, Any]:
@@ -332,20 +332,24 @@ class _DirectKernel(Kernel):
     _entry = cached_property(Kernel.compile)
 
     def __call__(self, *arguments: Any) -> Any:
-        _refuse_strided(arguments, self.py_func.__name__)
+        _prepare(arguments, self.py_func.__name__)
         return self._entry(*arguments)
 
 
-def _refuse_strided(values: tuple[Any, ...], name: str) -> None:
+def _prepare(values: tuple[Any, ...], name: str) -> None:
+    """Refuse arrays with strides; compile kernels, while another process may be compiling the one that takes them."""
     for value in values:
         if isinstance(value, np.ndarray):
             if not value.flags.c_contiguous:
                 raise PluginError(f"kernel `{name}` got an array that is not C-contiguous: pass np.ascontiguousarray(...)")
         elif isinstance(value, tuple):
-            _refuse_strided(value, name)
+            _prepare(value, name)
+        elif isinstance(value, Kernel) and not value.overloads:
+            value.compile()
 
 
-def _named(module: str, name: str) -> Kernel:
+def kernel_named(module: str, name: str) -> Kernel:
+    """A kernel of a module, imported."""
     found = getattr(import_module(module), name)
     return found if isinstance(found, Kernel) else found.kernel
 

@@ -5,7 +5,6 @@ import multiprocessing
 import subprocess
 import sys
 from functools import cache
-from importlib import import_module
 
 from raceway.core import jit, wheel_kernels
 from raceway.core.threads import usable_cores
@@ -21,7 +20,7 @@ def compile_beside(*names: str) -> None:
     busy = usable_cores() < 2 or multiprocessing.parent_process() is not None or wheel_kernels.writing
     if busy or folder is None or folder.unwritable or wheel_kernels.folder() is not None:
         return
-    missing = [name for name in names if name not in jit.awaited and not _named(name).kept]
+    missing = [name for name in names if name not in jit.awaited and not jit.kernel_named(*name.split(":")).kept]
     if not missing:
         return
     command = [sys.executable, "-P", "-m", __name__, *missing]
@@ -32,14 +31,8 @@ def compile_beside(*names: str) -> None:
     jit.awaited.update(dict.fromkeys(missing, finished))
 
 
-def _named(name: str) -> jit.Kernel:
-    module, _, kernel = name.partition(":")
-    found: jit.Kernel = getattr(import_module(module), kernel)
-    return found
-
-
 if __name__ == "__main__":
     for name in sys.argv[1:]:
-        _named(name).compile()
+        jit.kernel_named(*name.split(":")).compile()
         sys.stdout.write(f"{name}\n")
         sys.stdout.flush()

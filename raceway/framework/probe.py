@@ -28,15 +28,12 @@ _LOOKED_AT: dict[int, tuple[object, Signature]] = {}
 def plugin_kernel(plugin: ContactLaw | Excitation, kind: str, signature: Signature, name: str) -> Kernel:
     """The kernel of a plug-in, compiled for the signature of its kind.
 
+    PluginError: ``kernel()`` raises, returns something that is not compiled, or is compiled for other arguments.
+
     Parameters
     ----------
     plugin : with ``kernel()``;  kind : "contact law" or "excitation", for messages
     signature : ``raceway.core.signatures.LAW`` or ``FORCE``;  name : "LAW" or "FORCE"
-
-    Raises
-    ------
-    PluginError
-        ``kernel()`` raises, returns something that is not compiled, or is compiled for other arguments.
     """
     label = f"{kind} '{plugin.name}' ({type(plugin).__module__})"
     try:
@@ -99,7 +96,7 @@ def probe_law(
     distribution: str | None = None,
     depths: Iterable[float] = (),
 ) -> None:
-    """Refuse a contact law that breaks its contract on a few gaps and rates.
+    """Refuse a contact law that breaks its contract on a few gaps and rates: ``PluginError`` with what was found, and the contract.
 
     Parameters
     ----------
@@ -107,11 +104,6 @@ def probe_law(
     params : what its ``build()`` returned, (n, k);  state : (n, m), a row for each contact; not changed
     distribution : whose it is; looked up in the registry when left out
     depths : approaches [m] of the scene at hand, tried besides the fixed ones
-
-    Raises
-    ------
-    PluginError
-        Which plug-in of which distribution, what was found, and what the contract says.
     """
     depths = tuple(float(depth) for depth in depths if depth > 0.0)
     if _passed_near(law, kernel, params, state, np.array(depths)):

@@ -25,17 +25,12 @@ _SEATED = 0.5
 def solve_equilibrium(
     model: Model, on_progress: Callable[[str, int, int], None] | None = None, near: np.ndarray | None = None
 ) -> Equilibrium:
-    """The static equilibrium of a model.
+    """The static equilibrium of a model; ``ConvergenceError`` for none, or a motion that nothing holds (named).
 
     Parameters
     ----------
     near : (5,) equilibrium of a similar model, which contacts at surface points start from; others take microseconds
     on_progress : called as ``on_progress(what, done, total)`` while elastic bodies are solved; ``total`` is 0: nobody knows
-
-    Raises
-    ------
-    ConvergenceError
-        None found, or a motion that nothing holds (named).
     """
     system = model.system
     has_load = np.any(model.system.load * model.system.free) or model.problem.bearing.preloaded

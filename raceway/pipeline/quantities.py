@@ -37,12 +37,13 @@ def stated_quantities(model: Model, equilibrium: Equilibrium, record: Record | N
     """
     points, tables, warnings = solved_point(model, equilibrium, record), dict[str, Tables](), list[str]()
     values: dict[str, float | np.ndarray] = {}
-    for plugin in fitting_quantities(model.problem):
+    why_not = missing_quantities(model.problem)
+    for plugin in (getattr(model.problem.quantities, name) for name, why in why_not.items() if not why):
         numbers = quantities_at(plugin, points)
         tables[plugin.name], sentences = quantity_report(plugin, points, numbers)
         warnings += sentences
         values |= {name: value[0] if value.ndim > 1 else float(value[0]) for name, value in numbers.items()}
-    missing = {name: why for name, why in missing_quantities(model.problem).items() if why}
+    missing = {name: why for name, why in why_not.items() if why}
     given = model.scene.source.get("quantities", {})
     warnings += [f"[quantities.{name}] has no effect: {why}" for name, why in missing.items() if given.get(name)]
     return StatedQuantities(values, tables, tuple(warnings), missing)

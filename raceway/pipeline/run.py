@@ -32,7 +32,7 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.error import Errors, body_errors, error_warnings, errors_of, misfit_warnings
 from raceway.pipeline.identified import Identified, series_warnings, start_warnings, with_series_error
 from raceway.pipeline.plausible import inertia_warnings, motion_warnings, pressure_warnings, refuse_impossible
-from raceway.pipeline.quantities import StatedQuantities, stated_quantities
+from raceway.pipeline.quantities import stated_quantities
 from raceway.pipeline.result import Result, band_table
 from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
 from raceway.planning.plan import ScenePlan, make_plan, plan_of
@@ -46,6 +46,8 @@ from raceway.storage.tables import Tables
 _LEAST_S = 3.0
 #: The same of memory: runs that converge stay within 1.6 times their plan (examples/b7206_elastic_coarse.toml at points, soft to stiff).
 _MOST_MEMORY = 3.0
+#: Kernels of a steady motion, the last of a run that are needed.
+_OF_ORBITS = "raceway.core.periodic.newton:newton", "raceway.core.periodic.intervals:spread"
 #: What kernels that compile, and libraries that load, may hold beyond the plan in a fresh process [B].
 _COMPILING = 0.5e9
 
@@ -130,8 +132,8 @@ def _run(
     plan = steady_plan(scene)
     allowance = Allowance.of(plan, patience)
     registry.notify("raceway_plan_made", plan=plan)
-    if plan.problem.searches_orbits or (plan.problem.recorded and plan.problem.integrator.method.steady):
-        compile_beside("raceway.core.periodic.newton:newton", "raceway.core.periodic.intervals:spread")
+    steady = plan.problem.searches_orbits or (plan.problem.recorded and plan.problem.integrator.method.steady)
+    compile_beside("raceway.core.ring.equilibrium:solve_equilibrium", *(_OF_ORBITS if steady else ()))
     model = build_model(scene, plan)
     after_model = working_clock()
 
@@ -154,7 +156,13 @@ def _run(
     solve_s = end - after_model - answer.error_s
     times |= {"build_s": max(after_model - start, 0.0), "solve_s": solve_s, "error_s": answer.error_s}
     simulation = answer.motions[-1] if answer.motions else None
-    quantities = _quantities_of(scene, model, equilibrium, simulation)
+    quantities = stated_quantities(model, equilibrium, None if simulation is None else simulation.record)
+    if scene.heat is not None:
+        from raceway.pipeline.warm import band_of_heat, friction_band
+
+        band = quantities.tables["heat"]["band"] = band_of_heat(scene, friction_band(quantities.values))
+        if simulation is not None:
+            band["not_computed"] = "the motion is computed at one set of temperatures; kyy at rest has a band"
     # Each once: a mesh too coarse for its answer comes first, keys without effect last.
     errors, identification = answer.errors, answer.identification
     warnings = [
@@ -264,17 +272,6 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
         passing = model.geometry.ball_count * model.geometry.cage_speed(model.problem.spin_speed) / (2.0 * np.pi)
         frequencies |= {"ball pass": passing, "2x ball pass": 2.0 * passing}
     return lines(simulation.record.time, simulation.record.displacement, frequencies)
-
-
-def _quantities_of(scene: Scene, model: Model, equilibrium: Equilibrium, simulation: Simulation | None) -> StatedQuantities:
-    quantities = stated_quantities(model, equilibrium, None if simulation is None else simulation.record)
-    if scene.heat is not None:
-        from raceway.pipeline.warm import band_of_heat, friction_band
-
-        band = quantities.tables["heat"]["band"] = band_of_heat(scene, friction_band(quantities.values))
-        if simulation is not None:
-            band["not_computed"] = "the motion is computed at one set of temperatures; kyy at rest has a band"
-    return quantities
 
 
 def _work(motions: list[Simulation]) -> dict[str, Any]:
@@ -398,13 +395,7 @@ class Allowance:
         )
 
     def check(self, label: str, step: int, total: int) -> None:
-        """Stop a run between its steps.
-
-        Raises
-        ------
-        BeyondPlanError
-            Much more than the plan's time is gone, and steps are left.
-        """
+        """Stop a run between its steps: ``BeyondPlanError`` where much more than the plan's time is gone, and steps are left."""
         if self.spent and not 0 < total <= step:
             count = f"{step} of {total}" if total else str(step)
             raise BeyondPlanError(self.words(f"stopped far beyond the plan, in {label}, {count} done"))

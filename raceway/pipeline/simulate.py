@@ -99,7 +99,7 @@ def simulate(
     near: Simulation | None = None,
     stay: bool = False,
 ) -> Simulation:
-    """Integrate the plan's turns.
+    """Integrate the plan's turns; ``ConvergenceError`` where that fails, ``StabilityError`` above the stable limit of explicit steps.
 
     Parameters
     ----------
@@ -107,11 +107,6 @@ def simulate(
     start : None: that of the scene
     near : of a similar scene, for the search for an orbit, and for integrators of the same kind, that can start from it
     stay : on the motion of ``near``, or else on the first that is not unstable, where several may exist
-
-    Raises
-    ------
-    ConvergenceError, StabilityError
-        A failed integration, or an explicit step above its stable limit.
     """
     method, turns = model.problem.integrator.method, model.plan.turns
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz

@@ -172,14 +172,11 @@ class Run:
 def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None) -> tuple[float, str]:
     """Distance of Z from that of another start, over the smaller Z, and the name of that start.
 
+    ConvergenceError, StabilityError: No other start gives a motion.
+
     Parameters
     ----------
     motion : from the scene's own start;  run : from the same start, over as many turns
-
-    Raises
-    ------
-    ConvergenceError, StabilityError
-        No other start gives a motion.
     """
     kinds = (_OTHERS if motion.model.problem.integrator.method.inertial else _SERIES)[motion.start.kind]
     if not motion.start.repeats:

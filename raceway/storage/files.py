@@ -19,14 +19,11 @@ from raceway.errors import RacewayError
 def scratch_file(path: Path, remedy: str) -> Iterator[Path]:
     """A place beside ``path`` to write at, moved there in the end; folders are made.  An interruption leaves nothing behind.
 
+    RacewayError: A folder or disk that cannot be written.
+
     Parameters
     ----------
     remedy : sentence for who cannot write there
-
-    Raises
-    ------
-    RacewayError
-        A folder or disk that cannot be written.
     """
     if os.path.isdir(path):  # no question of pathlib's, which ends in an OSError where a name is too long
         raise RacewayError(f"`{path}` cannot be written: it is a folder. {remedy}")
