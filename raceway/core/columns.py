@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import attrs
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 T = TypeVar("T", bound=attrs.AttrsInstance)
 #: A number, or a column of them.
 Number = Any
+#: Whether a type is that of tables.
+is_table: Callable[[type], bool] = cache(attrs.has)
 
 
 def is_column(value: object) -> bool:
@@ -97,7 +100,7 @@ def _selected(part: T, choose: Callable[[np.ndarray], object]) -> T:
         return part
     values = _column_values(part)
     numbers = {name: choose(value) for name, value in values.items() if is_column(value)}
-    tables = {name: _selected(value, choose) for name, value in values.items() if attrs.has(type(value))}
+    tables = {name: _selected(value, choose) for name, value in values.items() if is_table(type(value))}
     return with_values(part, **numbers, **tables)
 
 
@@ -114,5 +117,5 @@ def distinct(part: T) -> tuple[list[T], np.ndarray]:
 def length(part: attrs.AttrsInstance) -> int:
     """Points of a table that has columns, or tables with them; 0 of one that has none."""
     values = _column_values(part).values()
-    sizes = (len(value) if is_column(value) else length(value) if attrs.has(type(value)) else 0 for value in values)
+    sizes = (len(value) if is_column(value) else length(value) if is_table(type(value)) else 0 for value in values)
     return next((size for size in sizes if size), 0)

@@ -6,6 +6,7 @@ from math import inf
 
 import attrs
 
+from raceway.core.columns import is_table
 from raceway.core.time.schemes import missing_driver
 from raceway.errors import Mistake, SceneError
 from raceway.framework.contracts import said
@@ -288,7 +289,7 @@ def _table_numbers(table: attrs.AttrsInstance | None, path: str) -> Iterator[tup
         value = getattr(table, name)
         if isinstance(value, float):
             yield f"{path}.{name}", unit, value
-        elif attrs.has(type(value)):
+        elif is_table(type(value)):
             yield from _table_numbers(value, f"{path}.{name}")
 
 
