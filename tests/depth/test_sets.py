@@ -12,6 +12,7 @@ from checks.validation.reference.ring import Ring
 from checks.validation.reference.row_set import RowSet, press, press_together
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.mounting import preload_table
+from raceway.extend import make_basis, resolve, running_pairs
 from raceway.scene.growth import ring_inertia
 from raceway.scene.sets import NAMES
 from raceway.testing import solve_equilibrium
@@ -302,3 +303,13 @@ def test_a_set_goes_through_a_file(tmp_path):
     one = scene("TBT", 200.0, {"row": [{}, {"position": "1 mm", "preset": "B7206C"}, {}]})
     assert one.bearing.rows[1] == (1.0, 1e-3) and one.bearing.of_rows[1].contact_angle_deg == 15.0
     assert attrs.evolve(scene_from_dict(one.to_dict()), given=None, source={}) == attrs.evolve(one, given=None, source={})
+
+
+def test_an_open_contact_is_about_to_carry_a_tenth_of_the_largest_load_of_its_own_row():
+    """As laws of running contacts take it; one ball of either row is loaded."""
+    problem = resolve(scene("DB", kinematics={"spin_speed_rpm": 9000.0}))
+    force = np.zeros((2, 2, problem.bearing.ball_count))
+    force[:, :, 0] = 10.0, 100.0
+    angles = np.full((2, force[0].size), radians(25.0))
+    load = running_pairs(problem, make_basis(problem), force.ravel(), tuple(angles)).load.reshape(force.shape)
+    assert load == pytest.approx(np.maximum(force, 0.1 * force.max(axis=2, keepdims=True)))
