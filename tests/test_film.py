@@ -30,10 +30,16 @@ def refused(contact, **tables):
 def test_thickness_is_that_of_the_formulas_written_out():
     rng, n = np.random.default_rng(1), 200
     viscous, load = 10.0 ** rng.uniform(-4.0, 1.0, n), 10.0 ** rng.uniform(-1.0, 4.0, n)
-    modulus, along, across, k = np.full(n, 2.3e11), np.full(n, 4e-3), np.full(n, 0.1), rng.uniform(1.0, 9.0, n)
+    modulus, along, across, k = (
+        10.0 ** rng.uniform(7.0, 11.4, n),
+        np.full(n, 4e-3),
+        np.full(n, 0.1),
+        rng.uniform(1.0, 9.0, n),
+    )
     found = film(viscous, 2e-8, modulus, along, across, load, k)
-    for i in range(n):
-        each = published.regimes(viscous[i] / (2.3e11 * 4e-3), 2e-8 * 2.3e11, load[i] / (2.3e11 * 4e-3**2), k[i], 25.0)
+    assert set(found.regime) == set(range(len(REGIMES))), "from rubber to steel"
+    for i, e in enumerate(modulus):
+        each = published.regimes(viscous[i] / (e * 4e-3), 2e-8 * e, load[i] / (e * 4e-3**2), k[i], 25.0)
         best = max(range(4), key=lambda one: each[one][1])
         assert found.regime[i] == best
         # Both are a few powers in double precision.
