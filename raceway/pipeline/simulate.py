@@ -1,13 +1,15 @@
 """From a model and its equilibrium to motion: integrated from its start, or the steady motion, solved for."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from math import ceil, pi
+from typing import TYPE_CHECKING
 
 import attrs
 import numpy as np
 
 from raceway.bodies.model import Equilibrium, Model, model_of
-from raceway.core.periodic.search import Neighbour, Recorded
 from raceway.core.record import Motion, Record, Schedule
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.system import compiled
@@ -19,6 +21,9 @@ from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.planning.plan import plan_of
 from raceway.planning.resolve import SAFETY, STEPS_PER_TURN, recorded_per_turn, stable_steps_per_turn
 from raceway.storage.tables import Tables
+
+if TYPE_CHECKING:
+    from raceway.core.periodic.search import Neighbour, Recorded
 
 #: Called as ``on_progress(what, done, total)``; ``total`` is 0 where it is not known.  What it raises ends the work.
 OnProgress = Callable[[str, int, int], None]
@@ -78,7 +83,7 @@ class Simulation:
     critical_time_step: float | None
     start: Start
     warnings: tuple[str, ...]
-    near: "Simulation | None" = None
+    near: Simulation | None = None
 
     @property
     def steps_per_turn(self) -> int:
@@ -112,7 +117,11 @@ def simulate(
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
     watch = None if on_progress is None else (lambda: on_progress("the search for orbits", 0, 0))
     solution = None if near is None else near.whole.solution
-    start = start or start_of_motion(model, equilibrium, watch, solution if isinstance(solution, Neighbour) else None, stay)
+    if solution is not None:
+        from raceway.core.periodic.search import Neighbour
+
+        solution = solution if isinstance(solution, Neighbour) else None
+    start = start or start_of_motion(model, equilibrium, watch, solution, stay)
     # Stable limit of explicit steps: the shortest of the states known before the run.
     orbit, K, C = start.orbit, equilibrium.stiffness_rows_held[None], equilibrium.damping_rows_held[None]
     if orbit is not None:
@@ -314,6 +323,8 @@ def last_turn(record: Record, period: float) -> Recorded | None:
     n = steps // stride
     if n * stride != steps or len(record.time) < n or record.schedule.steps % steps:
         return None
+    from raceway.core.periodic.search import Recorded
+
     # Samples end each turn: the last one of a turn is the first moment of the next.
     q, v = (np.roll(values[-n:], 1, axis=0) for values in (record.displacement, record.velocity))
     lines = np.fft.rfft(v, axis=0) * (2j * pi / period * np.arange(n // 2 + 1))[:, None]
