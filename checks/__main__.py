@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from importlib import import_module
 
@@ -19,4 +20,5 @@ parser = argparse.ArgumentParser(prog="python -m checks", description=__doc__)
 parser.add_argument("names", nargs="*", metavar="NAME")
 parser.add_argument("--base", default="", metavar="COMMIT", help="commit that `unchanged` compares with [the last tag]")
 arguments = parser.parse_args()
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command line has it; read when numpy is imported
 sys.exit(show(arguments.names, names(), rows_of))
