@@ -252,7 +252,7 @@ def test_deviations_are_those_of_rows_made_by_hand():
     """Pressures of elastic bodies are 2 % above Hertz's, of the ball with the least load 3 %; K 1 % above that of condensed bodies."""
     study = elastic_study()
     row, other = (study.row("static", "1000 N axial + 500 N radial", kind) for kind in ("elastic", "condensed"))
-    hertz = elastic._from_hertz(row)["inner"]
+    hertz = elastic._pressures(row["balls"], "inner")
     assert hertz["most_loaded"] == pytest.approx(0.02) and hertz["largest"] == pytest.approx(0.03)
     assert hertz["ball"] == 0 and hertz["loaded_balls"] == 3  # of four, one of which carries nothing
     off = elastic._at_rest(row, other)
