@@ -221,6 +221,9 @@ class Function:
         blocks = [slice(k, k + size) for k in range(0, n, size)]
         answer: Columns = {"status": np.full(n, PointStatus.FAILED), "reason": np.full(n, "", dtype=object)}
         compile_beside(*_KERNELS[0 if self.moving else 1 :])
+        if n > size:
+            # Once so large an array was freed, glibc keeps a block's memory for the next one, which it asks for zeroed pages else.
+            np.empty(31 << 17)
         with ThreadPool(min(self.threads, len(blocks))) as pool:
             pool.do(len(blocks), lambda number: self._put_block(flat, blocks[number], answer))
         without = answer["status"] != PointStatus.COMPUTED

@@ -276,12 +276,14 @@ def first_place(k, ea, er, scalars, table):
     li, lo = offsets_of(k, scalars, table)
     length = max(np.sqrt(ea * ea + er * er), 1e-30)
     push, factor, share = table[k, CENTRIFUGAL], table[k, OUTER_FACTOR], table[k, OUTER_SHARE]
-    deep, h, cosine, sine = length - li - lo, li * lo / (li + lo), er / length, abs(ea) / length
-    driven, t = push * sine * h / (factor * share * np.sqrt(share)), 0.0
-    if driven > 0.0:
-        t = np.sqrt(max(-2.0 * h * deep, 0.0)) + np.sqrt(np.sqrt(driven * 2.0 * h * np.sqrt(2.0 * h)))
-        if deep > 0.0:
-            t = min(t, driven / (deep * np.sqrt(deep)))
+    by_length, deep, h, t = 1.0 / length, length - li - lo, li * lo / (li + lo), 0.0
+    cosine, sine = er * by_length, abs(ea) * by_length
+    driven = push * sine * h / (factor * share * np.sqrt(share))
+    if deep > 0.0:
+        t = driven / (deep * np.sqrt(deep))
+    if driven > 0.0 and t * t >= 0.2 * h * deep:
+        most = np.sqrt(max(-2.0 * h * deep, 0.0)) + np.sqrt(np.sqrt(driven * 2.0 * h * np.sqrt(2.0 * h)))
+        t = min(t, most) if deep > 0.0 else most
         for _ in range(3):
             closer = deep + 0.5 * t * t / h
             third = np.sqrt(closer)
