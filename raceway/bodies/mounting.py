@@ -37,10 +37,11 @@ _AXIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
 
 def place_ring(problem: Problem, basis: Basis, system: Ring) -> np.ndarray:
     """(5,) first guess of the equilibrium; builds the preload of a set into the system, finds a held axial displacement."""
-    guess, growth, seek = first_guess(problem, basis), basis.growth, None
+    growth, seek, shift = basis.growth, None, 0.0
     if problem.bearing.preloaded:
         system.table[:, ring.SHIFT] = _ground_shifts(problem, basis, system.standing(growth))
-        guess = first_guess(problem, basis, system.table[:, ring.SHIFT].max())
+        shift = float(system.table[:, ring.SHIFT].max())
+    guess = first_guess(problem, basis, shift)
     if problem.bearing.preloaded and problem.bearing.preload_kind == "spring":
         system.sliding = np.flatnonzero(system.table[:, ring.SIDE] != system.table[0, ring.SIDE])
         seek = partial(_follow_spring, problem, basis, float(system.table[system.sliding[0], ring.SHIFT]))

@@ -116,12 +116,12 @@ def simulate(
     method, turns = model.problem.integrator.method, model.plan.turns
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
     watch = None if on_progress is None else (lambda: on_progress("the search for orbits", 0, 0))
-    solution = None if near is None else near.whole.solution
+    solution, orbit_near = None if near is None else near.whole.solution, None
     if solution is not None:
         from raceway.core.periodic.search import Neighbour
 
-        solution = solution if isinstance(solution, Neighbour) else None
-    start = start or start_of_motion(model, equilibrium, watch, solution, stay)
+        orbit_near = solution if isinstance(solution, Neighbour) else None
+    start = start or start_of_motion(model, equilibrium, watch, orbit_near, stay)
     # Stable limit of explicit steps: the shortest of the states known before the run.
     orbit, K, C = start.orbit, equilibrium.stiffness_rows_held[None], equilibrium.damping_rows_held[None]
     if orbit is not None:
