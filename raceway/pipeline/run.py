@@ -67,8 +67,8 @@ def run(
     on_progress : called as ``on_progress(what, done, total)`` between chunks of steps; an exception stops the run
     near : of a similar scene: what is dear to search for (equilibria of contacts at surface points, steady motions that are
         nearly linear) is searched for from its own, which changes the result within the tolerances of the search only
-    stay : on the steady motion of ``near`` where several may exist, instead of searching for all, for scenes that are tried
-        one after another in an iteration: which of them is found then depends on ``near``
+    stay : on the steady motion of ``near``, stable or not, instead of searching for all that may exist, for scenes that follow one another,
+        on a curve or in an iteration: which of them is found then depends on ``near``
     patience : times the planned time, of processor time, after which a run is stopped between its steps
 
     Raises

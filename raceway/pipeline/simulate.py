@@ -111,7 +111,7 @@ def simulate(
     steps_per_turn : instead of the scene's
     start : None: that of the scene
     near : of a similar scene, for the search for an orbit, and for integrators of the same kind, that can start from it
-    stay : on the motion of ``near``, or else on the first that is not unstable, where several may exist
+    stay : on the motion of ``near``, stable or not, instead of searching for all that may exist
     """
     method, turns = model.problem.integrator.method, model.plan.turns
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz

@@ -196,8 +196,8 @@ def failure(why: RacewayError) -> Tables:
 def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
     """One row a point, in order; a run that fails or is refused becomes a row with its reason.
 
-    Each motion is continued from that at the next speed where it stays beside it and is not unstable, else searched for. Where it is
-    unstable, or none is found, ``instead`` states what a ring does, by time integration: from beside that motion, or from rest.
+    As in a run-up each motion is continued from that at the speed before, stable or not; where that does not lead on, it is searched for.
+    Where it is unstable, or none is found, ``instead`` states what a ring does, by time integration: from beside that motion, or from rest.
     With friction the orbit of another start is the motion without it at the same point, where that was run.
 
     points : tables of scenes that differ in axial load, speed and tilt stiffness; those with friction last
@@ -206,15 +206,16 @@ def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
     rows: list[Tables | None] = [*(_looped(steady, registry) if steady else []), *[None] * (len(points) - len(steady))]
 
     def place(k: int) -> tuple[float, float, bool, int]:
-        return points[k]["load"]["axial"], points[k]["excitation"]["speed_rpm"], k < len(steady), k
+        return points[k]["load"]["axial"], points[k]["excitation"]["speed_rpm"], k >= len(steady), k
 
     near, last, without_friction = None, None, dict[tuple[float, float], Result | None]()
-    for k in sorted((k for k, row in enumerate(rows) if row is None), key=place, reverse=True):
+    for k in sorted((k for k, row in enumerate(rows) if row is None), key=place):
         near, last, at = near if points[k]["load"] == last else None, points[k]["load"], place(k)[:2]
         row, result = _point_row(points[k], registry, near if k < len(steady) else without_friction.get(at))
         rows[k] = row
         if k < len(steady):
-            without_friction[at], near = result, result if row["status"] == Status.COMPLETED else near
+            led = row["status"] == Status.COMPLETED or row.get("found") == "directly"
+            without_friction[at], near = result, result if led else near
     return [row for row in rows if row]
 
 

@@ -276,8 +276,13 @@ def chosen(
     tolerance: float,
     direct: PeriodicMotion | None,
     alone: bool = False,
+    stable: bool = True,
 ) -> PeriodicMotion:
-    """The motion that is taken, of all that the branch from rest and Newton's iteration lead to; ``alone``: no further ones are sought."""
+    """The motion that is taken, of all that the branch from rest and Newton's iteration lead to.
+
+    alone : no further ones are sought beside one that is not unstable
+    stable : where all of these are unstable, those without damping, at other speeds and loads are followed, too
+    """
     highest = search.highest_order(problem, tangent)
     branch = _force_branch(problem, q, tangent, search.mesh_of(problem, highest))
     motions: list[PeriodicMotion] = []
@@ -297,17 +302,17 @@ def chosen(
         except ConvergenceError:
             if branch.failure is not None:
                 raise branch.failure from None
-    if all(motion.floquet.verdict == "unstable" for motion in motions):
+
+    def wanted() -> bool:
+        return (stable or not motions) and all(motion.floquet.verdict == "unstable" for motion in motions)
+
+    if wanted():
         for candidate in _from_undamped(problem, q, tangent, search.mesh_of(problem, highest), tolerance):
             if not any(_alike(candidate, other_motion.refined) for other_motion in motions):
                 motions.append(search.with_multipliers(candidate, highest, "from no damping", fold))
                 if alone and motions[-1].floquet.verdict != "unstable":
                     break
-    if (
-        fold is not None
-        and problem.system.scalars[CAGE] == 0.0
-        and all(motion.floquet.verdict == "unstable" for motion in motions)
-    ):
+    if fold is not None and problem.system.scalars[CAGE] == 0.0 and wanted():
         homotopy = _by_homotopy(problem, q, tangent, tolerance, not motions)
         if homotopy is not None and not any(_alike(homotopy[0], other_motion.refined) for other_motion in motions):
             motions.append(search.with_multipliers(homotopy[0], highest, homotopy[1], fold))

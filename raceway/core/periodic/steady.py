@@ -247,8 +247,9 @@ def find(
     """The periodic motion of a ring about the equilibrium q (5,), to a relative tolerance, and others beside it.
 
     near : a motion to start from
-    stay : on that one, or else on the first that is not unstable, instead of searching for all that may exist; and where branches are not followed and nothing
-        is found directly, give up instead of letting the force grow on a mesh of thousands of intervals
+    stay : on that one, stable or not; where it does not lead here, on the first that the branch from rest meets and that is not unstable, instead of all
+        that may exist; and where branches are not followed and nothing is found directly, give up instead of letting the force grow on a
+        mesh of thousands of intervals
 
     Newton's iteration from the linear response, with full steps only: one that has to be shortened may end on a resonant
     branch far away.  Where it fails, is unstable, or ends far from the linear response, there may be several motions: the
@@ -261,7 +262,7 @@ def find(
     """
     highest = search.highest_order(problem, tangent)
     if near is not None and (stay or near.near_linear):
-        followed = _continued(problem, q, tangent, tolerance, highest, near)
+        followed = _continued(problem, q, tangent, tolerance, highest, near, stay)
         # Far from the linear response there may be other motions: then the search without a neighbour decides.
         if followed is not None and (stay or not _may_coexist(followed, q, tangent)):
             return followed
@@ -282,13 +283,14 @@ def find(
         return direct or search.with_multipliers(
             grown_from_rest(problem, q, tangent, tolerance, highest), highest, "from rest"
         )
-    return chosen(problem, q, tangent, tolerance, direct, stay)
+    return chosen(problem, q, tangent, tolerance, direct, stay, near is None or not stay)
 
 
 def _continued(
-    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, near: Neighbour | Recorded
-) -> PeriodicMotion | None:
-    """The motion that continues a neighbour, if it is close to it and not unstable, or the neighbour solves the same problem."""
+    problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, near: Neighbour | Recorded,
+    stay: bool,
+) -> PeriodicMotion | None:  # fmt: skip
+    """The motion that continues a neighbour, if it is close to it; one that is unstable only of a steady motion that ``stay`` asks for."""
     known = near.excess.nodes if isinstance(near, Neighbour) and near.solves(problem) else None
     first = near.first_guess(problem, q, tangent, search.mesh_of(problem, highest) if known is None else known)
     if first is None:
@@ -300,7 +302,8 @@ def _continued(
         motion = search.with_multipliers(refine(solved, tolerance), highest, "directly")
     except ConvergenceError:
         return None
-    return None if motion.floquet.verdict == "unstable" and known is None else motion
+    follows = known is not None or (stay and isinstance(near, Neighbour))
+    return motion if follows or motion.floquet.verdict != "unstable" else None
 
 
 def _may_coexist(motion: PeriodicMotion, q: np.ndarray, tangent: np.ndarray) -> bool:
