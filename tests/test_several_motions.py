@@ -71,7 +71,7 @@ def test_without_damping_the_branch_leads_through_no_force():
     ("axial", "speed", "amplitude", "inertia", "found"),
     [
         (800.0, 10980.0, "constant", True, "from a higher speed"),
-        (400.0, 13492.5, "unbalance", False, "from a heavier axial load"),
+        (400.0, 13492.5, "unbalance", False, "from a lower speed"),
     ],
 )
 def test_a_motion_that_only_another_speed_or_load_leads_to(axial, speed, amplitude, inertia, found):
