@@ -466,6 +466,10 @@ def _items(design: Design, registry: Registry) -> list[Item]:
     return items
 
 
+#: Part of the loop's points that are run, too: 171 of 1296 of the article's own scene.
+_AGAIN = 0.13
+
+
 def workload(design: Design, processes: int, kept: Path | None, registry: Registry) -> Workload:
     """Points of the curves over speed, which take nearly all of the time."""
     groups = design.curves()
@@ -474,11 +478,17 @@ def workload(design: Design, processes: int, kept: Path | None, registry: Regist
     points = [(setting, load, speed) for setting, load in left for speed in design.speeds_of(setting)]
     starts = {setting: design.point(setting, load, speed, registry) for setting, load, speed in points}
     loops = [setting for setting, start in starts.items() if _loop_of([start], registry)[0] is not None]
-    looped = sum(setting in loops for setting, _, _ in points)
-    size = sum(len(design.speeds_of(setting)) for group in groups for setting, _ in group)
-    seconds, refusal = run_times(len(points), lambda n: design.point(*points[n], registry), registry)
-    remark = "Points of the loop that are unstable or far from linear are run in addition; the time counts all as runs."
-    counts = size, seconds / max(processes, 1), looped, max(len(points) - looped - refusal, 0), refusal, size - len(points)
+    alone, looped = ([point for point in points if (point[0] in loops) == loop] for loop in (False, True))
+    runs_s, refusal = run_times(len(alone), lambda n: design.point(*alone[n], registry), registry)
+    again_s, _ = run_times(len(looped), lambda n: design.point(*looped[n], registry), registry)
+    size, seconds = (
+        sum(len(design.speeds_of(setting)) for group in groups for setting, _ in group),
+        runs_s + _AGAIN * again_s,
+    )
+    remark = (
+        f"Points of the loop that are unstable or far from linear are run in addition: counted are {_AGAIN:.0%} of them."
+    )
+    counts = size, seconds / max(processes, 1), len(looped), max(len(alone) - refusal, 0), refusal, size - len(points)
     return Workload(str(design.tables["title"]), *counts, why_runs="no compiled loop has them", remarks=(remark,))
 
 
