@@ -24,24 +24,20 @@ class Basis:
     """Geometry and load-independent contacts of a scene.
 
     Of n operating points all numbers may be columns (n,).
-
-    geometry : lengths of the first row;  geometries : of each row;  modulus : E* [Pa]
-    inner, outer : Hertz contacts; of rows that differ those of all balls, with numbers (Z,)
-    azimuth : (Z,) at time zero, rows one after the other [rad];  row : (Z,) to which row of the set each ball belongs
-    axial, ball_load : rough axial approach [m] and load of a ball [N] under the axial load alone
-    growth : of the grooves of the running, warm rows beyond those before mounting
     """
 
-    geometry: BallBearing
-    geometries: tuple[BallBearing, ...]
-    modulus: float
+    geometry: BallBearing  # lengths of the first row
+    geometries: tuple[BallBearing, ...]  # of each row
+    modulus: float  # E* [Pa]
+    #: inner, outer : Hertz contacts; of rows that differ those of all balls, with numbers (Z,)
     inner: Ellipse
     outer: Ellipse
-    azimuth: np.ndarray
-    row: np.ndarray
+    azimuth: np.ndarray  # (Z,) at time zero, rows one after the other [rad]
+    row: np.ndarray  # (Z,) to which row of the set each ball belongs
+    #: axial, ball_load : rough axial approach [m] and load of a ball [N] under the axial load alone
     axial: float
     ball_load: float
-    growth: Growth
+    growth: Growth  # of the grooves of the running, warm rows beyond those before mounting
 
     @property
     def ball_radius(self) -> np.ndarray | float:

@@ -54,21 +54,16 @@ def impedance(force: np.ndarray, line: np.ndarray) -> np.ndarray:
 
 @attrs.frozen(eq=False)
 class ColumnBearing:
-    """The bearing at n points.
-
-    linear : what all points share;  points : numbers of each;  kernels : of balls and law
-    faults : (n,) status of the preload's own equilibria, 0 where it is built in
-    unloaded : the same at one point, where nothing but loads differs from it
-    """
+    """The bearing at n points."""
 
     problem: Problem
     plan: ScenePlan
     basis: Basis
-    linear: Linear
-    points: Points
-    kernels: Kernels
-    faults: np.ndarray
-    unloaded: ColumnBearing | None = None
+    linear: Linear  # what all points share
+    points: Points  # numbers of each
+    kernels: Kernels  # of balls and law
+    faults: np.ndarray  # (n,) status of the preload's own equilibria, 0 where it is built in
+    unloaded: ColumnBearing | None = None  # the same at one point, where nothing but loads differs from it
 
     @cached_property
     def force(self) -> tuple[np.ndarray, np.ndarray]:

@@ -81,24 +81,22 @@ def measured_factors(
 class BallContacts:
     """Contacts of Z balls at n points, race 0 inner, 1 outer.
 
-    load, angle : (n, 2, Z) [N], [rad], the angle nan where open;  row : (Z,) of the balls
-    semi_major, semi_minor : of the ellipse over the cube root of the load [m/N^(1/3)], major across the running direction
-    ball_diameter, pitch_diameter : [m];  conformity : groove radius over ball diameter
-    modulus : E' = 2 E* [Pa];  inertia : of a ball [kg m2]
-
     The last seven are numbers, or arrays that broadcast to (1 or n, 2, Z).
     """
 
+    #: load, angle : (n, 2, Z) [N], [rad], the angle nan where open
     load: np.ndarray
     angle: np.ndarray
-    row: np.ndarray
+    row: np.ndarray  # (Z,) of the balls
+    #: semi_major, semi_minor : of the ellipse over the cube root of the load [m/N^(1/3)], major across the running direction
     semi_major: np.ndarray
     semi_minor: np.ndarray
+    #: ball_diameter, pitch_diameter : [m]
     ball_diameter: Number
     pitch_diameter: Number
-    conformity: Number
-    modulus: Number
-    inertia: Number
+    conformity: Number  # groove radius over ball diameter
+    modulus: Number  # E' = 2 E* [Pa]
+    inertia: Number  # of a ball [kg m2]
 
     def columns(self, drag: Number) -> Contacts:
         """As the compiled loop sees them; ``drag`` : of ``Lubrication``."""
@@ -131,23 +129,17 @@ class BallContacts:
 
 @attrs.frozen(eq=False)
 class Lubrication:
-    """The oil in and around the contacts; numbers, or columns (n,); ``oil_fraction`` may be (n, 1, Z).
+    """The oil in and around the contacts; numbers, or columns (n,); ``oil_fraction`` may be (n, 1, Z)."""
 
-    viscosity : dynamic, at the inlets [Pa s];  pressure_viscosity : alpha [1/Pa];  temperature_viscosity : beta [1/K]
-    conductivity : [W/m/K];  density : [kg/m3]
-    traction_limit : largest traction coefficient;  eyring_stress : [Pa]
-    oil_fraction : volume of oil over that of the space around the balls;  drag_coefficient : of a ball in the mixture
-    """
-
-    viscosity: Number
-    pressure_viscosity: Number
-    temperature_viscosity: Number
-    conductivity: Number
-    density: Number
-    traction_limit: Number
-    eyring_stress: Number
-    oil_fraction: Number
-    drag_coefficient: Number
+    viscosity: Number  # dynamic, at the inlets [Pa s]
+    pressure_viscosity: Number  # alpha [1/Pa]
+    temperature_viscosity: Number  # beta [1/K]
+    conductivity: Number  # [W/m/K]
+    density: Number  # [kg/m3]
+    traction_limit: Number  # largest traction coefficient
+    eyring_stress: Number  # [Pa]
+    oil_fraction: Number  # volume of oil over that of the space around the balls
+    drag_coefficient: Number  # of a ball in the mixture
 
     @property
     def film(self) -> np.ndarray:
@@ -169,20 +161,16 @@ class Lubrication:
 
 @attrs.frozen(eq=False)
 class Losses:
-    """Torques on the shaft by source and place [N m], and powers [W] at its speed.
+    """Torques on the shaft by source and place [N m], and powers [W] at its speed."""
 
-    speed : (n,) of the shaft [rad/s]
-    rolling, elastic_rolling, sliding : (n, 2, rows) of the contacts of both races
-    drag : (n, rows) of the balls in the mixture;  seals : (n,) of seals and cage, as given
-    gyroscopic : (n, rows) largest part of the traction limit that a gyroscopic moment takes; from 1 on balls slip sideways
-    """
-
-    speed: np.ndarray
+    speed: np.ndarray  # (n,) of the shaft [rad/s]
+    #: rolling, elastic_rolling, sliding : (n, 2, rows) of the contacts of both races
     rolling: np.ndarray
     elastic_rolling: np.ndarray
     sliding: np.ndarray
-    drag: np.ndarray
-    seals: np.ndarray
+    drag: np.ndarray  # (n, rows) of the balls in the mixture
+    seals: np.ndarray  # (n,) of seals and cage, as given
+    #: (n, rows) largest part of the traction limit that a gyroscopic moment takes; from 1 on balls slip sideways
     gyroscopic: np.ndarray
 
     @property

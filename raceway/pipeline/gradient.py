@@ -63,38 +63,28 @@ class NoDerivative(Exception):  # noqa: N818  (an answer, stated in the table, n
 
 @attrs.frozen(eq=False)
 class StaticGradient:
-    """Derivatives of an equilibrium by the number at one key.
-
-    step : of the differences, in the unit of the key; 0 where it changes nothing at rest
-    displacement : (5,) [m, rad];  stiffness, damping : (5, 5) of the contacts;  contact_force : (2 Z,) inner races first [N]
-    stated : of ``Gradients.stated``
-    remark : why they may not be smooth; empty where they are
-    models : that were built for them, beside columns
-    """
+    """Derivatives of an equilibrium by the number at one key."""
 
     key: Key
-    step: float
-    displacement: np.ndarray
+    step: float  # of the differences, in the unit of the key; 0 where it changes nothing at rest
+    displacement: np.ndarray  # (5,) [m, rad]
+    #: stiffness, damping : (5, 5) of the contacts
     stiffness: np.ndarray
     damping: np.ndarray
-    contact_force: np.ndarray
-    stated: np.ndarray
-    remark: str
-    models: int
+    contact_force: np.ndarray  # (2 Z,) inner races first [N]
+    stated: np.ndarray  # of ``Gradients.stated``
+    remark: str  # why they may not be smooth; empty where they are
+    models: int  # that were built for them, beside columns
 
 
 @attrs.frozen(eq=False)
 class _MotionGradient:
-    """Derivatives of the 1x line of the steady orbit by the number at one key.
+    """Derivatives of the 1x line of the steady orbit by the number at one key."""
 
-    dynamic_stiffness : complex, of Z [N/m];  equivalent_stiffness : of K [N/m];  equivalent_damping : of C [N s/m]
-    amplitude : of the 1x line along the force [m]
-    """
-
-    dynamic_stiffness: complex
-    equivalent_stiffness: float
-    equivalent_damping: float
-    amplitude: float
+    dynamic_stiffness: complex  # of Z [N/m]
+    equivalent_stiffness: float  # of K [N/m]
+    equivalent_damping: float  # of C [N s/m]
+    amplitude: float  # of the 1x line along the force [m]
 
 
 @attrs.frozen(eq=False)
@@ -171,14 +161,12 @@ def _line_numbers(solution: Solved, mass: float) -> np.ndarray:
 class Gradients:
     """Derivatives of an equilibrium, and of the steady orbit about it.
 
-    moving : False leaves the orbit out
-
     SceneError: Bodies whose contacts are pressures at surface points, or are not compiled.
     """
 
     model: Model
     equilibrium: Equilibrium
-    moving: bool = True
+    moving: bool = True  # False leaves the orbit out
 
     def __attrs_post_init__(self) -> None:
         refuse_points(self.model.problem)

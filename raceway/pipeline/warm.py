@@ -63,16 +63,11 @@ Solve = Callable[[Mapping[str, np.ndarray], np.ndarray, list[np.ndarray]], np.nd
 
 @attrs.frozen(eq=False)
 class Warmth:
-    """Steady temperatures of n points.
+    """Steady temperatures of n points."""
 
-    columns : of the keys of temperatures (n,), those of the cold bearing where nothing is steady
-    temperatures : (n, 6) of all nodes [C]
-    runaway : (n,) whether there are none: heat outgrows what can leave
-    """
-
-    columns: Mapping[str, np.ndarray]
-    temperatures: np.ndarray
-    runaway: np.ndarray
+    columns: Mapping[str, np.ndarray]  # of the keys of temperatures (n,), those of the cold bearing where nothing is steady
+    temperatures: np.ndarray  # (n, 6) of all nodes [C]
+    runaway: np.ndarray  # (n,) whether there are none: heat outgrows what can leave
 
 
 def warm(scene: Scene, columns: Mapping[str, np.ndarray], plan: ScenePlan, factors: Sequence[np.ndarray] = ()) -> Warmth:

@@ -315,14 +315,10 @@ _FILE_FORM = 'must be a TOML file with a table [grid], for instance "load.axial"
 
 @attrs.frozen
 class Design:
-    """Points of a sweep.
+    """Points of a sweep."""
 
-    axes : keys with their values, the last one running fastest in the numbering of points
-    listed : whether the values of the axes belong together point by point, instead of all their combinations
-    """
-
-    axes: tuple[Axis, ...]
-    listed: bool = False
+    axes: tuple[Axis, ...]  # keys with their values, the last one running fastest in the numbering of points
+    listed: bool = False  # whether the values of the axes belong together point by point, instead of all their combinations
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -133,18 +133,15 @@ _STATUS = np.array(["computed", "run", "refused", "waiting"], dtype=object)
 
 @attrs.frozen(eq=False)
 class Points:
-    """What is stored of all points, by their numbers.
-
-    columns : quantity -> (n, ...), nan where a point has none;  status : (n,) words
-    reasons, warnings : of points that have some;  damaged : number of points whose rows are
-    """
+    """What is stored of all points, by their numbers."""
 
     design: Design
-    columns: dict[str, np.ndarray]
-    status: np.ndarray
+    columns: dict[str, np.ndarray]  # quantity -> (n, ...), nan where a point has none
+    status: np.ndarray  # (n,) words
+    #: reasons, warnings : of points that have some
     reasons: dict[int, str]
     warnings: dict[int, list[str]]
-    damaged: int
+    damaged: int  # number of points whose rows are
 
     def rows(self) -> Iterator[Tables]:
         """``{point, status, reason, values, warnings}`` of every point."""

@@ -47,31 +47,23 @@ def factorial_effects(values: np.ndarray) -> np.ndarray:
 
 @attrs.frozen
 class Effect:
-    """One term.
+    """One term."""
 
-    term : keys of its axes;  log_change : e_T;  percent : 100 (exp(e_T) - 1)
-    difference : mean at the last minus mean at the first value [N/m], main effects only
-    share : of the variation of ln(quantity);  resolved : whether it exceeds what the corners' errors can make
-    """
-
-    term: tuple[str, ...]
-    log_change: float
-    percent: float
-    difference: float | None
-    share: float
-    resolved: bool
+    term: tuple[str, ...]  # keys of its axes
+    log_change: float  # e_T
+    percent: float  # 100 (exp(e_T) - 1)
+    difference: float | None  # mean at the last minus mean at the first value [N/m], main effects only
+    share: float  # of the variation of ln(quantity)
+    resolved: bool  # whether it exceeds what the corners' errors can make
 
 
 @attrs.frozen(eq=False, slots=False)
 class Factorial:
-    """One quantity at all corners.
+    """One quantity at all corners."""
 
-    keys : (k,) axes;  corners : (2,) * k, positive [N/m]
-    errors : (2,) * k, the corners' relative errors, below 1; default: none
-    """
-
-    keys: tuple[str, ...]
-    corners: np.ndarray
+    keys: tuple[str, ...]  # (k,) axes
+    corners: np.ndarray  # (2,) * k, positive [N/m]
+    #: (2,) * k, the corners' relative errors, below 1; default: none
     errors: np.ndarray = attrs.field(default=attrs.Factory(lambda self: np.zeros(self.corners.shape), takes_self=True))
 
     @property
@@ -229,18 +221,14 @@ class Row:
 
 @attrs.frozen(eq=False)
 class Course:
-    """How a quantity runs along an axis, the others held.
-
-    axis : its key;  at : the other axes' values;  trend : "rises", "falls", "level", "not monotonic" or "unknown"
-    percent : change from the first to the last value, None where one of them is no number;  doubtful : rows that are left out
-    """
+    """How a quantity runs along an axis, the others held."""
 
     quantity: str
-    axis: str
-    at: Tables
-    trend: str
-    percent: float | None
-    doubtful: int
+    axis: str  # its key
+    at: Tables  # the other axes' values
+    trend: str  # "rises", "falls", "level", "not monotonic" or "unknown"
+    percent: float | None  # change from the first to the last value, None where one of them is no number
+    doubtful: int  # rows that are left out
 
 
 @attrs.frozen(eq=False, slots=False)

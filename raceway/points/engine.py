@@ -81,18 +81,12 @@ _FAULTS: dict[tuple[str, ...], str | None] = {}
 
 @attrs.frozen
 class Work:
-    """Callable on a list of what ``function`` takes; answers with a list of what it gives, or ``Refused``.
+    """Callable on a list of what ``function`` takes; answers with a list of what it gives, or ``Refused``."""
 
-    function : called as ``function(task, registry)``
-    plugins : one-off plug-in files, which each process loads
-    required : identity that a process must have; None where all are of this machine
-    registry : in the process that the work was made in; others have one of their own
-    """
-
-    function: Callable[[Any, Registry], Tables | Row]
-    plugins: tuple[str, ...] = ()
-    required: Tables | None = None
-    registry: Registry | None = None
+    function: Callable[[Any, Registry], Tables | Row]  # called as ``function(task, registry)``
+    plugins: tuple[str, ...] = ()  # one-off plug-in files, which each process loads
+    required: Tables | None = None  # identity that a process must have; None where all are of this machine
+    registry: Registry | None = None  # in the process that the work was made in; others have one of their own
 
     def __reduce__(self) -> tuple[object, ...]:
         return Work, (self.function, self.plugins, self.required)

@@ -239,18 +239,15 @@ def _follow_doubled(
 
 @attrs.define(eq=False)
 class _Continuation:
-    """Follows one branch and writes down what it meets: points, special points, peaks, contacts that open, how it ends.
-
-    mass : m of K [kg];  points : orbits at most;  closed : whether the branch ends at a point, asked for each in its order
-    """
+    """Follows one branch and writes down what it meets: points, special points, peaks, contacts that open, how it ends."""
 
     branch: Branch
     curve: Followed
     parameter: Parameter
-    mass: float
-    points: int
+    mass: float  # m of K [kg]
+    points: int  # orbits at most
     on_progress: OnProgress | None
-    closed: Callable[[Point], bool] | None = None
+    closed: Callable[[Point], bool] | None = None  # whether the branch ends at a point, asked for each in its order
     arc: float = 0.0
 
     def go(self, start: Point) -> bool:

@@ -54,22 +54,15 @@ _ROUNDING = 1e-13
 
 @attrs.frozen(eq=False)
 class LawContact:
-    """One ball-race contact in its equilibrium, alone.
+    """One ball-race contact in its equilibrium, alone."""
 
-    race : "inner" or "outer";  ball : its number, from 0
-    load : normal force [N];  approach : minus the gap between the undeformed surfaces [m]
-    reach : gap at which the contact begins to carry [m]: 0, or what a film puts between the surfaces
-    hertz_factor : K of Hertz' force K delta^1.5 [N/m^1.5]
-    system : a mass against the contact alone, whose x is approach + reach
-    """
-
-    race: str
-    ball: int
-    load: float
-    approach: float
-    reach: float
-    hertz_factor: float
-    system: System
+    race: str  # "inner" or "outer"
+    ball: int  # its number, from 0
+    load: float  # normal force [N]
+    approach: float  # minus the gap between the undeformed surfaces [m]
+    reach: float  # gap at which the contact begins to carry [m]: 0, or what a film puts between the surfaces
+    hertz_factor: float  # K of Hertz' force K delta^1.5 [N/m^1.5]
+    system: System  # a mass against the contact alone, whose x is approach + reach
 
     def at(
         self, approach: float, rate: float = 0.0, step: Increment | None = None
@@ -111,24 +104,19 @@ class LawContact:
 
 @attrs.frozen(eq=False)
 class _Cycle:
-    """One period of the approach.
+    """One period of the approach."""
 
-    frequency : [Hz];  amplitude : x [m]
-    approach, rate, force : (n,) over one period [m, m/s, N]
-    stiffness : K [N/m];  damping : C [N s/m];  energy : lost [J];  loss_factor : w C / K; None without K
-    opens : whether the contact opens on the way
-    """
-
-    frequency: float
-    amplitude: float
+    frequency: float  # [Hz]
+    amplitude: float  # x [m]
+    #: approach, rate, force : (n,) over one period [m, m/s, N]
     approach: np.ndarray
     rate: np.ndarray
     force: np.ndarray
-    stiffness: float
-    damping: float
-    energy: float
-    loss_factor: float | None
-    opens: bool
+    stiffness: float  # K [N/m]
+    damping: float  # C [N s/m]
+    energy: float  # lost [J]
+    loss_factor: float | None  # w C / K; None without K
+    opens: bool  # whether the contact opens on the way
 
 
 @attrs.frozen(eq=False, repr=False)

@@ -66,16 +66,13 @@ def _number(key: str, value: str | float, unit: str) -> float:
 
 @attrs.define(eq=False)
 class Parameter:
-    """A key of a scene from ``first`` to ``last``.
+    """A key of a scene from ``first`` to ``last``."""
 
-    base : the scene, which has a number at the key;  key : a continuous one, such as "load.axial"
-    linear : parts of the system that change linearly, where nothing else does but the excitation; None where more changes
-    """
-
-    base: Scene
-    key: str
+    base: Scene  # the scene, which has a number at the key
+    key: str  # a continuous one, such as "load.axial"
     first: float
     last: float
+    #: parts of the system that change linearly, where nothing else does but the excitation; None where more changes
     linear: tuple[str, ...] | None = attrs.field(default=None, init=False)
     _ends: tuple[System, System] = attrs.field(init=False)
     _problems: dict[float, Problem] = attrs.field(factory=dict, init=False)

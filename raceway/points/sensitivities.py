@@ -36,14 +36,11 @@ if TYPE_CHECKING:
 
 @attrs.frozen(eq=False)
 class _Sensitivity:
-    """Of all quantities to one key.
-
-    derivatives : quantity -> derivative, in its unit over the key's
-    influence : quantity -> per cent by which it grows when the number at the key grows by one per cent; empty where that is 0
-    """
+    """Of all quantities to one key."""
 
     gradient: Gradient
-    derivatives: dict[str, float]
+    derivatives: dict[str, float]  # quantity -> derivative, in its unit over the key's
+    #: quantity -> per cent by which it grows when the number at the key grows by one per cent; empty where that is 0
     influence: dict[str, float]
 
     @property

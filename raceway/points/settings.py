@@ -44,22 +44,15 @@ _REASON = 160
 
 @attrs.frozen
 class Setting:
-    """One place of a study.
+    """One place of a study."""
 
-    family : the question it belongs to
-    values : key -> value, what it changes in the scene
-    model : the part of ``values`` that changes the equations; ``inertia`` is among them, although an integrator sets it
-    tables : the scene's tables with the changes
-    scene : None where it is refused, for ``reason``
-    physics : the same for settings that differ in how they are solved only
-    """
-
-    family: str
-    values: Tables
+    family: str  # the question it belongs to
+    values: Tables  # key -> value, what it changes in the scene
+    #: the part of ``values`` that changes the equations; ``inertia`` is among them, although an integrator sets it
     model: Tables
-    tables: Tables
-    scene: Scene | None
-    physics: str = ""
+    tables: Tables  # the scene's tables with the changes
+    scene: Scene | None  # None where it is refused, for ``reason``
+    physics: str = ""  # the same for settings that differ in how they are solved only
     predicted_s: float = 0.0
     reason: str = ""
 

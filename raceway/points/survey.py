@@ -22,17 +22,12 @@ _MOST_MISTAKES = 10
 
 @attrs.frozen
 class _Survey:
-    """Requirements of a sweep.
+    """Requirements of a sweep."""
 
-    scene : at the first point
-    used : (kind, name) of plug-ins;  files : path -> hash of its content
-    notes : options that are left out where another kind does not know them
-    """
-
-    scene: Scene
-    used: frozenset[tuple[str, str]]
-    files: dict[str, str]
-    notes: tuple[str, ...]
+    scene: Scene  # at the first point
+    used: frozenset[tuple[str, str]]  # (kind, name) of plug-ins
+    files: dict[str, str]  # path -> hash of its content
+    notes: tuple[str, ...]  # options that are left out where another kind does not know them
 
 
 def survey(tables: ReadTables, design: Design, registry: Registry) -> _Survey:

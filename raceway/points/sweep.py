@@ -52,13 +52,10 @@ _SHARED = 4
 
 @attrs.frozen
 class Point:
-    """Callable on ``(number, point)``; the row of a run, whose content is ``{"values", "warnings"}``.
+    """Callable on ``(number, point)``; the row of a run, whose content is ``{"values", "warnings"}``."""
 
-    tables : of the scene;  further : names of ``ENDS`` that are asked for
-    """
-
-    tables: Tables
-    further: tuple[str, ...] = ()
+    tables: Tables  # of the scene
+    further: tuple[str, ...] = ()  # names of ``ENDS`` that are asked for
 
     def __call__(self, task: tuple[int, Tables], registry: Registry) -> Row:
         from raceway.pipeline.run import run
@@ -86,13 +83,11 @@ class Point:
 class _Block:
     """Callable on ``(first, columns)``, the number of the first point and the columns of the keys; the row of these points.
 
-    tables : of the scene at the first point of the sweep;  outputs : names of quantities
-
     A row's content are the columns of quantities and ``status``, its reason is those of the points, by their numbers, as JSON.
     """
 
-    tables: Tables
-    outputs: tuple[str, ...]
+    tables: Tables  # of the scene at the first point of the sweep
+    outputs: tuple[str, ...]  # names of quantities
 
     def __call__(self, task: tuple[int, Columns], registry: Registry) -> Row:
         first, columns = task
@@ -149,19 +144,15 @@ def _alone(function: Function, tables: ReadTables, design: Design, registry: Reg
 
 @attrs.frozen
 class Sweep:
-    """A sweep that was looked over: what is computed, where it goes, and what is there already.
-
-    function : that computes blocks of points; None where each point is a run
-    further : names of ``ENDS`` that are asked for
-    """
+    """A sweep that was looked over: what is computed, where it goes, and what is there already."""
 
     tables: Tables
     design: Design
     store: Path
     plugins: tuple[str, ...]
     facts: Tables
-    function: Function | None
-    further: tuple[str, ...] = ()
+    function: Function | None  # that computes blocks of points; None where each point is a run
+    further: tuple[str, ...] = ()  # names of ``ENDS`` that are asked for
 
 
 def prepare(

@@ -26,17 +26,15 @@ _SETTING = ("clearance", "tolerance", "ceramic", "angle")
 
 @attrs.frozen
 class Designation:
-    """What a designation says.
+    """What a designation says."""
 
-    names : of the bearing in the catalogue, the nearest first; none where its contact angle is not known, as ``words`` say;  clearance, tolerance : classes of ISO 5753-1 and ISO 492, or ""
-    ceramic : material of the balls, or "";  words : each part, and whether it is used
-    """
-
+    #: of the bearing in the catalogue, the nearest first; none where its contact angle is not known, as ``words`` say
     names: tuple[str, ...]
+    #: clearance, tolerance : classes of ISO 5753-1 and ISO 492, or ""
     clearance: str
     tolerance: str
-    ceramic: str
-    words: str
+    ceramic: str  # material of the balls, or ""
+    words: str  # each part, and whether it is used
 
 
 @cache

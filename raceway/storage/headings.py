@@ -40,24 +40,19 @@ _PARTS = {None: 1.0, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "n": 1e-9, "k": 1e3, "g":
 
 @attrs.frozen
 class Heading:
-    """Column headers of a file, with their units in brackets where a line beside them states these.
-
-    line, last : numbers of the line of headers, or of the first row without one, and of the last line above the numbers
-    sign : between the columns, " " for blanks;  fields : of a row that hold numbers, None: all;  most : fields of a row
-    notes : sentences on what was left out or assumed
-    interval : of samples [s] that the first column counts or, with ``absent``, that have no times;  clock : column of rounded times
-    """
+    """Column headers of a file, with their units in brackets where a line beside them states these."""
 
     header: list[str]
+    #: line, last : numbers of the line of headers, or of the first row without one, and of the last line above the numbers
     line: int
     last: int
-    sign: str
-    fields: tuple[int, ...] | None = None
-    most: int = 0
-    notes: tuple[str, ...] = ()
-    interval: float | None = None
+    sign: str  # between the columns, " " for blanks
+    fields: tuple[int, ...] | None = None  # of a row that hold numbers, None: all
+    most: int = 0  # fields of a row
+    notes: tuple[str, ...] = ()  # sentences on what was left out or assumed
+    interval: float | None = None  # of samples [s] that the first column counts or, with ``absent``, that have no times
     absent: bool = False
-    clock: int | None = None
+    clock: int | None = None  # column of rounded times
 
     def picked(self, rows: list[str]) -> list[str]:
         """Rows of text without the fields that hold no numbers, tabs between the others; one with more fields than all as it is."""

@@ -162,14 +162,10 @@ def opened(folder: Path) -> OpenFolder | str:
 
 @attrs.frozen
 class FilesOfKernel:
-    """The cache files of one kernel.
+    """The cache files of one kernel."""
 
-    base : how their names begin
-    folder : folder of numba's for the function's source file
-    """
-
-    base: str
-    folder: Path
+    base: str  # how their names begin
+    folder: Path  # folder of numba's for the function's source file
 
     @property
     def complete(self) -> bool:

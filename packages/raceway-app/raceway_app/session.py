@@ -81,16 +81,11 @@ _OTHER = {"bidirectional": "unidirectional", "unidirectional": "bidirectional"}
 
 @attrs.define
 class Session:
-    """The scenes of a page, and how they came about.
+    """The scenes of a page, and how they came about."""
 
-    scenes : one, or two that are compared
-    folder : where files are written, and nowhere else
-    number : of changes so far
-    """
-
-    scenes: tuple[Given, ...]
-    folder: Path
-    number: int = 0
+    scenes: tuple[Given, ...]  # one, or two that are compared
+    folder: Path  # where files are written, and nowhere else
+    number: int = 0  # of changes so far
     _past: list[tuple[Given, ...]] = attrs.field(factory=list)
     _future: list[tuple[Given, ...]] = attrs.field(factory=list)
 

@@ -26,16 +26,13 @@ _GRACE_S, _HURRY_S, _SOON_S, _REST_S = 2.0, 0.5, 0.2, 0.06
 
 @attrs.frozen
 class Job:
-    """Scenes to compute, or a file to write of one.
+    """Scenes to compute, or a file to write of one."""
 
-    number : of the change that asks for it;  scenes : panel -> number of its last change, and scene
-    ranges : axis of the curves -> its ends, where these are not the scene's own;  file : "png" or "ross", written at ``path``; empty: a picture
-    """
-
-    number: int
-    scenes: dict[int, tuple[int, Given]]
+    number: int  # of the change that asks for it
+    scenes: dict[int, tuple[int, Given]]  # panel -> number of its last change, and scene
+    #: axis of the curves -> its ends, where these are not the scene's own
     ranges: dict[str, tuple[float, float]] = attrs.field(factory=dict)
-    file: str = ""
+    file: str = ""  # "png" or "ross", written at ``path``; empty: a picture
     path: Path = Path()
 
 

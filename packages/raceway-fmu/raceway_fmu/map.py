@@ -43,19 +43,17 @@ class Interval:
 class Series:
     """Quantities over a box: f(x_1 ... x_d) = sum of c_ij.. T_i(t_1) T_j(t_2) ..., each t the input, or its logarithm, on -1 ... 1.
 
-    axes : of the inputs;  terms : (m, n_1, ..., n_d) coefficients;  size : (m,) least size of the quantities at the nodes
-    error, relative, difference : (m,) largest difference at control points over the size of the quantity, over its value (or 1e-200
-        if that changes its sign), and in its unit
-
     Coefficients interpolate at the roots of T_n of each axis.  Control points, which no fit uses, are the n + 1 extremes of T_n, ends
     and corners included, between which the roots lie and where errors of interpolation are largest, and a Sobol sequence in the box.
 
     Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, chapters 3, 4 and 8.
     """
 
-    axes: tuple[Interval, ...]
-    terms: np.ndarray
-    size: np.ndarray
+    axes: tuple[Interval, ...]  # of the inputs
+    terms: np.ndarray  # (m, n_1, ..., n_d) coefficients
+    size: np.ndarray  # (m,) least size of the quantities at the nodes
+    #: error, relative, difference : (m,) largest difference at control points over the size of the quantity, over its value
+    #: (or 1e-200 if that changes its sign), and in its unit
     error: np.ndarray = attrs.field(factory=lambda: np.zeros(0))
     relative: np.ndarray = attrs.field(factory=lambda: np.zeros(0))
     difference: np.ndarray = attrs.field(factory=lambda: np.zeros(0))

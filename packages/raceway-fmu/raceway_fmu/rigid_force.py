@@ -36,20 +36,16 @@ _STEPS = np.array([1e-9, 1e-9, 1e-9, 1e-7, 1e-7, 1e-2, 1e-5])
 
 @attrs.frozen(eq=False)
 class RigidForce:
-    """The force of a bearing with rigid rings and balls, as ``packages/raceway-fmu/raceway_fmu/data/force.c`` computes it.
+    """The force of a bearing with rigid rings and balls, as ``packages/raceway-fmu/raceway_fmu/data/force.c`` computes it."""
 
-    numbers : by their names in C: constants, arrays;  balls : their count
-    speed, highest : of the scene, and up to which the force is made for [rad/s]
-    limits : ball loads inside and outside up to which it is made for [N]: those of the static pressure of ISO 76
-    error : of the law, relative
-    """
-
-    numbers: Numbers
-    balls: int
+    numbers: Numbers  # by their names in C: constants, arrays
+    balls: int  # their count
+    #: speed, highest : of the scene, and up to which the force is made for [rad/s]
     speed: float
     highest: float
+    #: ball loads inside and outside up to which it is made for [N]: those of the static pressure of ISO 76
     limits: tuple[float, float]
-    error: float
+    error: float  # of the law, relative
 
 
 def rigid_force(scene: Scene, highest_rpm: float | None = None) -> RigidForce:

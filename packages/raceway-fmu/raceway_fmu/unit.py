@@ -60,19 +60,14 @@ class Variable:
 
 @attrs.frozen(eq=False)
 class Unit:
-    """An FMU of a bearing.
+    """An FMU of a bearing."""
 
-    name : identifier in C;  words : what it is, with its error
-    source : file of the model in ``raceway/data/fmu``;  numbers : of the model, by their names in C: arrays, or constants
-    beyond : what is logged out of range
-    inputs, outputs, constants : real variables, in this order by their value references
-    """
-
-    name: str
-    words: str
-    source: str
-    numbers: Mapping[str, np.ndarray | float]
-    beyond: str
+    name: str  # identifier in C
+    words: str  # what it is, with its error
+    source: str  # file of the model in ``raceway/data/fmu``
+    numbers: Mapping[str, np.ndarray | float]  # of the model, by their names in C: arrays, or constants
+    beyond: str  # what is logged out of range
+    #: inputs, outputs, constants : real variables, in this order by their value references
     inputs: tuple[Variable, ...]
     outputs: tuple[Variable, ...]
     constants: tuple[Variable, ...]

@@ -31,30 +31,23 @@ _RADIANS = np.pi / 30.0
 
 @attrs.frozen(eq=False)
 class Coefficients:
-    """A table over speed (n,), over frequency (m,), or over both (n, m).
+    """A table over speed (n,), over frequency (m,), or over both (n, m)."""
 
-    speed : (n,) of the rotor [rad/s], None for a table over frequency alone
-    frequency : (m,) of the vibration [rad/s], None where it equals the speed or nothing depends on it
-    stiffness, damping : (..., 2, 2) over y, z [N/m, N s/m]
-    axial : (...,) kxx [N/m]
-    source : "rotating", "directions" or "tangent";  definition : what the numbers are, in words
-    notes : what the reader of the table has to know, a sentence each
-    tangent, tangent_damping : (..., 5, 5) of the contacts at the equilibrium, over x, y, z, tilt_y, tilt_z; no motion is condensed
-    tilt : how the tilt was held, ``supports.tilt``
-    stated : numbers of plug-ins of quantities (...,) by name and unit, those that all points have, such as "torque_nm [N m]"
-    """
-
-    speed: np.ndarray | None
-    frequency: np.ndarray | None
+    speed: np.ndarray | None  # (n,) of the rotor [rad/s], None for a table over frequency alone
+    frequency: np.ndarray | None  # (m,) of the vibration [rad/s], None where it equals the speed or nothing depends on it
+    #: stiffness, damping : (..., 2, 2) over y, z [N/m, N s/m]
     stiffness: np.ndarray
     damping: np.ndarray
-    axial: np.ndarray
-    source: str
-    definition: str
-    notes: tuple[str, ...]
+    axial: np.ndarray  # (...,) kxx [N/m]
+    source: str  # "rotating", "directions" or "tangent"
+    definition: str  # what the numbers are, in words
+    notes: tuple[str, ...]  # what the reader of the table has to know, a sentence each
+    #: tangent, tangent_damping : (..., 5, 5) of the contacts at the equilibrium, over x, y, z, tilt_y, tilt_z; no motion is
+    #: condensed
     tangent: np.ndarray
     tangent_damping: np.ndarray
-    tilt: str | float
+    tilt: str | float  # how the tilt was held, ``supports.tilt``
+    #: numbers of plug-ins of quantities (...,) by name and unit, those that all points have, such as "torque_nm [N m]"
     stated: Mapping[str, np.ndarray] = attrs.field(factory=dict)
 
     @property

@@ -23,18 +23,14 @@ _MOST, _TOLERANCE = 50, 1e-10
 class NodeBearing:
     """One bearing under a rotor.
 
-    scene : static
-    tilts : whether the node's own tilts are the ring's
-    damping : added to all translations [N s/m]
-
     The node shares x, y, z with the ring, and its tilts where ``tilts`` says so.  ``supports.axial`` decides about x: under
     "force" the axial load is constant (a spring), the ring has its equilibrium on it, and kxx is a spring of the node beside
     the bearing; under "displacement" (spacers) the ring is the node's along x, too, and its load follows from the motion.
     """
 
-    scene: Scene
-    tilts: bool = False
-    damping: float = 0.0
+    scene: Scene  # static
+    tilts: bool = False  # whether the node's own tilts are the ring's
+    damping: float = 0.0  # added to all translations [N s/m]
     _equilibria: dict[float, tuple[Model, Equilibrium]] = attrs.field(factory=dict, init=False, repr=False)
 
     def __deepcopy__(self, _memo: object) -> "NodeBearing":

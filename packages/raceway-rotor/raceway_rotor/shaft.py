@@ -34,17 +34,14 @@ _POINTS, _WEIGHTS = (
 
 @attrs.frozen(eq=False)
 class Beam:
-    """Nodes (n,) [m] of a round shaft and its matrices (2 n, 2 n).
-
-    stiffness, mass, rotary : K, M_t, M_r; a disc's are added to the last two
-    polar : G / 1, the gyroscopic matrix over lambda Omega
-    """
+    """Nodes (n,) [m] of a round shaft and its matrices (2 n, 2 n)."""
 
     nodes: np.ndarray
+    #: stiffness, mass, rotary : K, M_t, M_r; a disc's are added to the last two
     stiffness: np.ndarray
     mass: np.ndarray
     rotary: np.ndarray
-    polar: np.ndarray
+    polar: np.ndarray  # G / 1, the gyroscopic matrix over lambda Omega
 
     def node(self, position: float) -> int:
         """The node at a position [m]."""

@@ -23,17 +23,13 @@ _CORNER = 0.4
 
 @attrs.frozen(eq=False)
 class Surface:
-    """Triangles.
+    """Triangles."""
 
-    points, normals : (n, 3) [mm], and unit vectors out of the body
-    triangles : (m, 3) int
-    values : (n,) what the points are coloured by; None for one colour
-    """
-
+    #: points, normals : (n, 3) [mm], and unit vectors out of the body
     points: np.ndarray
     normals: np.ndarray
-    triangles: np.ndarray
-    values: np.ndarray | None = None
+    triangles: np.ndarray  # (m, 3) int
+    values: np.ndarray | None = None  # (n,) what the points are coloured by; None for one colour
 
     def moved(self, by: np.ndarray) -> Surface:
         """The same surface at another place (3,) [mm]."""
@@ -142,52 +138,38 @@ INNER, OUTER, _FACE = "#6f93b5", "#b9a679", "#dfe3e7"
 
 @attrs.frozen(eq=False)
 class Snapshot:
-    """Balls and inner ring at one moment.
+    """Balls and inner ring at one moment."""
 
-    azimuth : (Z,) [rad]
-    load : (2 Z,) inner races first [N]
-    angle : (2 Z,) contact angles, nan where a contact carries nothing [rad]
-    half, peak : (2 Z, 2) semi-axes of the contacts, major ones first [m], and (2 Z,) their largest pressures [Pa]
-    motion : (5,) of the inner ring as it is drawn, exaggerated where that is said: x, y, z [m], tilts [rad]
-    """
-
-    azimuth: np.ndarray
-    load: np.ndarray
-    angle: np.ndarray
+    azimuth: np.ndarray  # (Z,) [rad]
+    load: np.ndarray  # (2 Z,) inner races first [N]
+    angle: np.ndarray  # (2 Z,) contact angles, nan where a contact carries nothing [rad]
+    #: half, peak : (2 Z, 2) semi-axes of the contacts, major ones first [m], and (2 Z,) their largest pressures [Pa]
     half: np.ndarray
     peak: np.ndarray
-    motion: np.ndarray
+    motion: np.ndarray  # (5,) of the inner ring as it is drawn, exaggerated where that is said: x, y, z [m], tilts [rad]
 
 
 @attrs.frozen(eq=False)
 class Solid:
-    """One surface and how it looks.
-
-    colour : of the surface; None where ``surface.values`` are loads [N] or pressures [MPa], as ``scale`` says
-    load : of a ball [N], for its colour; None for others
-    ball : number of the ball; None for others
-    """
+    """One surface and how it looks."""
 
     name: str
     surface: Surface
+    #: of the surface; None where ``surface.values`` are loads [N] or pressures [MPa], as ``scale`` says
     colour: str | None = None
     opacity: float = 1.0
     scale: str | None = None
-    load: float | None = None
-    ball: int | None = None
+    load: float | None = None  # of a ball [N], for its colour; None for others
+    ball: int | None = None  # number of the ball; None for others
 
 
 @attrs.frozen(eq=False)
 class BearingSolids:
-    """The bodies of a result.
-
-    result : raceway.pipeline.result.Result
-    assumed : dimensions that the scene does not give
-    """
+    """The bodies of a result."""
 
     result: Result
     shape: Dimensions
-    assumed: tuple[str, ...]
+    assumed: tuple[str, ...]  # dimensions that the scene does not give
 
     @classmethod
     def of(cls, result: Result) -> BearingSolids:

@@ -69,18 +69,15 @@ def _outside(cells: np.ndarray) -> np.ndarray:
 
 @attrs.frozen(eq=False, repr=False, slots=False)
 class _Meshes(Answer):
-    """Meshes of the bodies of a scene.
-
-    content : ``raceway.core.fem.mesh.quality.summary`` with title, mesher, seconds, and the files that ``save`` wrote
-    meshes : by name of the body;  form : what writes them;  drawn : whether ``save`` also writes mesh.png
-    """
+    """Meshes of the bodies of a scene."""
 
     stem: ClassVar[str] = "mesh"
 
+    #: ``raceway.core.fem.mesh.quality.summary`` with title, mesher, seconds, and the files that ``save`` wrote
     content: Tables
-    meshes: dict[str, HexMesh]
-    form: Entry
-    drawn: bool
+    meshes: dict[str, HexMesh]  # by name of the body
+    form: Entry  # what writes them
+    drawn: bool  # whether ``save`` also writes mesh.png
 
     def to_dict(self) -> Tables:
         return self.content

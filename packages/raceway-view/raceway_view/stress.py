@@ -32,19 +32,13 @@ _SHOWN = 0.95
 
 @attrs.frozen(eq=False)
 class StressFields:
-    """Fields of all bodies in one mesh, at the static equilibrium.
+    """Fields of all bodies in one mesh, at the static equilibrium."""
 
-    points : (n, 3) float, undeformed nodes [m];  cells : (m, 8) int
-    body : (m,) int, 0 the inner ring, 1 the outer ring, 2 + k ball k
-    displacement : (n, 3) float [m], rigid motions of rings and balls included
-    stress : (m, 6) float, at the elements' centres [Pa]: xx yy zz xy yz zx
-    """
-
-    points: np.ndarray
-    cells: np.ndarray
-    body: np.ndarray
-    displacement: np.ndarray
-    stress: np.ndarray
+    points: np.ndarray  # (n, 3) float, undeformed nodes [m]
+    cells: np.ndarray  # (m, 8) int
+    body: np.ndarray  # (m,) int, 0 the inner ring, 1 the outer ring, 2 + k ball k
+    displacement: np.ndarray  # (n, 3) float [m], rigid motions of rings and balls included
+    stress: np.ndarray  # (m, 6) float, at the elements' centres [Pa]: xx yy zz xy yz zx
 
     @classmethod
     def of(cls, result: Result, near: Mapping[int, tuple[np.ndarray, float]] | None = None) -> StressFields:

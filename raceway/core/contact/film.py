@@ -33,16 +33,13 @@ _BY_LOAD = np.array([-0.067, -0.22, 3.0 * 0.375 - 2.0, -2.0])
 
 @attrs.frozen(eq=False)
 class Film:
-    """Films of contacts; arrays (n,).
+    """Films of contacts; arrays (n,)."""
 
-    central, minimum : thickness [m];  regime : index of ``REGIMES``
-    by_load : d ln(central) / d ln(load)
-    """
-
+    #: central, minimum : thickness [m]
     central: np.ndarray
     minimum: np.ndarray
-    regime: np.ndarray
-    by_load: np.ndarray
+    regime: np.ndarray  # index of ``REGIMES``
+    by_load: np.ndarray  # d ln(central) / d ln(load)
 
 
 def film(

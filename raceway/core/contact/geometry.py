@@ -93,14 +93,10 @@ class BallBearing:
 
 @attrs.frozen(eq=False)
 class Growth:
-    """By how much the grooves of a running, warm bearing differ from those before mounting [m].
+    """By how much the grooves of a running, warm bearing differ from those before mounting [m]."""
 
-    common : (5,) of the scalars REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM
-    by_ball : (Z, 5) of the rows' own columns of the same, beyond that
-    """
-
-    common: np.ndarray
-    by_ball: np.ndarray
+    common: np.ndarray  # (5,) of the scalars REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM
+    by_ball: np.ndarray  # (Z, 5) of the rows' own columns of the same, beyond that
 
     @classmethod
     def of_inner_raceways(cls, growth: float, balls: int) -> "Growth":

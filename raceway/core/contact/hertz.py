@@ -76,16 +76,12 @@ def regula_falsi(function: Callable[[float], float], low: float, high: float) ->
 
 @attrs.frozen
 class Ellipse:
-    """Hertz contact of one pair of surfaces, load-independent part; of several pairs every number is an array (``every``).
+    """Hertz contact of one pair of surfaces, load-independent part; of several pairs every number is an array (``every``)."""
 
-    curvature_sum : float [1/m]
-    contact_modulus : float [Pa]
-    a_star, b_star, delta_star : float, dimensionless
-    """
-
-    curvature_sum: Number
+    curvature_sum: Number  # [1/m]
     curvature_difference: Number
-    contact_modulus: Number
+    contact_modulus: Number  # [Pa]
+    #: a_star, b_star, delta_star : float, dimensionless
     a_star: Number
     b_star: Number
     delta_star: Number

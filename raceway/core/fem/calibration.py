@@ -36,20 +36,14 @@ _ITERATIONS = 30
 
 @attrs.frozen(eq=False)
 class Calibration:
-    """Of contacts on one race.
+    """Of contacts on one race."""
 
-    angles : (n,) contact angles [rad], ascending
-    compliance : (n,) of ring and ball together, beyond Hertz: tangent, d(approach - Hertz's) / dQ [m/N]
-    uncertainty : how well it is known: what was still to come beyond the finer patch, and the standard deviation of its mean [m/N]
-    trend : change of (approach - Hertz's) / Q with the logarithm of the load, which is left out [m/N]
-    load : where the compliance holds [N]
-    """
-
-    angles: np.ndarray
-    compliance: np.ndarray
+    angles: np.ndarray  # (n,) contact angles [rad], ascending
+    compliance: np.ndarray  # (n,) of ring and ball together, beyond Hertz: tangent, d(approach - Hertz's) / dQ [m/N]
+    #: how well it is known: what was still to come beyond the finer patch, and the standard deviation of its mean [m/N]
     uncertainty: float
-    trend: float
-    load: float
+    trend: float  # change of (approach - Hertz's) / Q with the logarithm of the load, which is left out [m/N]
+    load: float  # where the compliance holds [N]
 
     def error(self, load: np.ndarray) -> np.ndarray:
         """(...) error of the secant or the tangent compliance at other loads [N], the larger one [m/N]."""

@@ -80,21 +80,16 @@ ANGLES = 13
 
 @attrs.frozen(eq=False)
 class RingCompliance:
-    """Structural compliance of one ring.
+    """Structural compliance of one ring."""
 
-    angles : (n,) float, contact angles [rad], equidistant;  direct : (n,) float, a contact on itself [m/N]
-    across : (n, n, Z) float, displacement along the normal at one angle by a force along that at another, k balls further
-        round; entry 0 is not used [m/N]
-    elements : hexahedra that the ring stands for;  depths : (COUNT,) float [m]
-    surface : distance of the nodes along the groove [m]
-    """
-
-    angles: np.ndarray
-    direct: np.ndarray
+    angles: np.ndarray  # (n,) float, contact angles [rad], equidistant
+    direct: np.ndarray  # (n,) float, a contact on itself [m/N]
+    #: (n, n, Z) float, displacement along the normal at one angle by a force along that at another, k balls further round;
+    #: entry 0 is not used [m/N]
     across: np.ndarray
-    elements: int
-    depths: np.ndarray
-    surface: float
+    elements: int  # hexahedra that the ring stands for
+    depths: np.ndarray  # (COUNT,) float [m]
+    surface: float  # distance of the nodes along the groove [m]
 
     @cached_property
     def smooth(self) -> CubicSpline:

@@ -76,15 +76,11 @@ _RUBBING = 3.0
 
 @attrs.frozen
 class _PatchCost:
-    """Predictions.
+    """Predictions."""
 
-    points : surface points that carry, of a contact at the mean load
-    bytes : of compliances and factors
-    setup_s, equilibrium_s, step_s : processor time [s]
-    """
-
-    points: int
-    bytes: int
+    points: int  # surface points that carry, of a contact at the mean load
+    bytes: int  # of compliances and factors
+    #: setup_s, equilibrium_s, step_s : processor time [s]
     setup_s: float
     equilibrium_s: float
     step_s: float

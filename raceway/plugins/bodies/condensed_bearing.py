@@ -190,16 +190,11 @@ def build(problem: Problem, plan: ScenePlan) -> "_CondensedBearing":
 
 @attrs.frozen(eq=False)
 class _CondensedBearing(BuiltBearing):
-    """Condensed rings and balls with contact resultants.
+    """Condensed rings and balls with contact resultants."""
 
-    rigid : the same bearing with rigid rings and balls
-    compliances : of rings and balls
-    angles : (Z,) at which the compliances between balls were taken [rad]; None where they are left out
-    """
-
-    rigid: RigidBearing
-    compliances: ElasticBodies
-    angles: np.ndarray | None
+    rigid: RigidBearing  # the same bearing with rigid rings and balls
+    compliances: ElasticBodies  # of rings and balls
+    angles: np.ndarray | None  # (Z,) at which the compliances between balls were taken [rad]; None where they are left out
 
     def report(self, model: Model, equilibrium: Equilibrium) -> Tables:
         """The table ``model`` of result.json: what the elasticity of the bodies changes, and how good their mesh is."""

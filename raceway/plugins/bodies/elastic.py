@@ -60,21 +60,15 @@ _IMPORTS_S = 1.5
 
 @attrs.frozen
 class _ElasticCost:
-    """Predictions.
+    """Predictions."""
 
-    cells : hexahedra;  unknowns : of all nodes;  bytes : at the peak
-    stable_step_s : of explicit steps, by elements and contacts [s]
-    equilibrium_s : processor time to the equilibrium and its stiffness, meshing included [s]
-    start_s : of the equilibria that a motion starts with [s];  step_s : of a step [s]
-    """
-
-    cells: int
-    unknowns: int
-    bytes: int
-    stable_step_s: float
-    equilibrium_s: float
-    start_s: float
-    step_s: float
+    cells: int  # hexahedra
+    unknowns: int  # of all nodes
+    bytes: int  # at the peak
+    stable_step_s: float  # of explicit steps, by elements and contacts [s]
+    equilibrium_s: float  # processor time to the equilibrium and its stiffness, meshing included [s]
+    start_s: float  # of the equilibria that a motion starts with [s]
+    step_s: float  # of a step [s]
 
 
 def elastic_cost(problem: Problem) -> _ElasticCost | None:

@@ -51,22 +51,15 @@ _ENOUGH = 3.0
 
 @attrs.frozen(eq=False)
 class _NodalBearing(BuiltBearing):
-    """Condensed rings and balls with pressures at surface points.
+    """Condensed rings and balls with pressures at surface points."""
 
-    nodes : points along each semi-axis of the inner contact at ``load`` [N]
-    spacing : Spacing
-    pool : patches as they are now
-    rigid : the same scene with rigid bodies;  beside : (5,) where its equilibrium is looked for
-    coarser : builds the same system with half as many points; None where there are no fewer
-    """
-
-    nodes: float
+    nodes: float  # points along each semi-axis of the inner contact at ``load`` [N]
     load: float
     spacing: Spacing
-    pool: Pool
-    rigid: System
-    beside: np.ndarray
-    coarser: Callable[[], Ring] | None
+    pool: Pool  # patches as they are now
+    rigid: System  # the same scene with rigid bodies
+    beside: np.ndarray  # (5,) where its equilibrium is looked for
+    coarser: Callable[[], Ring] | None  # builds the same system with half as many points; None where there are no fewer
     _errors: dict[bytes, tuple[float | None, str]] = attrs.field(init=False, factory=dict)
 
     def friction_lost(self, system: Ring, record: Record) -> float:

@@ -42,16 +42,12 @@ class Rollers(Protocol):
 
 @attrs.frozen(eq=False)
 class RollerBearing(BuiltBearing):
-    """Rigid rings on cylindrical rollers.
-
-    length : of the line contacts [m];  radii : reduced radii R of the inner and outer contact [m]
-    clearance : radial, on the diameter [m]
-    """
+    """Rigid rings on cylindrical rollers."""
 
     static_pressure: ClassVar[float] = 4.0e9
-    length: float
-    radii: tuple[float, float]
-    clearance: float
+    length: float  # of the line contacts [m]
+    radii: tuple[float, float]  # reduced radii R of the inner and outer contact [m]
+    clearance: float  # radial, on the diameter [m]
 
     def contact_angles(
         self, model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: np.ndarray | float = 0.0

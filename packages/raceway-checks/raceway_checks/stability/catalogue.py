@@ -27,20 +27,15 @@ _AT_REST = "scenes:condensed_at_rest"
 
 @attrs.frozen
 class Case:
-    """One place of the catalogue; small enough to be sent to another process.
+    """One place of the catalogue; small enough to be sent to another process."""
 
-    name : what its rows are called by
-    measure : ``module:function``, a module of this folder or a whole path, called as ``function(rows, bench, **arguments)``
-    setting : law, integrator, what else was varied
-    arguments : plain values; ``tables`` and ``changes`` of a scene make the ``Bench``, which is None without
-    quick : whether it belongs to what is run unless all is asked for
-    """
-
-    name: str
+    name: str  # what its rows are called by
+    #: ``module:function``, a module of this folder or a whole path, called as ``function(rows, bench, **arguments)``
     measure: str
-    setting: Mapping[str, object] = attrs.field(factory=dict)
+    setting: Mapping[str, object] = attrs.field(factory=dict)  # law, integrator, what else was varied
+    #: plain values; ``tables`` and ``changes`` of a scene make the ``Bench``, which is None without
     arguments: Tables = attrs.field(factory=dict)
-    quick: bool = True
+    quick: bool = True  # whether it belongs to what is run unless all is asked for
 
 
 def _force(newton: float) -> Tables:

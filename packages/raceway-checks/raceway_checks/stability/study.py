@@ -38,26 +38,18 @@ Measured = float | tuple[float, float | None]
 
 @attrs.frozen
 class _Row:
-    """One line of the report.
-
-    setting : integrator, law, step, what else was varied
-    quantity : what ``predicted`` and ``observed`` are, with the unit
-    expected : the expectation in words, its bound in it
-    energy_drift : change of the energy over the motion's energy; None where it is not balanced
-    reason : why the bound is what it is
-    note : why the row failed, or what one should know
-    """
+    """One line of the report."""
 
     case: str
-    setting: Mapping[str, object]
-    quantity: str
-    expected: str
+    setting: Mapping[str, object]  # integrator, law, step, what else was varied
+    quantity: str  # what ``predicted`` and ``observed`` are, with the unit
+    expected: str  # the expectation in words, its bound in it
     predicted: float | None
     observed: float | None
-    energy_drift: float | None
+    energy_drift: float | None  # change of the energy over the motion's energy; None where it is not balanced
     verdict: str
-    reason: str
-    note: str = ""
+    reason: str  # why the bound is what it is
+    note: str = ""  # why the row failed, or what one should know
 
 
 @attrs.frozen
@@ -147,26 +139,21 @@ def short(error: BaseException) -> str:
 
 @attrs.frozen(eq=False, repr=False, slots=False)
 class Stability(Answer):
-    """Rows of a catalogue.
-
-    cases : how many were run or taken from what is stored;  reused : how many of them were stored
-    left_out : how many were not asked for
-    seconds, cpu_s : wall time; processor time of all processes, compiling too
-    fault : why rows could not be stored, or None;  by_row : whether a screen has a line for each row instead of each case
-    """
+    """Rows of a catalogue."""
 
     stem: ClassVar[str] = "stability"
 
     title: str
     rows: tuple[_Row, ...]
-    cases: int
-    left_out: int
-    reused: int
+    cases: int  # how many were run or taken from what is stored
+    left_out: int  # how many were not asked for
+    reused: int  # how many of them were stored
+    #: seconds, cpu_s : wall time; processor time of all processes, compiling too
     seconds: float
     cpu_s: float
     processes: int
-    fault: RacewayError | None = None
-    by_row: bool = False
+    fault: RacewayError | None = None  # why rows could not be stored, or None
+    by_row: bool = False  # whether a screen has a line for each row instead of each case
 
     @property
     def failed(self) -> tuple[_Row, ...]:

@@ -18,17 +18,13 @@ _HALVINGS = 200
 
 @attrs.frozen(eq=False)
 class Still:
-    """A bearing in its equilibrium, without an excitation.
-
-    limit : stable step of central differences for small motions [s]
-    dissipative : whether the law loses energy by itself
-    """
+    """A bearing in its equilibrium, without an excitation."""
 
     model: Model
     system: System
     equilibrium: Equilibrium
-    limit: float
-    dissipative: bool
+    limit: float  # stable step of central differences for small motions [s]
+    dissipative: bool  # whether the law loses energy by itself
 
     def displaced(self, by: np.ndarray) -> Motion:
         """At rest, moved by (5,) [m, rad]."""

@@ -16,46 +16,35 @@ BASES = {"published": "published numbers", "closed form": "numbers of closed for
 
 @attrs.frozen
 class Verified:
-    """One computed number beside that of a case, in the unit of the source.
-
-    error : |computed / reference - 1|;  tolerance : largest error allowed;  ok : whether it is met
-    note : why there is no computed number (then computed and error are None, and ok is False), or ""
-    """
+    """One computed number beside that of a case, in the unit of the source."""
 
     case: str
     quantity: str
     reference: float | None
     computed: float | None
-    error: float | None
-    tolerance: float | None
-    ok: bool
+    error: float | None  # |computed / reference - 1|
+    tolerance: float | None  # largest error allowed
+    ok: bool  # whether it is met
     source: str
     basis: str
-    note: str = ""
+    note: str = ""  # why there is no computed number (then computed and error are None, and ok is False), or ""
 
 
 @attrs.frozen
 class Case:
-    """One case, in the units of its source (they are part of each key: ``Dw_mm``).
-
-    basis : where ``outputs`` come from, a key of ``BASES``
-    inputs, outputs : what the source states and what it gives
-    rel_tol : relative agreement asked for, one number or one for each group of outputs
-    conventions : frame, signs and normalisation of the source, in words
-    source : where it was published
-    role : "check...", or "information..." for what this program need not compute
-    """
+    """One case, in the units of its source (they are part of each key: ``Dw_mm``)."""
 
     id: str
     kind: str
-    basis: str
+    basis: str  # where ``outputs`` come from, a key of ``BASES``
     title: str
+    #: inputs, outputs : what the source states and what it gives
     inputs: Tables
     outputs: Tables
-    rel_tol: Any
-    conventions: str
-    source: str
-    role: str
+    rel_tol: Any  # relative agreement asked for, one number or one for each group of outputs
+    conventions: str  # frame, signs and normalisation of the source, in words
+    source: str  # where it was published
+    role: str  # "check...", or "information..." for what this program need not compute
 
     @property
     def checked(self) -> bool:

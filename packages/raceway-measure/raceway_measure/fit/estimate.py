@@ -43,17 +43,13 @@ _DOUBLINGS, _HALVINGS = 40, 50
 
 @attrs.frozen
 class Free:
-    """One free number.
+    """One free number."""
 
-    name : key of the scene, or a word of the model;  unit : of the number
-    start : where the search begins;  size : of a change that counts, the number itself where it is not 0
-    low, high : ends of the range that the scene's rules leave
-    """
-
-    name: str
-    unit: str
-    start: float
-    size: float
+    name: str  # key of the scene, or a word of the model
+    unit: str  # of the number
+    start: float  # where the search begins
+    size: float  # of a change that counts, the number itself where it is not 0
+    #: low, high : ends of the range that the scene's rules leave
     low: float = -inf
     high: float = inf
 
@@ -185,32 +181,25 @@ class Combination:
 
 @attrs.frozen(eq=False)
 class Estimate:
-    """Numbers at the least sum of squares.
+    """Numbers at the least sum of squares."""
 
-    free, values : (p,);  covariance : (p, p), of the linearised model by noise, along what the data determine
-    reach : half-width at 95 % over the standard error of noise;  half : (p,) half-widths, infinite where the data do not determine a number
-    residuals, jacobian : (n,), (n, p), weighted, there
-    scatter : root of the sum of squares over the degrees of freedom: 1 where errors are as stated; None without freedom
-    widened : factor on stated errors where residuals are too large for them, else 1
-    undetermined : combinations;  open : the same by singular vectors (k, p), in the units of the numbers
-    at_limit : names of numbers at the end of their range
-    evaluations : of the model
-    shifts : cause beside noise -> (k, p), by which k independent standard errors of it move the numbers
-    """
-
+    #: free, values : (p,)
     free: tuple[Free, ...]
     values: np.ndarray
-    covariance: np.ndarray
-    reach: float
-    half: np.ndarray
+    covariance: np.ndarray  # (p, p), of the linearised model by noise, along what the data determine
+    reach: float  # half-width at 95 % over the standard error of noise
+    half: np.ndarray  # (p,) half-widths, infinite where the data do not determine a number
+    #: residuals, jacobian : (n,), (n, p), weighted, there
     residuals: np.ndarray
     jacobian: np.ndarray
+    #: root of the sum of squares over the degrees of freedom: 1 where errors are as stated; None without freedom
     scatter: float | None
-    widened: float
-    undetermined: tuple[Combination, ...]
-    open: np.ndarray
-    at_limit: tuple[str, ...]
-    evaluations: int
+    widened: float  # factor on stated errors where residuals are too large for them, else 1
+    undetermined: tuple[Combination, ...]  # combinations
+    open: np.ndarray  # the same by singular vectors (k, p), in the units of the numbers
+    at_limit: tuple[str, ...]  # names of numbers at the end of their range
+    evaluations: int  # of the model
+    #: cause beside noise -> (k, p), by which k independent standard errors of it move the numbers
     shifts: dict[str, np.ndarray] = attrs.field(factory=dict)
 
     @property

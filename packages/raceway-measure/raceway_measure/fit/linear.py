@@ -194,23 +194,19 @@ def _word(part: str) -> str:
 
 @attrs.define(eq=False)
 class LinearResiduals:
-    """Weighted residuals of the spectra, ``raceway_measure.fit.estimate.Residuals``: free numbers, then the parts of T.
-
-    mass : where it is not free [kg];  noise : variances (2, k, d) of displacement and force at the lowest frequency, by power of 1 / w
-    tones : frequencies of hum [rad/s];  remarks : on residuals and force
-    excited : (n,) frequencies whose force stands out of the noise; the others, where Z stays ``before`` (n, d, d), determine noise and leakage alone
-    slopes : derivatives of Z by the free numbers (n, d, d, p)
-    """
+    """Weighted residuals of the spectra, ``raceway_measure.fit.estimate.Residuals``: free numbers, then the parts of T."""
 
     spectra: _Spectra
     free: Sequence[Free]
-    mass: float
-    noise: np.ndarray
-    tones: tuple[float, ...] = ()
-    remarks: list[str] = attrs.field(factory=list, init=False)
+    mass: float  # where it is not free [kg]
+    noise: np.ndarray  # variances (2, k, d) of displacement and force at the lowest frequency, by power of 1 / w
+    tones: tuple[float, ...] = ()  # frequencies of hum [rad/s]
+    remarks: list[str] = attrs.field(factory=list, init=False)  # on residuals and force
+    #: (n,) frequencies whose force stands out of the noise; the others, where Z stays ``before`` (n, d, d), determine noise
+    #: and leakage alone
     excited: np.ndarray = attrs.field(init=False)
     before: np.ndarray = attrs.field(factory=lambda: np.empty((0, 0, 0)), init=False)
-    slopes: np.ndarray = attrs.field(init=False)
+    slopes: np.ndarray = attrs.field(init=False)  # derivatives of Z by the free numbers (n, d, d, p)
     _parts: np.ndarray = attrs.field(init=False)
 
     def __attrs_post_init__(self) -> None:

@@ -55,16 +55,12 @@ _UNITS = {
 
 @attrs.frozen(eq=False)
 class FrequencyResponse:
-    """Displacement over force at one point.
+    """Displacement over force at one point."""
 
-    source : its file;  hz (n,) : frequencies [Hz], greater than 0;  receptance (n,) : complex [m/N]
-    notes : sentences on units and form that a reader needs
-    """
-
-    source: str
-    hz: np.ndarray
-    receptance: np.ndarray
-    notes: tuple[str, ...] = ()
+    source: str  # its file
+    hz: np.ndarray  # (n,) frequencies [Hz], greater than 0
+    receptance: np.ndarray  # (n,) complex [m/N]
+    notes: tuple[str, ...] = ()  # sentences on units and form that a reader needs
 
     def to_uff(self, path: str | Path) -> Path:
         """Write it as dataset 58, double precision and binary: the same bits are read again.

@@ -112,16 +112,13 @@ def changed_rotors(rig: Rig, speed: float) -> dict[str, Rotor]:
 
 @attrs.frozen(eq=False)
 class _Balanced:
-    """Shaft and bearing in balance, compared with the measured response.
+    """Shaft and bearing in balance, compared with the measured response."""
 
-    state : of the bearing;  computed, measured : response at the sensor [m], its size alone without pulses
-    errors : standard errors along the measured response and across it [m]
-    """
-
-    state: State
+    state: State  # of the bearing
+    #: computed, measured : response at the sensor [m], its size alone without pulses
     computed: complex
     measured: complex
-    errors: tuple[float, float]
+    errors: tuple[float, float]  # standard errors along the measured response and across it [m]
 
 
 @attrs.frozen(eq=False)
@@ -135,20 +132,16 @@ class _Slope:
 
 @attrs.define(eq=False)
 class _RigResiduals:
-    """Weighted residuals of the 1x response: ``raceway_measure.fit.estimate.Residuals``.
-
-    component : of the record;  run_out : the run-out, or the 1x component of a slow roll
-    last : at the last numbers;  slopes : by the free numbers there
-    """
+    """Weighted residuals of the 1x response: ``raceway_measure.fit.estimate.Residuals``."""
 
     scene: Scene
     rig: Rig
     registry: Registry
     free: Sequence[Free]
-    component: Synchronous
-    run_out: RunOut | Synchronous | None
-    last: _Balanced = attrs.field(init=False)
-    slopes: list[_Slope] = attrs.field(factory=list, init=False)
+    component: Synchronous  # of the record
+    run_out: RunOut | Synchronous | None  # the run-out, or the 1x component of a slow roll
+    last: _Balanced = attrs.field(init=False)  # at the last numbers
+    slopes: list[_Slope] = attrs.field(factory=list, init=False)  # by the free numbers there
     _motion: list[Result] = attrs.field(factory=list, init=False)
 
     @property

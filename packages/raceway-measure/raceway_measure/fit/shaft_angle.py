@@ -38,20 +38,14 @@ _SECOND, _FIRST = 0.6745 * 6.0**0.5, 0.6745 * 2.0**0.5
 
 @attrs.frozen(eq=False)
 class Rotation:
-    """A record of full turns with its angles.
+    """A record of full turns with its angles."""
 
-    recording : the samples from the first to the last pulse
-    angle : (n,) from the first pulse [rad];  speed : (n,) [rad/s]
-    turns : full turns;  marked : whether angle 0 is that of a pulse; else the record's beginning
-    angle_error : half-width at 95 % of the angle of all pulses together [rad]
-    """
-
-    recording: Recording
-    angle: np.ndarray
-    speed: np.ndarray
-    turns: int
-    marked: bool
-    angle_error: float = 0.0
+    recording: Recording  # the samples from the first to the last pulse
+    angle: np.ndarray  # (n,) from the first pulse [rad]
+    speed: np.ndarray  # (n,) [rad/s]
+    turns: int  # full turns
+    marked: bool  # whether angle 0 is that of a pulse; else the record's beginning
+    angle_error: float = 0.0  # half-width at 95 % of the angle of all pulses together [rad]
 
     def means(self, values: np.ndarray) -> np.ndarray:
         """Mean over each turn (turns,) of samples (n,)."""
@@ -165,16 +159,11 @@ def _by_speed(recording: Recording) -> Rotation:
 
 @attrs.frozen(eq=False)
 class _Pulses:
-    """Times at which a keyphasor's voltage rises through the middle of its range.
+    """Times at which a keyphasor's voltage rises through the middle of its range."""
 
-    times : (n,) [s]
-    jump : mean rise from one sample to the next on the flank, over the range, at most 1
-    middle_error : standard error of all times together, because noise hides where the middle of the range is [s]
-    """
-
-    times: np.ndarray
-    jump: float
-    middle_error: float
+    times: np.ndarray  # (n,) [s]
+    jump: float  # mean rise from one sample to the next on the flank, over the range, at most 1
+    middle_error: float  # standard error of all times together, because noise hides where the middle of the range is [s]
 
 
 def pulses_of(time: np.ndarray, key: np.ndarray) -> _Pulses:

@@ -142,18 +142,14 @@ def _file_numbers(header: str, array: ArrayLike, word: str) -> np.ndarray:
 
 @attrs.frozen(eq=False)
 class Signals:
-    """A record as it was read.
+    """A record as it was read."""
 
-    source : its file, or "signals"
-    columns : quantity -> samples (n,): time [s], y, z [m], key (any unit), speed [rad/s], force, force_y, force_z [N], velocity [m/s],
-        acceleration [m/s2]
-    where : prefix of messages about its column headers;  notes : what was left out or assumed
-    """
-
-    source: str
+    source: str  # its file, or "signals"
+    #: quantity -> samples (n,): time [s], y, z [m], key (any unit), speed [rad/s], force, force_y, force_z [N], velocity
+    #: [m/s], acceleration [m/s2]
     columns: dict[str, np.ndarray]
-    where: str = ""
-    notes: tuple[str, ...] = ()
+    where: str = ""  # prefix of messages about its column headers
+    notes: tuple[str, ...] = ()  # what was left out or assumed
 
     def __str__(self) -> str:
         """Samples, duration and columns, in words."""

@@ -33,26 +33,19 @@ _ROUNDING = 1e-12
 
 @attrs.frozen(eq=False)
 class Synchronous:
-    """The forward 1x component at the mean speed.
+    """The forward 1x component at the mean speed."""
 
-    forward : complex amplitude of e^{j angle} [m];  error : its standard error [m], of real and imaginary part together
-    backward : amplitude of the backward 1x component [m]
-    speed : mean [rad/s];  lowest, highest : of the blocks [rad/s]
-    fourier : the component by a Fourier transform of full turns over equal angles [m]
-    residual : rms of the fit's residuals over that of the component
-    angle_error : half-width at 95 % of the angle of all pulses together [rad]
-    turns, blocks, marked : as in ``Rotation``
-    """
-
-    forward: complex
-    error: float
-    backward: float
-    speed: float
+    forward: complex  # complex amplitude of e^{j angle} [m]
+    error: float  # its standard error [m], of real and imaginary part together
+    backward: float  # amplitude of the backward 1x component [m]
+    speed: float  # mean [rad/s]
+    #: lowest, highest : of the blocks [rad/s]
     lowest: float
     highest: float
-    fourier: complex
-    residual: float
-    angle_error: float
+    fourier: complex  # the component by a Fourier transform of full turns over equal angles [m]
+    residual: float  # rms of the fit's residuals over that of the component
+    angle_error: float  # half-width at 95 % of the angle of all pulses together [rad]
+    #: turns, blocks, marked : as in ``Rotation``
     turns: int
     blocks: int
     marked: bool

@@ -31,16 +31,12 @@ _HEADER = re.compile(r"^\s*(?P<name>[^\[(]*?)\s*(?:[\[(](?P<unit>[^\])]*)[\])])?
 
 @attrs.frozen(eq=False)
 class _Measurements:
-    """Measurements, one per row.
+    """Measurements, one per row."""
 
-    source : file;  keys : path -> numbers (n,), in the unit of the key
-    values : quantity -> numbers (n,), SI;  errors : quantity -> standard errors (n,), SI, of those whose errors are stated
-    """
-
-    source: str
-    keys: dict[str, np.ndarray]
-    values: dict[str, np.ndarray]
-    errors: dict[str, np.ndarray]
+    source: str  # file
+    keys: dict[str, np.ndarray]  # path -> numbers (n,), in the unit of the key
+    values: dict[str, np.ndarray]  # quantity -> numbers (n,), SI
+    errors: dict[str, np.ndarray]  # quantity -> standard errors (n,), SI, of those whose errors are stated
 
     @property
     def count(self) -> int:
@@ -182,14 +178,12 @@ class TableResiduals:
     """Weighted residuals of a table of measurements: ``raceway_measure.fit.estimate.Residuals``.
 
     All rows, and all steps of the differences that make their derivatives, are columns of one call.
-
-    scenes : of the rows
     """
 
     measured: _Measurements
     free: Sequence[Free]
     scene: Scene
-    scenes: list[Scene] = attrs.field(init=False)
+    scenes: list[Scene] = attrs.field(init=False)  # of the rows
     _last: np.ndarray = attrs.field(init=False)
     _functions: dict[tuple[str, ...], Function] = attrs.field(factory=dict, init=False)
 

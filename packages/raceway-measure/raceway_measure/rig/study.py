@@ -40,22 +40,17 @@ _RUNS, _SIGNALS_S = 6, 0.25
 
 @attrs.frozen(eq=False)
 class _Point:
-    """One speed under one axial load.
-
-    state : what the bearing truly does;  unbalance_force : of the whole rotor [N]
-    signals, slow : the records;  identified : what is identified from them
-    readings : by the article's procedure, on the same signals
-    causes : errors of the readings, a cause at a time, by ``split``
-    """
+    """One speed under one axial load."""
 
     axial: float
-    state: State
-    unbalance_force: float
+    state: State  # what the bearing truly does
+    unbalance_force: float  # of the whole rotor [N]
+    #: signals, slow : the records
     signals: Recording
     slow: Recording
-    identified: Identified
-    readings: list[Reading]
-    causes: list[Cause]
+    identified: Identified  # what is identified from them
+    readings: list[Reading]  # by the article's procedure, on the same signals
+    causes: list[Cause]  # errors of the readings, a cause at a time, by ``split``
 
     @property
     def name(self) -> str:
@@ -114,11 +109,7 @@ class _Point:
 
 @attrs.frozen(eq=False, repr=False, slots=False)
 class _RigStudy(Answer):
-    """All points, with the rig and its critical speeds [r/min] by axial load.
-
-    failed : points without a motion, and why;  fault : why points could not be stored
-    signals : whether ``save`` writes the records
-    """
+    """All points, with the rig and its critical speeds [r/min] by axial load."""
 
     stem: ClassVar[str] = "rig"
 
@@ -127,9 +118,9 @@ class _RigStudy(Answer):
     rig: Rig
     critical: dict[str, float]
     points: list[_Point]
-    failed: list[Tables]
-    fault: RacewayError | None = None
-    signals: bool = True
+    failed: list[Tables]  # points without a motion, and why
+    fault: RacewayError | None = None  # why points could not be stored
+    signals: bool = True  # whether ``save`` writes the records
 
     @property
     def passed(self) -> bool:

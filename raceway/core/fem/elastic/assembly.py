@@ -30,17 +30,13 @@ if TYPE_CHECKING:
 class Cage:
     """Springs on mean motions: energy 1/2 k (L u)^2.
 
-    rows : (m, 3 nodes) sparse L: a mean displacement [m], or a mean turn [rad], of one ball
-    stiffness : (m,) k [N/m, N m/rad]
-    nodal : (3 nodes,) springs on single displacements that hold the balls' means about as well [N/m]
-    fields, centres : (balls, rows, 6), (balls, 3) the rows of each ball as its masses times t + w x r
-
     Where nothing pushes a ball along its orbit, the cage carries nothing, whatever its stiffness.  Friction pushes: see ``raceway.core.fem.elastic.bearing``.
     """
 
-    rows: csr_matrix
-    stiffness: np.ndarray
-    nodal: np.ndarray
+    rows: csr_matrix  # (m, 3 nodes) sparse L: a mean displacement [m], or a mean turn [rad], of one ball
+    stiffness: np.ndarray  # (m,) k [N/m, N m/rad]
+    nodal: np.ndarray  # (3 nodes,) springs on single displacements that hold the balls' means about as well [N/m]
+    #: fields, centres : (balls, rows, 6), (balls, 3) the rows of each ball as its masses times t + w x r
     fields: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 4, 6)))
     centres: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 3)))
 
@@ -54,22 +50,17 @@ class Cage:
 
 @attrs.frozen(eq=False)
 class Frame:
-    """A rigid frame of a few degrees of freedom, and the nodes that move with it.
+    """A rigid frame of a few degrees of freedom, and the nodes that move with it."""
 
-    nodes : (k,) int, of the body that the frame belongs to; tied to it, or on a bed between it and them
-    centre : (3,) float, the reference point [m]
-    motions : columns of ``rigid`` that are unknowns, 0 to 2 translations [m], 3 to 5 rotations [rad] about x, y, z
-    mass, damping, stiffness : (k, k) of the frame itself, for instance of a rotor
-    free : (k,) bool, which motions are unknowns; the others keep the value that a state gives them
-    """
-
-    nodes: np.ndarray
-    centre: np.ndarray
+    nodes: np.ndarray  # (k,) int, of the body that the frame belongs to; tied to it, or on a bed between it and them
+    centre: np.ndarray  # (3,) float, the reference point [m]
+    #: columns of ``rigid`` that are unknowns, 0 to 2 translations [m], 3 to 5 rotations [rad] about x, y, z
     motions: tuple[int, ...]
+    #: mass, damping, stiffness : (k, k) of the frame itself, for instance of a rotor
     mass: np.ndarray
     damping: np.ndarray
     stiffness: np.ndarray
-    free: np.ndarray
+    free: np.ndarray  # (k,) bool, which motions are unknowns; the others keep the value that a state gives them
 
     def basis(self, points: np.ndarray) -> np.ndarray:
         """(3 n, k) displacements of points (n, 3) under unit motions of the frame, linear in the rotations."""

@@ -22,14 +22,10 @@ if TYPE_CHECKING:
 
 @attrs.frozen(eq=False)
 class Near:
-    """The columns of B that are not empty: a few of all nodes.
+    """The columns of B that are not empty: a few of all nodes."""
 
-    entries : (k,) int, of the nodal displacements, sorted
-    move : (3 n, k) sparse, B at these entries
-    """
-
-    entries: np.ndarray
-    move: csr_matrix
+    entries: np.ndarray  # (k,) int, of the nodal displacements, sorted
+    move: csr_matrix  # (3 n, k) sparse, B at these entries
 
     @classmethod
     def of(cls, move: csr_matrix) -> Near:
@@ -144,16 +140,13 @@ STIFFER = 1.02
 
 @attrs.frozen(eq=False)
 class PlaceLaw:
-    """Normal force of the places of a contact.
+    """Normal force of the places of a contact."""
 
-    kernel, params, state_size : of signature ``LAW``, (n, k) its parameters, columns of its memory
-    damping : normal damping, pressure per gap rate [N s/m3]; of resultants [N s/m]
-    """
-
+    #: kernel, params, state_size : of signature ``LAW``, (n, k) its parameters, columns of its memory
     kernel: Kernel
     params: np.ndarray
     state_size: int = 0
-    damping: float = 0.0
+    damping: float = 0.0  # normal damping, pressure per gap rate [N s/m3]; of resultants [N s/m]
 
 
 class Contact(ABC):
@@ -344,19 +337,13 @@ _AT_REST, IN_MOTION = 0.02, 0.5
 
 @attrs.frozen(eq=False)
 class Pair:
-    """Two surfaces that may touch.
-
-    name : str
-    points : SurfacePoints of the first surface; node numbers are the assembly's
-    surface : (8,) the second one, exact (``raceway.core.fem.elastic.contact``)
-    facets : Facets of the second surface;  first_node : what to add to its node numbers for those of the assembly
-    """
+    """Two surfaces that may touch."""
 
     name: str
-    points: SurfacePoints
-    surface: np.ndarray
-    facets: Facets
-    first_node: int
+    points: SurfacePoints  # of the first surface; node numbers are the assembly's
+    surface: np.ndarray  # (8,) the second one, exact (``raceway.core.fem.elastic.contact``)
+    facets: Facets  # of the second surface
+    first_node: int  # what to add to its node numbers for those of the assembly
 
 
 class NodalContact(Contact):

@@ -35,18 +35,12 @@ _DIRECTIONS = np.array(
 
 @attrs.frozen(eq=False)
 class _Domain:
-    """Cells that are eliminated together.
+    """Cells that are eliminated together."""
 
-    inner : (k,) sorted nodes that belong to these cells alone and to no child's inner ones: eliminated here
-    border : (b,) sorted nodes that other cells share, or that are kept
-    children : numbers of the two halves, lower than the own one; none of a leaf
-    cells : (first, last + 1) of a leaf in ``_Dissection.order``
-    """
-
-    inner: Nodes
-    border: Nodes
-    children: tuple[int, ...]
-    cells: tuple[int, int] | None
+    inner: Nodes  # (k,) sorted nodes that belong to these cells alone and to no child's inner ones: eliminated here
+    border: Nodes  # (b,) sorted nodes that other cells share, or that are kept
+    children: tuple[int, ...]  # numbers of the two halves, lower than the own one; none of a leaf
+    cells: tuple[int, int] | None  # (first, last + 1) of a leaf in ``_Dissection.order``
 
 
 @attrs.frozen(eq=False)
@@ -152,16 +146,13 @@ def _add_front(position, child, front):  # type: ignore[no-untyped-def]
 
 @attrs.frozen(eq=False)
 class _Front:
-    """What is kept of an elimination: A_ss = L L^T and W = L^-1 A_sb of inner unknowns s and border unknowns b.
+    """What is kept of an elimination: A_ss = L L^T and W = L^-1 A_sb of inner unknowns s and border unknowns b."""
 
-    inner, border : (s,), (b,) unknowns
-    lower : (s, s) float32 L;  across : (s, b) float32 W
-    """
-
+    #: inner, border : (s,), (b,) unknowns
     inner: np.ndarray
     border: np.ndarray
-    lower: np.ndarray
-    across: np.ndarray
+    lower: np.ndarray  # (s, s) float32 L
+    across: np.ndarray  # (s, b) float32 W
 
 
 class Fronts:

@@ -158,12 +158,10 @@ OnProgress = Callable[[str, int, int], None]
 
 @attrs.frozen(eq=False)
 class _Substructure:
-    """A mesh that is factored, or read from the store.
+    """A mesh that is factored, or read from the store."""
 
-    name : of its body;  copies, operator, contact, free, mass, bed : see ``Part.of``
-    """
-
-    name: str
+    name: str  # of its body
+    #: copies, operator, contact, free, mass, bed : see ``Part.of``
     copies: Copies
     operator: HexOperator
     contact: np.ndarray
@@ -223,16 +221,11 @@ class _Substructure:
 
 @attrs.frozen(eq=False)
 class _RingFlexibility:
-    """A matrix with one dense block for each ring.
+    """A matrix with one dense block for each ring."""
 
-    nodes : (k,) sorted numbers of nodes
-    blocks : rows of each ring among the unknowns (3 k,), and its flexibility [m/N]
-    carried : (3 k, m) motion with the frame
-    """
-
-    nodes: np.ndarray
-    blocks: list[tuple[slice, np.ndarray]]
-    carried: np.ndarray
+    nodes: np.ndarray  # (k,) sorted numbers of nodes
+    blocks: list[tuple[slice, np.ndarray]]  # rows of each ring among the unknowns (3 k,), and its flexibility [m/N]
+    carried: np.ndarray  # (3 k, m) motion with the frame
 
     def times(self, forces: np.ndarray) -> np.ndarray:
         """(3 k,) displacements under forces (3 k,)."""
@@ -263,16 +256,11 @@ class _RingFlexibility:
 
 @attrs.frozen(eq=False)
 class Motions:
-    """Displacements, or forces, at what bodies are seen from.
+    """Displacements, or forces, at what bodies are seen from."""
 
-    nodes : (n, 3) the contacts' nodes of all bodies
-    balls : (Z, e) mean motions of the balls
-    frame : (m,) motions of the frame
-    """
-
-    nodes: np.ndarray
-    balls: np.ndarray
-    frame: np.ndarray
+    nodes: np.ndarray  # (n, 3) the contacts' nodes of all bodies
+    balls: np.ndarray  # (Z, e) mean motions of the balls
+    frame: np.ndarray  # (m,) motions of the frame
 
     def plus(self, part: float, change: "Motions") -> "Motions":
         """Self + part * other."""

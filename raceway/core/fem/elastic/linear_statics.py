@@ -30,13 +30,10 @@ COARSEST = 80
 
 @attrs.frozen(eq=False)
 class _Levels:
-    """Aggregates from fine to coarse.
+    """Aggregates from fine to coarse."""
 
-    strong : for each level (n, n), which nodes are strongly coupled
-    aggregates : for each level (n, k), 1 where a node belongs to an aggregate; the k nodes of the next level
-    """
-
-    strong: list[csr_matrix]
+    strong: list[csr_matrix]  # for each level (n, n), which nodes are strongly coupled
+    #: for each level (n, k), 1 where a node belongs to an aggregate; the k nodes of the next level
     aggregates: list[csr_matrix]
 
 
@@ -228,16 +225,11 @@ MOST_ITERATIONS = 200
 
 @attrs.frozen(eq=False)
 class _Solution:
-    """Displacements that balance a load.
+    """Displacements that balance a load."""
 
-    displacement : (n, 3) float [m]
-    iterations : of the conjugate gradients; 0 where the system was factorised
-    residual : |K u - f| over |f| on the free degrees of freedom, with f the load and the pull of the prescribed ones
-    """
-
-    displacement: np.ndarray
-    iterations: int
-    residual: float
+    displacement: np.ndarray  # (n, 3) float [m]
+    iterations: int  # of the conjugate gradients; 0 where the system was factorised
+    residual: float  # |K u - f| over |f| on the free degrees of freedom, with f the load and the pull of the prescribed ones
 
 
 def solve_static(

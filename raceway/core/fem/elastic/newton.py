@@ -68,17 +68,12 @@ TOLERANCE, FIRST, LOOSE, TIGHT = 1e-6, 1e-2, 1e-1, 1e-4
 
 @attrs.frozen(eq=False)
 class StaticSolution:
-    """An equilibrium.
+    """An equilibrium."""
 
-    y : (size,) unknowns
-    iterations : of Newton;  linear_iterations : of all linear solves
-    residuals : list of relative residuals, in order
-    """
-
-    y: np.ndarray
-    iterations: int
-    linear_iterations: int
-    residuals: list[float]
+    y: np.ndarray  # (size,) unknowns
+    iterations: int  # of Newton
+    linear_iterations: int  # of all linear solves
+    residuals: list[float]  # relative residuals, in order
 
 
 def solve_equilibrium(system: StaticSystem, guess: np.ndarray, tolerance: float = TOLERANCE) -> StaticSolution:

@@ -25,15 +25,11 @@ _RINGS, _ANGLES, _AROUND = 6, 12, 8
 
 @attrs.frozen(eq=False)
 class Footprint:
-    """A contact on one body.
+    """A contact on one body."""
 
-    nodes : (k,) int of the body;  weights : (k,) float, of the ellipse: a unit force, and the mean displacement under it
-    share : (3, k, 3) float: displacement of the surface against which the other body moves
-    """
-
-    nodes: np.ndarray
-    weights: np.ndarray
-    share: np.ndarray
+    nodes: np.ndarray  # (k,) int of the body
+    weights: np.ndarray  # (k,) float, of the ellipse: a unit force, and the mean displacement under it
+    share: np.ndarray  # (3, k, 3) float: displacement of the surface against which the other body moves
 
 
 def hertz_weights(semi_axes: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
@@ -100,24 +96,19 @@ _DEEPEST = 1e-3
 
 @attrs.frozen(eq=False)
 class Touch:
-    """One ball on one race.
-
-    name : str
-    ball, race : Footprint; node numbers are the assembly's
-    centre : (3,) of the ball [m]
-    surface : (8,) on which that centre lies at a gap of zero (``raceway.core.fem.elastic.contact``): the groove, its tube smaller by the ball
-    local : compliance of both meshes that the law's replaces, less what calibrates it [m/N];  spread : how well they know it [m/N]
-    size : largest overlap of undeformed bodies [m]
-    """
+    """One ball on one race."""
 
     name: str
+    #: ball, race : Footprint; node numbers are the assembly's
     ball: Footprint
     race: Footprint
-    centre: np.ndarray
+    centre: np.ndarray  # (3,) of the ball [m]
+    #: (8,) on which that centre lies at a gap of zero (``raceway.core.fem.elastic.contact``): the groove, its tube smaller
+    #: by the ball
     surface: np.ndarray
-    local: float
-    spread: float
-    size: float
+    local: float  # compliance of both meshes that the law's replaces, less what calibrates it [m/N]
+    spread: float  # how well they know it [m/N]
+    size: float  # largest overlap of undeformed bodies [m]
 
 
 class ResultantContact(Contact):
@@ -227,15 +218,11 @@ _SLOW = 0.05
 
 @attrs.frozen(eq=False)
 class _Separation:
-    """Compliances of a mesh under one contact.
+    """Compliances of a mesh under one contact."""
 
-    local : s - c [m/N];  structural : c, of a body held as it is [m/N]
-    spread : largest less smallest difference of the fields over the depths [m/N]: what the mesh leaves open
-    """
-
-    local: float
-    structural: float
-    spread: float
+    local: float  # s - c [m/N]
+    structural: float  # c, of a body held as it is [m/N]
+    spread: float  # largest less smallest difference of the fields over the depths [m/N]: what the mesh leaves open
 
 
 #: Cells near a point that are tried, and Newton's steps in each of them.

@@ -21,13 +21,10 @@ _TOLERANCE, _LINEAR = 1e-7, 1e-4
 
 @attrs.define(eq=False, kw_only=True)
 class ElasticRing(SteppedRing):
-    """All nodes of rings and balls; the ring's reference point is what the rest of the program sees.
-
-    bodies : ElasticBearing
-    held_by : axial load [N] whose displacement, where it acts alone on the mounted bearing, is held; None: the axial motion is free
-    """
+    """All nodes of rings and balls; the ring's reference point is what the rest of the program sees."""
 
     bodies: ElasticBearing
+    #: axial load [N] whose displacement, where it acts alone on the mounted bearing, is held; None: the axial motion is free
     held_by: float | None = None
     _y: np.ndarray | None = attrs.field(init=False, default=None)
     _stiffness: np.ndarray | None = attrs.field(init=False, default=None)

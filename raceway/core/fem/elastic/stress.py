@@ -81,14 +81,10 @@ def _terms(s: Floats) -> Floats:
 
 @attrs.frozen(eq=False)
 class ContactAxis:
-    """A line from the surface into one body.
+    """A line from the surface into one body."""
 
-    pole : (3,) float, of the undeformed surface [m]
-    axes : (3, 3) float, unit vectors in rows: across the rolling direction, along it, into the body
-    """
-
-    pole: np.ndarray
-    axes: np.ndarray
+    pole: np.ndarray  # (3,) float, of the undeformed surface [m]
+    axes: np.ndarray  # (3, 3) float, unit vectors in rows: across the rolling direction, along it, into the body
 
     def local(self, points: np.ndarray) -> np.ndarray:
         """(..., 3) coordinates of points along the axes, from the pole [m]."""
@@ -139,16 +135,11 @@ _TOP, _DEGREE = 0.85, 4
 
 @attrs.frozen(eq=False)
 class StressProfile:
-    """Stresses at points of a line into a body.
+    """Stresses at points of a line into a body."""
 
-    depth : (n,) float below the surface, evenly from 0 [m]
-    stress : (n, 6) float [Pa], xx yy zz xy yz zx of the bearing's axes
-    lengths : (n, 3) float, of the elements there: across the rolling direction, along it, in depth [m]
-    """
-
-    depth: np.ndarray
-    stress: np.ndarray
-    lengths: np.ndarray
+    depth: np.ndarray  # (n,) float below the surface, evenly from 0 [m]
+    stress: np.ndarray  # (n, 6) float [Pa], xx yy zz xy yz zx of the bearing's axes
+    lengths: np.ndarray  # (n, 3) float, of the elements there: across the rolling direction, along it, in depth [m]
 
     @property
     def shear(self) -> np.ndarray:

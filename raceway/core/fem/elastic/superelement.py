@@ -21,18 +21,14 @@ SAME = 1e-13
 
 @attrs.frozen(eq=False)
 class Copies:
-    """A mesh and where its copies lie.
+    """A mesh and where its copies lie."""
 
-    points : (n, 3) of the first copy [m];  cells : (m, 8)
-    nodes : (copies, n) numbers of the copies' nodes in the mesh that they make up
-    turns : (copies, 3, 3) from the first copy to each
-    before, behind : (k,) nodes of a sector on its first cut plane, and their images on its second one; none of whole bodies
-    """
-
-    points: np.ndarray
-    cells: np.ndarray
-    nodes: np.ndarray
-    turns: np.ndarray
+    points: np.ndarray  # (n, 3) of the first copy [m]
+    cells: np.ndarray  # (m, 8)
+    nodes: np.ndarray  # (copies, n) numbers of the copies' nodes in the mesh that they make up
+    turns: np.ndarray  # (copies, 3, 3) from the first copy to each
+    #: before, behind : (k,) nodes of a sector on its first cut plane, and their images on its second one; none of whole
+    #: bodies
     before: np.ndarray
     behind: np.ndarray
 

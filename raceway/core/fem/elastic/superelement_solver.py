@@ -104,15 +104,12 @@ def _add_points(places, weights, blocks, matrix):  # type: ignore[no-untyped-def
 
 @attrs.frozen(eq=False)
 class BallTangent:
-    """Tangent of the contacts of one ball with both rings.
+    """Tangent of the contacts of one ball with both rings."""
 
-    ball, rings : (a,), (b,) numbers of the nodes that points in contact lie on
-    matrix : (3 (a + b), 3 (a + b)) of both, those of the ball first [N/m]
-    """
-
+    #: ball, rings : (a,), (b,) numbers of the nodes that points in contact lie on
     ball: np.ndarray
     rings: np.ndarray
-    matrix: np.ndarray
+    matrix: np.ndarray  # (3 (a + b), 3 (a + b)) of both, those of the ball first [N/m]
 
     @classmethod
     def of(cls, nodes: np.ndarray, weights: np.ndarray, blocks: np.ndarray) -> "BallTangent":

@@ -112,16 +112,12 @@ _CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 
 @attrs.frozen(eq=False)
 class SurfacePoints:
-    """Points at which pressure acts.
+    """Points at which pressure acts."""
 
-    place : (n, 3) float [m];  area : (n,) float [m2], weights of the integral over the surface
-    nodes : (n, 4) int, of the facet;  weights : (n, 4) float, which interpolate the nodes' displacements
-    """
-
-    place: np.ndarray
-    area: np.ndarray
-    nodes: np.ndarray
-    weights: np.ndarray
+    place: np.ndarray  # (n, 3) float [m]
+    area: np.ndarray  # (n,) float [m2], weights of the integral over the surface
+    nodes: np.ndarray  # (n, 4) int, of the facet
+    weights: np.ndarray  # (n, 4) float, which interpolate the nodes' displacements
 
     def __getitem__(self, rows: np.ndarray) -> "SurfacePoints":
         return SurfacePoints(self.place[rows], self.area[rows], self.nodes[rows], self.weights[rows])

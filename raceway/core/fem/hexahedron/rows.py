@@ -273,15 +273,12 @@ def add_rows(first, last, nodes, starts, neighbours, data, u, force):  # type: i
 
 @attrs.frozen(eq=False)
 class BlockRows:
-    """A stiffness matrix.
+    """A stiffness matrix."""
 
-    starts : (n + 1,);  neighbours : (k,) nodes that share an element with node i, sorted: neighbours[starts[i] : starts[i + 1]]
-    data : (9 k,) the three rows of a node after each other [N/m]
-    """
-
-    starts: NDArray[np.int64]
+    starts: NDArray[np.int64]  # (n + 1,)
+    #: (k,) nodes that share an element with node i, sorted: neighbours[starts[i] : starts[i + 1]]
     neighbours: NDArray[np.int32]
-    data: Floats
+    data: Floats  # (9 k,) the three rows of a node after each other [N/m]
 
     @classmethod
     def assemble(cls, cells: NDArray[np.uint32], nodes: int, element_matrices: Callable[[slice], Floats]) -> BlockRows:

@@ -21,16 +21,12 @@ DEGENERATE = 1e-6
 
 @attrs.frozen(eq=False)
 class _Quality:
-    """Quality of each cell.
+    """Quality of each cell."""
 
-    scaled_jacobian : (m,) smallest determinant of the unit edge vectors at the corners: 1 for a cuboid, <= 0 is inverted
-    aspect : (m,) longest edge / shortest edge
-    skew : (m,) largest |cosine| between the cell's principal axes: 0 for a cuboid
-    """
-
+    #: (m,) smallest determinant of the unit edge vectors at the corners: 1 for a cuboid, <= 0 is inverted
     scaled_jacobian: np.ndarray
-    aspect: np.ndarray
-    skew: np.ndarray
+    aspect: np.ndarray  # (m,) longest edge / shortest edge
+    skew: np.ndarray  # (m,) largest |cosine| between the cell's principal axes: 0 for a cuboid
 
 
 def cell_quality(mesh: HexMesh) -> _Quality:

@@ -18,25 +18,19 @@ from raceway.storage.tables import Tables
 
 @attrs.frozen
 class RingShape:
-    """Profile of a ring, lengths in metres.
+    """Profile of a ring, lengths in metres."""
 
-    inner : whether it is the inner ring (groove on its outside)
-    seat, land : radius of bore or outer cylinder, and of the shoulders
-    width : between the side faces at -width/2 and width/2
-    groove : radius of the groove
-    centre_x, centre_r : axial place and radius of the circle of groove centres
-    contact : angle from the groove's radial direction to the free contact [rad], along increasing x
-    profile : what a user's polygon gives in place of seat, land and width; these three are then its extremes
-    """
-
-    inner: bool
+    inner: bool  # whether it is the inner ring (groove on its outside)
+    #: seat, land : radius of bore or outer cylinder, and of the shoulders
     seat: float
     land: float
-    width: float
-    groove: float
+    width: float  # between the side faces at -width/2 and width/2
+    groove: float  # radius of the groove
+    #: centre_x, centre_r : axial place and radius of the circle of groove centres
     centre_x: float
     centre_r: float
-    contact: float
+    contact: float  # angle from the groove's radial direction to the free contact [rad], along increasing x
+    #: what a user's polygon gives in place of seat, land and width; these three are then its extremes
     profile: Outline | None = None
 
     def __attrs_post_init__(self) -> None:

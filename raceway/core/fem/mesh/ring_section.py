@@ -21,16 +21,13 @@ _DEGREE = 8
 
 @attrs.frozen(eq=False)
 class RingSection:
-    """Places and areas to integrate over.
+    """Places and areas to integrate over."""
 
-    x, r : (n,) place along the axis, 0 in the balls' plane, and radius [m];  area : (n,) [m2]
-    contact : x and radius of the groove at the free contact angle [m]
-    """
-
+    #: x, r : (n,) place along the axis, 0 in the balls' plane, and radius [m]
     x: np.ndarray
     r: np.ndarray
-    area: np.ndarray
-    contact: tuple[float, float]
+    area: np.ndarray  # (n,) [m2]
+    contact: tuple[float, float]  # x and radius of the groove at the free contact angle [m]
 
     @classmethod
     def of(cls, bearing: Any, shoulder_height: float) -> "RingSection":
@@ -146,19 +143,16 @@ def _rule(points: int) -> tuple[np.ndarray, np.ndarray]:
 class Outline:
     """Lines (k, 2) of x and radius [m], x strictly increasing.
 
-    left, right : race side, from the left side face to the groove, and from the groove to the right side face
-    seat : seat side, from face to face
-    edges : angles of the groove's left and right edge [rad], from its bottom towards +x
-
     The section is what lies between two lines over x: the seat's side (bore of the inner ring, outer cylinder of the outer
     one) and the race's side, out of which the groove's circle is cut. Chamfers, steps that lean, unequal shoulders and
     hollow sides are all such lines; an undercut is not, and is refused.
     """
 
+    #: left, right : race side, from the left side face to the groove, and from the groove to the right side face
     left: np.ndarray
     right: np.ndarray
-    seat: np.ndarray
-    edges: tuple[float, float]
+    seat: np.ndarray  # seat side, from face to face
+    edges: tuple[float, float]  # angles of the groove's left and right edge [rad], from its bottom towards +x
 
     def shares(self, side: str, size: float) -> np.ndarray:
         """(n,) Points 0 to 1 along x of "left" or "right", at most ``size`` [m] apart, one on each corner of it.

@@ -28,37 +28,30 @@ from raceway.errors import ConvergenceError
 
 @attrs.frozen(eq=False)
 class _Turned:
-    """Tangential resultants of a ball's gyroscopic moment.
+    """Tangential resultants of a ball's gyroscopic moment."""
 
-    force : (4,) on the ball, inner and outer contact, each axial and radial [N]
-    stiffness : (4, 4) minus its derivative by both places of the ball, D_inner and D_outer [N/m]
-    couple : on the section of the inner ring [N m];  couple_by_place : (4,) [N]
-    """
-
-    force: np.ndarray
-    stiffness: np.ndarray
-    couple: float
-    couple_by_place: np.ndarray
+    force: np.ndarray  # (4,) on the ball, inner and outer contact, each axial and radial [N]
+    stiffness: np.ndarray  # (4, 4) minus its derivative by both places of the ball, D_inner and D_outer [N/m]
+    couple: float  # on the section of the inner ring [N m]
+    couple_by_place: np.ndarray  # (4,) [N]
 
 
 @attrs.frozen
 class Gyroscopic:
     """Moments of the balls.
 
-    scale : J times the speeds of ring and cage [N m];  ratio : D / d_m;  shares : of inner and outer race, 2 in all
-    diameter, groove : of the ball, and the inner groove's radius [m];  traction : largest coefficient of both contacts; 0: none
-
     ``raceway.core.ring.kernels.rolling`` (``with_gyroscopic``) has the equations: T = share M / D at both contacts along the grooves, M a
     function of both contact angles; the inner race takes no more than its normal force, the outer one the rest, or both what
     ``traction_within`` leaves.
     """
 
-    scale: float
-    ratio: float
-    shares: tuple[float, float]
+    scale: float  # J times the speeds of ring and cage [N m]
+    ratio: float  # D / d_m
+    shares: tuple[float, float]  # of inner and outer race, 2 in all
+    #: diameter, groove : of the ball, and the inner groove's radius [m]
     diameter: float
     groove: float
-    traction: float = 0.0
+    traction: float = 0.0  # largest coefficient of both contacts; 0: none
 
     def of(self, inner: np.ndarray, outer: np.ndarray, states: Sequence[ContactState]) -> _Turned:
         """At places D (2,) of the ball in both grooves; states : the inner and the outer contact."""
@@ -109,19 +102,15 @@ _IDLE = 1e-12
 
 @attrs.frozen(eq=False)
 class AppliedLoads:
-    """Loads on balls and contacts beside those of their places.
+    """Loads on balls and contacts beside those of their places."""
 
-    turn : (Z,) of the inner ring's section at every ball [rad]
-    slip : of the points of all contacts, each (rows * columns,) [m]; empty: no friction
-    push, spring : (Z, 2) [N] and [N/m]: force push - spring * place on the balls, their inertia
-    gyroscopic : moments of the balls; None: none
-    """
-
-    turn: np.ndarray
+    turn: np.ndarray  # (Z,) of the inner ring's section at every ball [rad]
+    #: of the points of all contacts, each (rows * columns,) [m]; empty: no friction
     slip: list[np.ndarray] = attrs.field(factory=list)
+    #: push, spring : (Z, 2) [N] and [N/m]: force push - spring * place on the balls, their inertia
     push: np.ndarray | float = 0.0
     spring: float = 0.0
-    gyroscopic: Gyroscopic | None = None
+    gyroscopic: Gyroscopic | None = None  # moments of the balls; None: none
 
     def of(self, contact: int) -> SlipState | None:
         """The part of one contact."""
@@ -130,31 +119,21 @@ class AppliedLoads:
 
 @attrs.frozen(eq=False)
 class LinearisedBalls:
-    """The balls linearised at one state.
+    """The balls linearised at one state."""
 
-    contact_states : (2 Z) answers of the contacts
-    force : (2 Z, 2) forces on the balls that are carried on [N];  excess : (2 Z, 2) what the contacts give beyond them
-    contact_stiffness : (4 Z, 4 Z) S [N/m];  ball_stiffness : (2 Z, 2 Z) the balls' own stiffness H = P^T S P
-    balance : (2 Z,) forces on the balls, contact forces at W F included to first order [N]
-    by_section_turn : (4 Z, Z) B, minus derivatives of contact forces by the turns of the inner ring's section [N]
-    couple : (Z,) on that section [N m]
-    couple_by_place : (Z, 4 Z) its derivative by D [N]; None where there are no couples
-    crossed : (4 Z, 4 Z) what gyroscopic moments add to K [N/m]; 0 without
-    relative : (2 Z, 2) D, the balls seen from the grooves [m]
-    """
-
-    contact_states: list[ContactState]
-    force: np.ndarray
-    excess: np.ndarray
+    contact_states: list[ContactState]  # (2 Z) answers of the contacts
+    force: np.ndarray  # (2 Z, 2) forces on the balls that are carried on [N]
+    excess: np.ndarray  # (2 Z, 2) what the contacts give beyond them
     carried: np.ndarray
-    contact_stiffness: np.ndarray
-    ball_stiffness: np.ndarray
-    balance: np.ndarray
+    contact_stiffness: np.ndarray  # (4 Z, 4 Z) S [N/m]
+    ball_stiffness: np.ndarray  # (2 Z, 2 Z) the balls' own stiffness H = P^T S P
+    balance: np.ndarray  # (2 Z,) forces on the balls, contact forces at W F included to first order [N]
+    #: (4 Z, Z) B, minus derivatives of contact forces by the turns of the inner ring's section [N]
     by_section_turn: np.ndarray
-    couple: np.ndarray
-    couple_by_place: np.ndarray | None
-    crossed: np.ndarray | float
-    relative: np.ndarray
+    couple: np.ndarray  # (Z,) on that section [N m]
+    couple_by_place: np.ndarray | None  # (Z, 4 Z) its derivative by D [N]; None where there are no couples
+    crossed: np.ndarray | float  # (4 Z, 4 Z) what gyroscopic moments add to K [N/m]; 0 without
+    relative: np.ndarray  # (2 Z, 2) D, the balls seen from the grooves [m]
 
 
 class Balls:

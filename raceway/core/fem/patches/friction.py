@@ -28,20 +28,14 @@ _NONE = np.zeros(0, dtype=np.int64)
 
 @attrs.frozen(eq=False)
 class Traction:
-    """A contact's answer along the groove.
+    """A contact's answer along the groove."""
 
-    force : resultant of the tractions [N], positive against a positive place
-    by_place : its derivative by the place [N/m];  by_load : (n,) by the points' pressure forces
-    slip : (rows * columns,) of every point [m];  lost : energy that slipping took since the slips given [J]
-    sliding : (n,) 1, -1 where a point slips, 0 where it sticks
-    """
-
-    force: float
-    by_place: float
-    by_load: np.ndarray
-    slip: np.ndarray
-    lost: float
-    sliding: np.ndarray
+    force: float  # resultant of the tractions [N], positive against a positive place
+    by_place: float  # its derivative by the place [N/m]
+    by_load: np.ndarray  # (n,) by the points' pressure forces
+    slip: np.ndarray  # (rows * columns,) of every point [m]
+    lost: float  # energy that slipping took since the slips given [J]
+    sliding: np.ndarray  # (n,) 1, -1 where a point slips, 0 where it sticks
 
 
 class Friction:

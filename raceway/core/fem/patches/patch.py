@@ -21,17 +21,13 @@ from raceway.errors import MeshError
 
 @attrs.frozen
 class Spacing:
-    """Distances of the surface points.
+    """Distances of the surface points."""
 
-    along, across : along the groove and along the rolling direction [m]
-    ball_divisions : points around the ball's equator
-    columns : points on each side of the middle one, along the rolling direction
-    """
-
+    #: along, across : along the groove and along the rolling direction [m]
     along: float
     across: float
-    ball_divisions: int
-    columns: int
+    ball_divisions: int  # points around the ball's equator
+    columns: int  # points on each side of the middle one, along the rolling direction
 
     @property
     def area(self) -> float:
@@ -63,29 +59,22 @@ class Spacing:
 
 @attrs.frozen(eq=False)
 class _Race:
-    """A race's surface points and its compliance, seen from any ball.
+    """A race's surface points and its compliance, seen from any ball."""
 
-    sense : -1 inner, 1 outer
-    groove, centre_radius : radius of the groove, and of the circle of its centres [m]
-    angle : (m,) contact angles of the rows [rad], increasing
-    compliance : (columns, m, m) displacement of a row by a force on another one, so many columns apart, both along the
-        normal, less n.M n' of ``crossing`` [m/N]
-    across : distance of neighbouring columns [m]
-    edges : (2,) contact angles of the groove's edges [rad], ascending
-    crossing : (Z, 2, 2) displacement (axial, radial) of the groove's centre by a force (axial, radial) on the groove under
-        the k-th next ball [m/N]; row 0: the part of what the ball itself moves it by that is not in ``compliance``
-    shear : like ``compliance``, both along the groove; None without friction
-    """
-
-    sense: float
+    sense: float  # -1 inner, 1 outer
+    #: groove, centre_radius : radius of the groove, and of the circle of its centres [m]
     groove: float
     centre_radius: float
-    angle: np.ndarray
+    angle: np.ndarray  # (m,) contact angles of the rows [rad], increasing
+    #: (columns, m, m) displacement of a row by a force on another one, so many columns apart, both along the normal, less
+    #: n.M n' of ``crossing`` [m/N]
     compliance: np.ndarray
-    across: float
-    edges: tuple[float, float]
+    across: float  # distance of neighbouring columns [m]
+    edges: tuple[float, float]  # (2,) contact angles of the groove's edges [rad], ascending
+    #: (Z, 2, 2) displacement (axial, radial) of the groove's centre by a force (axial, radial) on the groove under the k-th
+    #: next ball [m/N]; row 0: the part of what the ball itself moves it by that is not in ``compliance``
     crossing: np.ndarray
-    shear: np.ndarray | None = None
+    shear: np.ndarray | None = None  # like ``compliance``, both along the groove; None without friction
 
     @property
     def name(self) -> str:
@@ -105,35 +94,27 @@ class _Race:
 
 @attrs.frozen(eq=False)
 class _Ball:
-    """The ball's surface points and its compliance, about its centre of mass.
+    """The ball's surface points and its compliance, about its centre of mass."""
 
-    radius : float [m]
-    latitude : (columns,) of the points along the rolling direction [rad], symmetric about 0
-    compliance : (rows, columns, columns) displacement of a column by a force on another one, so many rows apart, both
-        along the normal [m/N]
-    opposite : displacement at a contact by a force at the opposite pole, along the normals [m/N]
-    shear : like ``compliance``, both along the rows' direction, that of the groove; None without friction
-    """
-
-    radius: float
-    latitude: np.ndarray
+    radius: float  # [m]
+    latitude: np.ndarray  # (columns,) of the points along the rolling direction [rad], symmetric about 0
+    #: (rows, columns, columns) displacement of a column by a force on another one, so many rows apart, both along the normal
+    #: [m/N]
     compliance: np.ndarray
-    opposite: float
+    opposite: float  # displacement at a contact by a force at the opposite pole, along the normals [m/N]
+    #: like ``compliance``, both along the rows' direction, that of the groove; None without friction
     shear: np.ndarray | None = None
 
 
 @attrs.frozen(eq=False)
 class Patch:
-    """One ball on one race: both grids together.
-
-    area : of a surface point [m2];  phi : (m,) angle of every row on the ball [rad];  points : for kernels
-    """
+    """One ball on one race: both grids together."""
 
     ball: _Ball
     race: _Race
-    area: float
-    phi: np.ndarray = attrs.field(init=False)
-    points: Points = attrs.field(init=False)
+    area: float  # of a surface point [m2]
+    phi: np.ndarray = attrs.field(init=False)  # (m,) angle of every row on the ball [rad]
+    points: Points = attrs.field(init=False)  # for kernels
 
     @phi.default
     def _phi(self) -> np.ndarray:
@@ -177,14 +158,12 @@ class RingBody:
     """One ring of a row.
 
     shape, solid
-    seat : "clamped" or the stiffness of a bed [N/m3]
-    window : (2,) contact angles between which it has surface points [rad]
     """
 
     shape: RingShape
     solid: Solid
-    seat: str | float
-    window: tuple[float, float]
+    seat: str | float  # "clamped" or the stiffness of a bed [N/m3]
+    window: tuple[float, float]  # (2,) contact angles between which it has surface points [rad]
 
 
 def make_patch(ring: RingBody, ball: _Ball, spacing: Spacing, balls: int) -> Patch:
@@ -234,16 +213,13 @@ _DIGITS = 9
 class _FreeBall:
     """Compliance of a floating ball between points near its equator.
 
-    latitudes : (n,) of the surface nodes [rad], towards the rolling direction
-    dimensionless : (o, len(components) n, len(components) n) u E R / F, components one after the other
-
     A displacement u of a ball of radius R and Young's modulus E under a force F is c F / (E R), where c belongs to radius 1
     and modulus 1. Rigid motions stand apart: c gives displacements relative to the mean motion of the ball's masses ("ball
     centre"), under loads balanced by uniform acceleration, which for the ball's own balanced contacts is no load at all.
     """
 
-    latitudes: np.ndarray
-    dimensionless: np.ndarray
+    latitudes: np.ndarray  # (n,) of the surface nodes [rad], towards the rolling direction
+    dimensionless: np.ndarray  # (o, len(components) n, len(components) n) u E R / F, components one after the other
 
     def compliance(self, radius: float, young: float) -> np.ndarray:
         """(o, observed, loads) of a ball of that radius [m] and modulus [Pa], in m/N."""

@@ -133,17 +133,14 @@ class PointLaw:
 
 @attrs.frozen(eq=False)
 class _LawState:
-    """Points that carry something.
+    """Points that carry something."""
 
-    nodes, load : (n,) [N];  gap : (n,) left open by the law: its penetration [m]
-    lower : factor of C + 1/D;  viscous : (n,) the law's rate derivative over D [s]
-    """
-
+    #: nodes, load : (n,) [N]
     nodes: np.ndarray
     load: np.ndarray
-    gap: np.ndarray
-    lower: tuple[np.ndarray, bool] | None
-    viscous: np.ndarray
+    gap: np.ndarray  # (n,) left open by the law: its penetration [m]
+    lower: tuple[np.ndarray, bool] | None  # factor of C + 1/D
+    viscous: np.ndarray  # (n,) the law's rate derivative over D [s]
     iterations: int
 
     def solve(self, right: np.ndarray) -> np.ndarray:
@@ -259,33 +256,23 @@ class BeyondPatch(RacewayError):
 
 @attrs.frozen(eq=False)
 class ContactState:
-    """A contact's answer.
+    """A contact's answer."""
 
-    force : (2,) on the ball, axial and radial [N];  stiffness : (2, 2) minus its derivative by the ball's place [N/m]
-    viscous : (2, 2) minus its derivative by the ball's velocity [N s/m]
-    nodes, load : (n,) points that carry and their forces [N], number k * columns + i
-    penetration : largest one that a law leaves [m]
-    truncated : whether points at the groove's edge carry
-    along : (2, 2) what friction adds to ``stiffness``
-    couple : of friction on the section of the ring, derivative of its work by the section's turn [N m]
-    by_turn : (2,) minus the derivative of the force by that turn [N];  couple_by_place : (2,) [N];  couple_by_turn [N m]
-    traction_state : tractions along the groove; None without friction
-    normal : (2,) the part of ``force`` that pressures make, where there is friction [N]
-    """
-
-    force: np.ndarray
-    stiffness: np.ndarray
-    viscous: np.ndarray
+    force: np.ndarray  # (2,) on the ball, axial and radial [N]
+    stiffness: np.ndarray  # (2, 2) minus its derivative by the ball's place [N/m]
+    viscous: np.ndarray  # (2, 2) minus its derivative by the ball's velocity [N s/m]
+    #: nodes, load : (n,) points that carry and their forces [N], number k * columns + i
     nodes: np.ndarray
     load: np.ndarray
-    penetration: float = 0.0
-    truncated: bool = False
-    along: np.ndarray = attrs.field(factory=lambda: np.zeros((2, 2)))
-    couple: float = 0.0
-    by_turn: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
-    couple_by_place: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
-    couple_by_turn: float = 0.0
-    traction_state: Traction | None = None
+    penetration: float = 0.0  # largest one that a law leaves [m]
+    truncated: bool = False  # whether points at the groove's edge carry
+    along: np.ndarray = attrs.field(factory=lambda: np.zeros((2, 2)))  # (2, 2) what friction adds to ``stiffness``
+    couple: float = 0.0  # of friction on the section of the ring, derivative of its work by the section's turn [N m]
+    by_turn: np.ndarray = attrs.field(factory=lambda: np.zeros(2))  # (2,) minus the derivative of the force by that turn [N]
+    couple_by_place: np.ndarray = attrs.field(factory=lambda: np.zeros(2))  # (2,) [N]
+    couple_by_turn: float = 0.0  # [N m]
+    traction_state: Traction | None = None  # tractions along the groove; None without friction
+    #: (2,) the part of ``force`` that pressures make, where there is friction [N]
     normal: np.ndarray = attrs.field(factory=lambda: np.zeros(2))
 
 
@@ -432,17 +419,12 @@ class Contact:
 
 @attrs.frozen(eq=False)
 class PressureField:
-    """Pressures on a ball's surface.
+    """Pressures on a ball's surface."""
 
-    along : (m,) place along the groove, from the contact angle of zero [m];  across : (n,) along the rolling direction [m]
-    angle : (m,) of the rows on the ball, as contact angles [rad]
-    pressure : (m, n) [Pa], zero where nothing carries
-    """
-
-    along: np.ndarray
-    across: np.ndarray
-    angle: np.ndarray
-    pressure: np.ndarray
+    along: np.ndarray  # (m,) place along the groove, from the contact angle of zero [m]
+    across: np.ndarray  # (n,) along the rolling direction [m]
+    angle: np.ndarray  # (m,) of the rows on the ball, as contact angles [rad]
+    pressure: np.ndarray  # (m, n) [Pa], zero where nothing carries
 
 
 def pressure_field(patch: Patch, state: ContactState) -> PressureField:

@@ -25,20 +25,15 @@ _LOST, _VELOCITIES, _LAST, _BEFORE, _GRID, _SLIP = range(6)
 
 @attrs.frozen(eq=False)
 class SlipHistory:
-    """One state's memory.
+    """One state's memory."""
 
-    lost : (2 Z,) energy that friction has taken [J]
-    velocities : 0 to 2, how many are known;  last, before : (Z, 2) velocities of the balls [m/s]
-    grid : number of the patches on which the slips lie;  slip : (2 Z, points) [m], beyond the slip of the contact as a
-        whole; without columns at first
-    """
-
-    lost: np.ndarray
-    velocities: int
+    lost: np.ndarray  # (2 Z,) energy that friction has taken [J]
+    velocities: int  # 0 to 2, how many are known
+    #: last, before : (Z, 2) velocities of the balls [m/s]
     last: np.ndarray
     before: np.ndarray
-    grid: int
-    slip: np.ndarray
+    grid: int  # number of the patches on which the slips lie
+    slip: np.ndarray  # (2 Z, points) [m], beyond the slip of the contact as a whole; without columns at first
 
     @classmethod
     def of(cls, memory: np.ndarray, balls: int) -> "SlipHistory":
@@ -110,15 +105,11 @@ _WIDER = 12
 
 @attrs.define(eq=False)
 class _Row:
-    """The balls' solver of one system and where it was last.
-
-    balls : Balls
-    force : (2 Z, 2) contact forces on the balls [N]
-    last : the state of the last solution, with the places (Z, 2) of groove centres and balls there [m]
-    """
+    """The balls' solver of one system and where it was last."""
 
     balls: Balls
-    force: np.ndarray
+    force: np.ndarray  # (2 Z, 2) contact forces on the balls [N]
+    #: the state of the last solution, with the places (Z, 2) of groove centres and balls there [m]
     last: LinearisedBalls | None = None
     centre: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
     where: np.ndarray = attrs.field(factory=lambda: np.zeros((0, 2)))
@@ -243,16 +234,13 @@ _BALLS = 1e-11
 class PatchSystem(SteppedRing):
     """M q'' + C q' + K q + f(q, q') = load + force(t), f from pressures at surface points of finite elements.
 
-    pool : patches and solvers, shared by all copies of this system
-    ball_mass : of one ball [kg]; 0 leaves out its inertia in steps of time
-
     ``memory`` (2 Z, 5 + points) is empty at first.  Columns: energy that friction has taken [J]; how many velocities of
     the balls are known; the last one and the one before, axial in the inner races' rows and radial in the outer ones'
     [m/s]; number of the patches; slips of the points beyond those of ``ball`` [m].  Balls have the acceleration (3 v1 - 4 v0 + v(-1)) / (2 dt).
     """
 
-    pool: Pool
-    ball_mass: float = 0.0
+    pool: Pool  # patches and solvers, shared by all copies of this system
+    ball_mass: float = 0.0  # of one ball [kg]; 0 leaves out its inertia in steps of time
 
     def of_balls(self, balls: np.ndarray, table: np.ndarray) -> "PatchSystem":
         """With the rigid ring of these balls."""

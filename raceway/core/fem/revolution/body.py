@@ -228,24 +228,21 @@ _CONDENSED = 4
 class Revolution:
     """A profile swept in equal steps, with its material and seat.
 
-    divisions : elements around the body, N; at least 3
-    young, poisson, density : [Pa, -, kg/m3]
-    formulation : "incompatible", "full" or "one_point", see ``raceway.core.fem.hexahedron.strain``;  hourglass : of "one_point"
-    seat : "clamped" (also for a ring that is tied to a rigid frame, in that frame), "free", or the stiffness of an elastic bed
-        [N/m3], the same in all three directions, on the cylinder of ``profile.seat``
-
     Answers of a free body are those under loads balanced by uniform acceleration, measured from the rigid motion of its
     masses: the mass-weighted mean of displacement and rotation vanishes.
     """
 
     profile: Profile
-    divisions: int
+    divisions: int  # elements around the body, N; at least 3
+    #: young, poisson, density : [Pa, -, kg/m3]
     young: float
     poisson: float
     density: float = 1.0
-    formulation: str = "incompatible"
+    formulation: str = "incompatible"  # "incompatible", "full" or "one_point", see ``raceway.core.fem.hexahedron.strain``
+    #: "clamped" (also for a ring that is tied to a rigid frame, in that frame), "free", or the stiffness of an elastic bed
+    #: [N/m3], the same in all three directions, on the cylinder of ``profile.seat``
     seat: str | float = "clamped"
-    hourglass: float = HOURGLASS
+    hourglass: float = HOURGLASS  # of "one_point"
     _held: np.ndarray = attrs.field(init=False)
     _springs: np.ndarray = attrs.field(init=False)
 

@@ -12,24 +12,18 @@ from raceway.errors import MeshError
 
 @attrs.frozen(eq=False)
 class Profile:
-    """Nodes and quadrilaterals of a section.
+    """Nodes and quadrilaterals of a section."""
 
-    points : (N, 2) float, radius r > 0 and place x along the axis [m]
-    quads : (M, 4) int, turned on input so that their nodes run from +x to +r
-    race : (n,) int, nodes of the loaded surface in the order of ``angles``
-    seat : (k,) int, nodes of the bore or the outer cylinder, in their order along x; empty for a ball
-    angles : (n,) float [rad], ascending.  Of a ring: contact angles, so that race node i lies at
-        r = centre_r + sign groove cos(angle), x = centre_x + sign groove sin(angle), with sign -1 for the inner ring and 1 for
-        the outer one, and the bearing's free contact angle is positive.  Of a ball: latitudes, x = R sin, r = R cos
-    depth : int, nodes of each line from the surface into the body: node ``race[i] + k``, k < depth, lies k layers below
-    """
-
-    points: np.ndarray = attrs.field(converter=floats)
-    quads: np.ndarray = attrs.field(converter=integers)
-    race: np.ndarray = attrs.field(converter=integers)
+    points: np.ndarray = attrs.field(converter=floats)  # (N, 2) float, radius r > 0 and place x along the axis [m]
+    quads: np.ndarray = attrs.field(converter=integers)  # (M, 4) int, turned on input so that their nodes run from +x to +r
+    race: np.ndarray = attrs.field(converter=integers)  # (n,) int, nodes of the loaded surface in the order of ``angles``
+    #: (k,) int, nodes of the bore or the outer cylinder, in their order along x; empty for a ball
     seat: np.ndarray = attrs.field(converter=integers)
+    #: (n,) float [rad], ascending.  Of a ring: contact angles, so that race node i lies at r = centre_r + sign groove
+    #: cos(angle), x = centre_x + sign groove sin(angle), with sign -1 for the inner ring and 1 for the outer one, and the
+    #: bearing's free contact angle is positive.  Of a ball: latitudes, x = R sin, r = R cos
     angles: np.ndarray = attrs.field(converter=floats)
-    depth: int = 1
+    depth: int = 1  # nodes of each line from the surface into the body: node ``race[i] + k``, k < depth, lies k layers below
 
     def __attrs_post_init__(self) -> None:
         if self.points.ndim != 2 or self.points.shape[1] != 2 or self.quads.ndim != 2 or self.quads.shape[1] != 4:
