@@ -18,7 +18,7 @@ import attrs
 import pytest
 
 from raceway.core.jit import clock
-from raceway.planning.cost import timed
+from raceway.planning.parts import timed
 from raceway.storage.kernel_cache import cache_root
 
 #: Of one quick test [s].

@@ -12,8 +12,7 @@ import pytest
 from raceway import SceneError, run, scene_from_dict
 from raceway.extend import Bearing, clearance_range, found_by, resolve
 from raceway.scene.catalogue import catalogue, preset, preset_of, single_presets
-from raceway.scene.designation import CLASSES
-from raceway.scene.sets import RATINGS
+from raceway.scene.designation import CLASSES, RATINGS
 
 POUND = 4.4482216152605
 #: What no document states of each preset: makers print neither conformities nor, for most bearings, balls.

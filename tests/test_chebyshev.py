@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from raceway.core.chebyshev import interpolated
+from raceway.core.columns import interpolated
 
 
 class Counted:

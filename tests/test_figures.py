@@ -35,7 +35,7 @@ from checks.validation.stores import SPEEDS, as_list, made
 from raceway import Followed, law, scene_from_dict
 from raceway.answers import picture as writer
 from raceway.extend import Attractor, below_contacts, select
-from raceway.plugins.formats import pictures
+from raceway.plugins import formats as pictures
 from raceway.points import band as band_picture
 from raceway.points import branch as followed
 from raceway.points import compare as comparison

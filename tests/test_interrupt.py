@@ -22,7 +22,7 @@ from raceway import Answer, Command, RacewayError
 from raceway.answers.answer import Interrupted
 from raceway.cli.interrupt import Interrupts, farewell
 from raceway.extend import Store, open_store
-from raceway.framework.orphans import WATCH, deaf_to_terminals
+from raceway.plugins.executors import WATCH, deaf_to_terminals
 from raceway.points.store import connected, exists
 
 Processes = built_in("executor", "processes")
@@ -229,7 +229,7 @@ def test_a_study_in_processes_that_is_stopped_by_ctrl_c_tells_where_it_goes_on_a
 
 WORKER = """
 import os, subprocess, sys, time
-child = "import os, sys, time; from raceway.framework.orphans import end_with; end_with(int(sys.argv[1])); time.sleep(1000)"
+child = "import os, sys, time; from raceway.plugins.executors import end_with; end_with(int(sys.argv[1])); time.sleep(1000)"
 print(subprocess.Popen([sys.executable, "-c", child, str(os.getpid())]).pid, flush=True)
 time.sleep(1000)
 """

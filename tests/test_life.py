@@ -7,7 +7,8 @@ import pytest
 
 from raceway import run
 from raceway.core.contact.geometry import BallBearing
-from raceway.core.life import (
+from raceway.core.ratings import (
+    STEEL,
     equivalent_loads,
     equivalent_loads_of_turn,
     life_factor,
@@ -17,7 +18,6 @@ from raceway.core.life import (
     set_rating,
     system_life,
 )
-from raceway.core.ratings import STEEL
 from raceway.extend import BallRow
 
 #: 7 balls of 11.5 mm on 43.5 mm, C = 23 400 N: clearance [m], radial and axial force [N], moment about the radial force [N m], life.

@@ -10,7 +10,7 @@ from checks.validation.command_line import EXAMPLES, invoke
 from checks.validation.stores import SPEEDS, made
 from raceway import load_scene, scene_from_dict
 from raceway.extend import Page, head, picture, row_key, select, slug
-from raceway.scene.changes import parse_change, titled
+from raceway.scene.inputs import parse_change, titled
 from raceway.testing import b7206c, default_registry, run
 
 SCENE = EXAMPLES / "b7206.toml"

@@ -13,7 +13,7 @@ PICTURE = ROOT / "docs" / "pictures" / "reading.svg"
 #: First file of each step, and the step; the pages says what happens in them.
 STEPS = (
     ("cli/console.py", "Command"), ("scene/inputs.py", "Scene"), ("planning/plan.py", "Plan"), ("bodies/model.py", "Build"),
-    ("pipeline/equilibrium.py", "Equilibrium"), ("pipeline/simulate.py", "Motion"), ("plugins/identifiers/one_frequency.py", "Identify"),
+    ("pipeline/equilibrium.py", "Equilibrium"), ("pipeline/simulate.py", "Motion"), ("plugins/identifiers.py", "Identify"),
     ("pipeline/identified.py", "Error"), ("pipeline/quantities.py", "Quantities"), ("pipeline/uncertainty.py", "Uncertainty"),
     ("pipeline/run_screen.py", "Screen"),
 )  # fmt: skip

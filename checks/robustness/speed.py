@@ -20,7 +20,7 @@ from checks.kernel import least
 from checks.robustness import Row, below
 from checks.robustness.points import PAIR, STATIC, seconds, turning
 from raceway.extend import resolve
-from raceway.planning.cost import timed
+from raceway.planning.parts import timed
 from raceway.plugins.bodies.elastic import elastic_cost
 
 COMMAND = "python -m checks speed"

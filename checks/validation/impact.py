@@ -15,7 +15,7 @@ from raceway.core.fem.elastic.assembly import Assembly, Body
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, penalty_stiffness
 from raceway.core.fem.elastic.surface import Facets, surface_points
-from raceway.core.fem.mesh.ball_mesh import ball_mesh
+from raceway.core.fem.mesh.part_meshes import ball_mesh
 from raceway.extend import FACES, HexOperator, Motion, solve_static
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0

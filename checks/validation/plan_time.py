@@ -45,7 +45,7 @@ SCENES: dict[str, tuple[str, ...]] = {
 
 _PROGRAM = """
 import contextlib, io, json, sys, tempfile, time
-from raceway.planning.cost import timed
+from raceway.planning.parts import timed
 slowness = [timed(60)]
 before = time.process_time()
 from raceway import load_scene

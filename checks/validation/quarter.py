@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from raceway.core.fem.mesh.ball_mesh import CUBE, ball_mesh
 from raceway.core.fem.mesh.hex_mesh import growing
+from raceway.core.fem.mesh.part_meshes import CUBE, ball_mesh
 from raceway.extend import FACES, HexMesh, boundary, nodes_of
 
 

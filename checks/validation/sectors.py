@@ -13,7 +13,7 @@ from raceway.core.fem.elastic.bearing import ElasticSystem, cage_fields, cage_ro
 from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, groove
 from raceway.core.fem.elastic.friction import CoulombFriction
 from raceway.core.fem.elastic.surface import Facets, SurfacePoints, surface_points
-from raceway.core.fem.mesh.ball_mesh import ball_mesh
+from raceway.core.fem.mesh.part_meshes import ball_mesh
 from raceway.extend import HexOperator, Motion
 
 YOUNG, POISSON, DENSITY = 2.1e11, 0.3, 7810.0

@@ -1,4 +1,4 @@
-"""Numbers that may be columns: one number, or an array (n,) with that of each of n operating points.
+"""Numbers that may be columns: one number, or an array (n,) with that of each of n operating points; interpolation between few.
 
 A function of numbers is then one of columns, if it takes its elementary functions from here and branches on what all points share.
 A number alone goes through ``math``, as ever.
@@ -15,6 +15,7 @@ import attrs
 
 if TYPE_CHECKING:
     import numpy as np
+
 
 T = TypeVar("T", bound=attrs.AttrsInstance)
 #: A number, or a column of them.
@@ -119,3 +120,41 @@ def length(part: attrs.AttrsInstance) -> int:
     values = _column_values(part).values()
     sizes = (len(value) if is_column(value) else length(value) if is_table(type(value)) else 0 for value in values)
     return next((size for size in sizes if size), 0)
+
+
+#: Nodes of each variable, tried in turn, and points at which the interpolation is compared with the function.
+_NODES, _COMPARED = (3, 5, 9), 8
+
+
+def interpolated(function: Callable[[np.ndarray], np.ndarray], points: np.ndarray, tolerance: float) -> np.ndarray:
+    """Values (n,) of a function at points (k, n), exact or within a relative tolerance at some of them.
+
+    function : of points (k, m), its values (m,), not zero
+
+    Interpolation on the product of Chebyshev nodes of the variables that differ, as long as these are fewer than half of the points.
+
+    Trefethen, Approximation Theory and Approximation Practice, SIAM 2013, chapters 3 and 8.
+    """
+    import numpy as np
+    from numpy.polynomial.chebyshev import chebvander
+
+    places, index = np.unique(points, axis=1, return_inverse=True)
+    low, high = places.min(axis=1), places.max(axis=1)
+    varied, count = np.flatnonzero(high > low), places.shape[1]
+    middle, half = 0.5 * (low + high)[varied, None], 0.5 * (high - low)[varied, None]
+    some = np.unique(np.linspace(0, count - 1, _COMPARED).astype(int))
+    for nodes in _NODES:
+        if 2 * nodes ** len(varied) > count:
+            break
+        t = np.cos(np.pi * (np.arange(nodes) + 0.5) / nodes)
+        grid = np.repeat(places[:, :1], nodes ** len(varied), axis=1)
+        grid[varied] = np.stack(np.meshgrid(*(middle + half * t), indexing="ij")).reshape(len(varied), -1)
+        values, transform = function(grid).reshape([nodes] * len(varied)), np.linalg.inv(chebvander(t, nodes - 1))
+        for axis in range(len(varied)):
+            values = np.moveaxis(np.tensordot(transform, values, (1, axis)), 0, axis)
+        total = np.broadcast_to(values, (count, *values.shape))
+        for x in (places[varied] - middle) / half:
+            total = np.einsum("nj...,nj->n...", total, chebvander(x, nodes - 1))
+        if np.allclose(total[some], function(places[:, some]), rtol=tolerance, atol=0.0):
+            return total[index.ravel()]
+    return function(places)[index.ravel()]

@@ -12,5 +12,4 @@ packages    what this project's own packages add, installed or not;  installed: 
 probe       compiled kernel of a plug-in by its declared signature, and trial calls of it before a run
 shown       short texts and tables of results, for terminals and notebooks
 estimate    sentences of how an error was estimated, an enumeration
-orphans     end of worker processes
 """

@@ -339,7 +339,7 @@ class Result(Answer):
         RacewayError
             matplotlib is missing; no such picture, or no data for it.
         """
-        from raceway.plugins.formats.pictures import plot
+        from raceway.plugins.formats import plot
 
         return plot(self, what, ax)
 
@@ -416,7 +416,7 @@ class Result(Answer):
 
     def drawings(self) -> dict[str, Figure]:
         """Orbit, spectrum and ball loads, as far as there is data."""
-        from raceway.plugins.formats.pictures import drawings
+        from raceway.plugins.formats import drawings
 
         return drawings(self)
 

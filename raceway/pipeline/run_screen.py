@@ -11,7 +11,7 @@ from raceway.framework.registry import default_registry
 from raceway.pipeline import run_parts
 from raceway.pipeline.content import Content
 from raceway.pipeline.run_parts import bodies_rows, cost_row, equilibrium_rows, error_rows, orbit_rows, stability_rows
-from raceway.scene.sets import GEOMETRY, signs_of
+from raceway.scene.designation import GEOMETRY, signs_of
 from raceway.storage.tables import ReadTables
 
 #: An orbit whose minor axis is a smaller share of the major one is a line: the rest is rounding.

@@ -38,7 +38,7 @@ from raceway.framework.estimate import Estimate, Note
 from raceway.framework.registry import default_registry
 from raceway.pipeline.identified import Identified
 from raceway.pipeline.simulate import OnProgress, Simulation, last_turn, settles_elsewhere, simulate, steady_record
-from raceway.plugins.identifiers.one_frequency import whole_turns
+from raceway.plugins.identifiers import whole_turns
 
 #: Free vibrations below this share of the 1x power shift nothing that can be seen.
 _LEAST_FREE = 1e-10

@@ -28,8 +28,7 @@ from raceway.pipeline.quantities import plugins_stating, solved_point, stated_nu
 from raceway.planning.columns import column_problem, why_not
 from raceway.planning.plan import ScenePlan, make_plan, plan_of
 from raceway.planning.resolve import Problem, resolve
-from raceway.plugins.quantities.heat import NO_THINNING, ZERO_C
-from raceway.plugins.quantities.thermal_network import thermal_network
+from raceway.plugins.quantities.heat import NO_THINNING, ZERO_C, thermal_network
 from raceway.scene.keys import with_columns
 from raceway.scene.scene import Scene
 from raceway.storage.tables import Tables

@@ -2,7 +2,7 @@
 
 plan      the plan of a scene; its mistakes and warnings
 resolve   the problem of a scene: its tables, and what follows from them, each computed once
-parts     balls, bodies, motion and output, each kept or left out with its reason
+parts     balls, bodies, motion and output, each kept or left out with its reason; predicted time of a run, speed of this machine
 rules     combinations that cannot run; values that are possible and unlikely
-cost      closed formulas for first guesses, predicted time of a run, speed of this machine;  columns: scenes and keys that are solved in columns
+columns   scenes and keys that are solved in columns
 """

@@ -16,8 +16,16 @@ from raceway.errors import Mistake, SceneError, short
 from raceway.framework.contracts import said
 from raceway.framework.doors import PATHS, TEXTS, door
 from raceway.framework.shown import Fact, Shown, duration
-from raceway.planning.cost import START_S, slowness
-from raceway.planning.parts import Decisions, Part, decide_balls, decide_motion, decide_output, decide_tilts
+from raceway.planning.parts import (
+    START_S,
+    Decisions,
+    Part,
+    decide_balls,
+    decide_motion,
+    decide_output,
+    decide_tilts,
+    slowness,
+)
 from raceway.planning.resolve import Problem, refuse_memory, resolve
 from raceway.planning.rules import foreseen, refuse_what_cannot_run, scene_warnings
 from raceway.scene.scene import SCENE, Scene, as_scene

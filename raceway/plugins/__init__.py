@@ -1,11 +1,11 @@
-"""Built-in plug-ins beside contact laws and integrators, a folder a kind.
+"""Built-in plug-ins beside contact laws and integrators, a folder or a file a kind.
 
 excitations  forces
-identifiers  dynamic stiffness from motion
+identifiers  dynamic stiffness from motion, by one frequency or along a changing speed
 bodies       what rings and balls are made of
 quantities   lives, friction, temperatures, films, ball-pass frequencies
 meshers      hexahedra of the bodies
-executors    processes and clusters for many points
+executors    processes and clusters for many points, and how workers end
 formats      pictures and labelled arrays of one run
 system_libraries   system libraries that packages for meshes and pictures need
 """
@@ -26,11 +26,11 @@ def raceway_excitations() -> dict[str, str]:
 @hookimpl
 def raceway_identifiers() -> dict[str, str]:
     return {
-        "fft_1x": "raceway.plugins.identifiers.one_frequency:Fft1x",
-        "sine_fit": "raceway.plugins.identifiers.one_frequency:SineFit",
-        "tangent": "raceway.plugins.identifiers.one_frequency:Tangent",
-        "impedance_fit": "raceway.plugins.identifiers.one_frequency:ImpedanceFit",
-        "order_tracking": "raceway.plugins.identifiers.order_tracking:OrderTracking",
+        "fft_1x": "raceway.plugins.identifiers:Fft1x",
+        "sine_fit": "raceway.plugins.identifiers:SineFit",
+        "tangent": "raceway.plugins.identifiers:Tangent",
+        "impedance_fit": "raceway.plugins.identifiers:ImpedanceFit",
+        "order_tracking": "raceway.plugins.identifiers:OrderTracking",
     }
 
 
@@ -46,22 +46,22 @@ def raceway_bodies() -> dict[str, str]:
 
 @hookimpl
 def raceway_meshers() -> dict[str, str]:
-    return {"structured": "raceway.plugins.meshers.structured:Structured"}
+    return {"structured": "raceway.plugins.meshers:Structured"}
 
 
 @hookimpl
 def raceway_formats() -> dict[str, str]:
-    return {"pictures": "raceway.plugins.formats.pictures:Pictures"}
+    return {"pictures": "raceway.plugins.formats:Pictures"}
 
 
 @hookimpl
 def raceway_quantities() -> dict[str, str]:
     return {
-        "ball_pass": "raceway.plugins.quantities.ball_pass:BallPass",
+        "ball_pass": "raceway.plugins.quantities.kinematics:BallPass",
         "film": "raceway.plugins.quantities.film:FilmThickness",
         "film_parameter": "raceway.plugins.quantities.film:FilmParameter",
         "friction": "raceway.plugins.quantities.friction:Friction",
-        "sliding": "raceway.plugins.quantities.sliding:Sliding",
+        "sliding": "raceway.plugins.quantities.kinematics:Sliding",
         "life": "raceway.plugins.quantities.life:Life",
         "heat": "raceway.plugins.quantities.heat:Temperatures",
     }
@@ -70,7 +70,7 @@ def raceway_quantities() -> dict[str, str]:
 @hookimpl
 def raceway_executors() -> dict[str, str]:
     return {
-        "serial": "raceway.plugins.executors.processes:Serial",
-        "processes": "raceway.plugins.executors.processes:Processes",
-        "dask": "raceway.plugins.executors.dask:Dask",
+        "serial": "raceway.plugins.executors:Serial",
+        "processes": "raceway.plugins.executors:Processes",
+        "dask": "raceway.plugins.executors:Dask",
     }

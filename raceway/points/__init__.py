@@ -1,13 +1,13 @@
 """One scene at many points, and one engine that computes them: in, rows out as they finish, kept and resumed, by any executor.
 
-axes        values along keys of a scene, lists and grids of points;  survey: mistakes, plug-ins and files in them
+axes        values along keys of a scene, lists and grids of points
 engine      items of work, versions and plug-ins that decide a row;  timing: runs with their cost
 store       rows and states on disk;  dataset: labelled results, NetCDF and CSV
 sweep       ``raceway.sweep``;  selection: a part of it;  plot: its pictures
 compare     ``raceway.compare``;  effects: two-level factorial analysis and findings in words
 precision   ``raceway.precision``: error against run time;  settings: what is run, and the reference;  precision_picture: page
 band        ``raceway.band``;  sensitivities: derivatives by every number of a scene
-workload    size and cost of points before any is computed
+workload    points before any is computed: mistakes, plug-ins and files in them, size and cost
 function    ``raceway.function``: quantities as a function of arrays;  column_quantities: what it computes, with derivatives
 follow, parameter, branch, attractor    ``raceway.follow``: the branch of steady orbits over a continuous key
 law         ``raceway.law``: one contact of a bearing with any installed contact law, beside Hertz'

@@ -32,7 +32,7 @@ from raceway.points.function import function
 from raceway.points.sensitivities import Sensitivities, sensitivities
 from raceway.points.store import row_key, written
 from raceway.points.workload import Workload, of_columns, run_times
-from raceway.scene.changes import without
+from raceway.scene.inputs import without
 from raceway.scene.keys import continuous_keys, with_number
 from raceway.scene.scene import Scene, SceneSource, as_scene, scene_from_dict
 from raceway.scene.tolerance import Tolerance, stated_tolerances, tolerances_of

@@ -31,9 +31,9 @@ from raceway.points.dataset import axis_labels
 from raceway.points.effects import MOVING, Findings, Row, enumeration, explain, in_few_words
 from raceway.points.engine import Item, local, work_through
 from raceway.points.store import row_key, tables_key, written
-from raceway.points.survey import key_facts
+from raceway.points.workload import key_facts
+from raceway.scene.designation import GEOMETRY
 from raceway.scene.scene import SceneSource, plain_tables, scene_from_dict
-from raceway.scene.sets import GEOMETRY
 from raceway.scene.tables import AutoIntegrator
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables

@@ -24,7 +24,7 @@ from raceway.points.axes import Design, is_number
 from raceway.points.column_quantities import MOVING
 from raceway.points.function import PointStatus
 from raceway.points.store import DAMAGED, POINTS, Store, connected, told
-from raceway.points.survey import key_facts
+from raceway.points.workload import key_facts
 from raceway.scene.scene import Scene, scene_from_dict
 from raceway.storage.files import scratch_file, write_whole
 from raceway.storage.tables import ReadTables, Tables

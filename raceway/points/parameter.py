@@ -22,7 +22,7 @@ from raceway.framework.contracts import Excitation
 from raceway.framework.registry import Registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.points.axes import numbers_at
-from raceway.scene.changes import parse_value, with_value
+from raceway.scene.inputs import parse_value, with_value
 from raceway.scene.keys import key_of, with_number
 from raceway.scene.scene import Scene, scene_from_dict
 from raceway.scene.units import number_in

@@ -41,8 +41,7 @@ from raceway.points.settings import (
 )
 from raceway.points.store import Store, written
 from raceway.points.timing import Measured, measured_once
-from raceway.scene.changes import parse_change
-from raceway.scene.inputs import tidy
+from raceway.scene.inputs import parse_change, tidy
 from raceway.scene.scene import SceneSource, plain_tables
 from raceway.storage.files import writable
 from raceway.storage.tables import Tables

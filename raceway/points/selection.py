@@ -17,7 +17,7 @@ from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
 from raceway.points.axes import is_number, shown
 from raceway.points.dataset import FINISHED, open_store
-from raceway.scene.changes import parse_value
+from raceway.scene.inputs import parse_value
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:

@@ -31,8 +31,7 @@ from raceway.points.dataset import DOF, SweepStore, all_failed, block_edges, dat
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
 from raceway.points.function import BLOCK, Function, PointStatus, refuse_bytes
 from raceway.points.store import Row, exists, written
-from raceway.points.survey import survey
-from raceway.points.workload import Workload, of_columns, run_times
+from raceway.points.workload import Workload, of_columns, run_times, survey
 from raceway.scene.keys import continuous_keys
 from raceway.scene.scene import Scene, SceneSource, plain_tables, scene_from_dict
 from raceway.storage.files import writable

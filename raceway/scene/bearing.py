@@ -12,7 +12,7 @@ from raceway.core.columns import acos, cos, has_columns, radians, sin, some, wit
 from raceway.errors import MeshError, SceneError
 from raceway.framework.options import at_least, between, finite, inside, length, one_of, option, optional, positive
 from raceway.framework.rules import Rule, speaking
-from raceway.scene.sets import GEOMETRY, RATINGS, arrangement, places_of, signs_of, travel
+from raceway.scene.designation import GEOMETRY, RATINGS, arrangement, places_of, signs_of, travel
 
 #: Young's moduli of bearing steels [Pa], 206 to 212 GPa in catalogues with 1 % on either side, and their thermal expansion [1/K].
 STEEL, STEEL_EXPANSION = (2.04e11, 2.14e11), 12.5e-6
@@ -139,7 +139,7 @@ class Bearing:
         self._check_set()
         for profile, inner in ((self.inner_profile, True), (self.outer_profile, False)):
             if profile is not None:
-                from raceway.core.fem.mesh.ring_mesh import ring_shape
+                from raceway.core.fem.mesh.part_meshes import ring_shape
 
                 try:
                     ring_shape(self, inner)

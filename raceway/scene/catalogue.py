@@ -26,7 +26,7 @@ import attrs
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
 from raceway.scene.bearing import Material
-from raceway.scene.sets import RATINGS
+from raceway.scene.designation import RATINGS
 from raceway.storage.tables import ReadTables, Tables, nested
 
 if TYPE_CHECKING:

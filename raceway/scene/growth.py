@@ -40,7 +40,7 @@ def ring_inertia(bearing: Bearing) -> tuple[Number, Number, Number]:
 def _moments(b: Bearing, depth: Number) -> tuple[Number, Number, Number] | None:
     """Volume [m3] of one inner ring, transverse and polar inertia over density [m5]; None when bore or width are not known."""
     if b.inner_profile is not None:
-        from raceway.core.fem.mesh.ring_mesh import ring_shape
+        from raceway.core.fem.mesh.part_meshes import ring_shape
 
         if has_columns(b):
             each = np.array([ring_shape(at_row(b, point), True).moments for point in range(length(b))])
@@ -70,7 +70,7 @@ def _growth(b: Bearing, depth: Number) -> Number:
 
     if not has_columns(b):
         return RingSection.of(b, depth).growth(young, poisson)
-    from raceway.core.chebyshev import interpolated
+    from raceway.core.columns import interpolated
 
     numbers: tuple[Number, ...] = (b.bore, b.width, b.pitch_diameter, b.ball_diameter, b.conformity_inner, b.contact_angle)
     points = np.stack(np.broadcast_arrays(*numbers, depth, poisson, np.zeros(length(b))))

@@ -8,7 +8,7 @@ import attrs
 from raceway.core.columns import Number, with_values
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
-from raceway.scene.changes import steps_of
+from raceway.scene.inputs import steps_of
 from raceway.scene.tables import TABLES, SceneTables
 
 #: A scene, or what has its tables.

@@ -14,8 +14,18 @@ from raceway.errors import SceneError
 from raceway.framework.doors import PATH, TEXTS, door, reader
 from raceway.framework.registry import REGISTRY, Registry, default_registry, registry_with
 from raceway.framework.shown import Fact, Shown
-from raceway.scene.changes import leaves, parse_change, titled, value_at, with_value, without
-from raceway.scene.inputs import is_text, parse_toml, read_toml, tidy
+from raceway.scene.inputs import (
+    is_text,
+    leaves,
+    parse_change,
+    parse_toml,
+    read_toml,
+    tidy,
+    titled,
+    value_at,
+    with_value,
+    without,
+)
 from raceway.scene.reading import numbers_only, read_tables, with_paths
 from raceway.scene.tables import TABLES, AutoIntegrator, SceneTables, plain_table, told
 from raceway.scene.unused import without_inherited

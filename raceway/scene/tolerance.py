@@ -11,7 +11,7 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.options import nearest
-from raceway.scene.changes import leaves
+from raceway.scene.inputs import leaves
 from raceway.scene.keys import Key, key_of, with_number
 from raceway.scene.tables import SceneTables
 from raceway.scene.units import number_in

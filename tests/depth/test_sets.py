@@ -13,8 +13,8 @@ from checks.validation.reference.row_set import RowSet, press, press_together
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.bodies.mounting import preload_table
 from raceway.extend import make_basis, resolve, running_pairs
+from raceway.scene.designation import NAMES
 from raceway.scene.growth import ring_inertia
-from raceway.scene.sets import NAMES
 from raceway.testing import solve_equilibrium
 
 DISTANCE = 16e-3

@@ -9,7 +9,7 @@ from checks.validation.reference import elastic
 from raceway.core.contact.hertz import ball_compliance, normal_displacement
 from raceway.core.fem.elastic.resultant import LoadedBody, footprint, interpolation_at
 from raceway.core.fem.elastic.surface import Facets
-from raceway.core.fem.mesh.ball_mesh import ball_mesh
+from raceway.core.fem.mesh.part_meshes import ball_mesh
 from raceway.extend import HexOperator
 
 STEEL = YOUNG, POISSON, _ = 212e9, 0.29, 7810.0

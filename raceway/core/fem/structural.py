@@ -17,7 +17,7 @@ import numpy as np
 
 from raceway.core.contact.hertz import normal_displacement
 from raceway.core.fem.calibration import SOURCES, Calibration
-from raceway.core.fem.mesh.ring_mesh import RingShape
+from raceway.core.fem.mesh.part_meshes import RingShape
 from raceway.core.fem.revolution.body import (
     Revolution,
     along_normal,

@@ -11,8 +11,7 @@ from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.duties import is_hertzian, is_swept
 from raceway.framework.rules import Rule, mistakes
-from raceway.planning.cost import START_S, Times, compiled_motion, runs
-from raceway.planning.parts import BETWEEN_BALLS, Balls, Decisions, PlannedMotion
+from raceway.planning.parts import BETWEEN_BALLS, START_S, Balls, Decisions, PlannedMotion, Times, compiled_motion, runs
 from raceway.planning.resolve import Problem
 from raceway.plugins.bodies.mesh import unrefined
 from raceway.scene.tables import SceneTables

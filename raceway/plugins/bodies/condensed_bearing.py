@@ -15,7 +15,7 @@ from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import RigidBearing
 from raceway.core.contact.hertz import ball_compliance
 from raceway.core.fem.calibration import calibrated
-from raceway.core.fem.mesh.ring_mesh import RingShape, ring_shape
+from raceway.core.fem.mesh.part_meshes import RingShape, ring_shape
 from raceway.core.fem.patches.patch import RingBody, Solid
 from raceway.core.fem.revolution.sections import Profile
 from raceway.core.fem.structural import (

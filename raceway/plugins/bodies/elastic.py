@@ -13,8 +13,7 @@ from raceway.framework.contracts import Cost, Traits, said
 from raceway.framework.duties import is_constraint, is_hertzian, is_swept
 from raceway.framework.options import one_of, option, positive
 from raceway.framework.rules import Rule, mistakes
-from raceway.planning.cost import START_S
-from raceway.planning.parts import Balls, Decisions, PlannedMotion
+from raceway.planning.parts import START_S, Balls, Decisions, PlannedMotion
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.plugins.bodies.condensed import section_cost

@@ -14,7 +14,7 @@ from raceway.bodies.contacts import elasticity, rigid_rings
 from raceway.bodies.model import BuiltBearing, Equilibrium, Model, Told, overlap
 from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import probe, rigid_system, with_hertz
-from raceway.core.fem.mesh.ring_mesh import ring_shape
+from raceway.core.fem.mesh.part_meshes import ring_shape
 from raceway.core.fem.patches.patch import Patch, RingBody, Solid, Spacing, make_ball, make_patch
 from raceway.core.fem.patches.pressure import (
     BeyondPatch,

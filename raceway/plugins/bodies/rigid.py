@@ -8,8 +8,7 @@ import attrs
 
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
-from raceway.planning.cost import START_S, Times, compiled_motion
-from raceway.planning.parts import Balls, Decisions, PlannedMotion
+from raceway.planning.parts import START_S, Balls, Decisions, PlannedMotion, Times, compiled_motion
 from raceway.planning.resolve import Problem
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.duties import line_contact
 from raceway.framework.options import at_least, option, positive
-from raceway.planning.cost import START_S, Times, compiled_motion
+from raceway.planning.parts import START_S, Times, compiled_motion
 from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:

@@ -1,8 +1,8 @@
 """Quantities of solved points.
 
 life       reference and modified life, equivalent load, static safety
-friction   friction torque and power loss by source, and Palmgren's rule of thumb;  sliding: traction that rolling balls need
-heat       temperatures;  thermal_network: what they follow from
+friction   friction torque and power loss by source, and Palmgren's rule of thumb
+heat       temperatures, and the thermal network that they follow from
 film       film thickness and parameter
-ball_pass  ball-pass frequencies
+kinematics   ball-pass frequencies, and the traction that rolling balls need
 """

@@ -11,8 +11,7 @@ from raceway.core.contact.hertz import normal_displacement
 from raceway.core.fem.elastic.contact import Contact, PlaceLaw
 from raceway.core.fem.elastic.linear_statics import StaticSolver
 from raceway.core.fem.elastic.surface import Facets
-from raceway.core.fem.hexahedron.shape import shape_values
-from raceway.core.fem.mesh.hex_mesh import shape_slopes
+from raceway.core.fem.mesh.hex_mesh import shape_slopes, shape_values
 from raceway.errors import ConvergenceError
 
 if TYPE_CHECKING:

@@ -6,8 +6,7 @@ import numpy as np
 from raceway.core.fem.elastic.contact import NodalContact
 from raceway.core.fem.hexahedron.operator import HexOperator
 from raceway.core.fem.hexahedron.rows import centre_stress, largest_shear, von_mises
-from raceway.core.fem.hexahedron.shape import Floats
-from raceway.core.fem.mesh.hex_mesh import CORNERS
+from raceway.core.fem.mesh.hex_mesh import CORNERS, Floats
 
 #: Coefficients; radius R in elements, the fewest centres of a fit, how much wider it is made where these do not determine all
 #: coefficients, and ratio of singular values below which they do not.

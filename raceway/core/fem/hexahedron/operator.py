@@ -16,7 +16,6 @@ from raceway.core.fem.hexahedron.rows import (
     nodal_volumes,
     stable_step,
 )
-from raceway.core.fem.hexahedron.shape import Floats
 from raceway.core.fem.hexahedron.stiffness import (
     WORK,
     Mesh,
@@ -26,6 +25,7 @@ from raceway.core.fem.hexahedron.stiffness import (
     stiffnesses,
 )
 from raceway.core.fem.hexahedron.strain import KINDS
+from raceway.core.fem.mesh.hex_mesh import Floats
 from raceway.core.threads import Job, ThreadPool
 from raceway.errors import MeshError
 

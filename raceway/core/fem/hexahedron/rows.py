@@ -14,17 +14,17 @@ import numpy as np
 from numba import int32, int64, uint64, void
 from numpy.typing import NDArray
 
-from raceway.core.fem.hexahedron.shape import (
+from raceway.core.fem.hexahedron.stiffness import WIDTH, add_to_sparse
+from raceway.core.fem.mesh.hex_mesh import (
     Floats,
     centre_gradients,
     determinants,
     gauss,
     jacobians,
     mean_gradients,
+    shape_slopes,
     shape_values,
 )
-from raceway.core.fem.hexahedron.stiffness import WIDTH, add_to_sparse
-from raceway.core.fem.mesh.hex_mesh import shape_slopes
 from raceway.core.jit import jit
 from raceway.core.signatures import CUBE, VECTOR
 from raceway.errors import MeshError

@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import float64, int32, int64, types, uint32, uint64, void
 
-from raceway.core.fem.hexahedron.shape import HOURGLASS
 from raceway.core.fem.hexahedron.strain import (
     COLUMNS,
     ELEMENT,
@@ -17,6 +16,7 @@ from raceway.core.fem.hexahedron.strain import (
     square,
     strain_matrices,
 )
+from raceway.core.fem.mesh.hex_mesh import HOURGLASS
 from raceway.core.jit import jit
 from raceway.core.ring.elimination import eliminate
 from raceway.core.signatures import CUBE, MATRIX, VECTOR, record

@@ -18,8 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import float64, int64, types, void
 
-from raceway.core.fem.hexahedron.shape import gauss
-from raceway.core.fem.mesh.hex_mesh import shape_slopes
+from raceway.core.fem.mesh.hex_mesh import gauss, shape_slopes
 from raceway.core.jit import jit
 from raceway.core.signatures import CUBE, MATRIX, VECTOR, record
 

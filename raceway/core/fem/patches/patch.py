@@ -12,7 +12,7 @@ from math import ceil, cos, pi
 import attrs
 import numpy as np
 
-from raceway.core.fem.mesh.ring_mesh import RingShape
+from raceway.core.fem.mesh.part_meshes import RingShape
 from raceway.core.fem.patches.gap import Points
 from raceway.core.fem.revolution.body import Revolution, groove_compliance
 from raceway.core.fem.revolution.sections import Profile, ball_profile, dofs, graded_profile

@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 
 from raceway.core.fem.mesh.hex_mesh import floats, growing, integers
-from raceway.core.fem.mesh.ring_mesh import RingShape
+from raceway.core.fem.mesh.part_meshes import RingShape
 from raceway.errors import MeshError
 
 

@@ -8,10 +8,9 @@ import numpy as np
 
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
-from raceway.core.fem.mesh.ball_mesh import CUBE, ball_cells, ball_mesh
 from raceway.core.fem.mesh.hex_mesh import HexMesh, azimuth, ball_names, graded, growing, placed
+from raceway.core.fem.mesh.part_meshes import CUBE, RingShape, ball_cells, ball_mesh, ring_mesh, ring_shape
 from raceway.core.fem.mesh.quality import Prediction, refuse_coarse, refuse_memory
-from raceway.core.fem.mesh.ring_mesh import RingShape, ring_mesh, ring_shape
 from raceway.errors import MeshError
 from raceway.framework.options import between, option, positive, word_or
 from raceway.scene.bearing import Bearing

@@ -1,12 +1,20 @@
-"""Workers of a dask.distributed scheduler, on this machine or on a cluster."""
+"""Executors of many points: in this process, in processes of this machine by joblib's loky, workers of a dask.distributed scheduler.
+
+A batch that hangs or kills its process costs that batch only: each process is a pool of its own.  Workers end
+with the process that they work for, when it is killed, and by its word alone, when it is asked to end.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import math
+import os
+import signal
+import threading
 import time
 import warnings
 from collections.abc import Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager, suppress
 from operator import methodcaller
 from typing import TYPE_CHECKING, ClassVar
@@ -16,10 +24,175 @@ import attrs
 from raceway.errors import PluginError, extra
 from raceway.framework.contracts import Answer, Batch, Lost, Refused, Work
 from raceway.framework.options import between, inside, option, optional
-from raceway.framework.orphans import deaf_to_terminals, start_tracker
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client
+    from distributed import Future as DaskFuture
+
+
+#: Name of the thread that looks, and how often it does [s].
+WATCH, _WATCH_S = "end with parent", 1.0
+
+
+def end_with(parent: int) -> None:
+    """In a worker: end when the process of this number is no longer its parent.
+
+    Called when the worker begins, before it has anything to do: pools keep workers that wait, some for minutes.
+    """
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(_WATCH_S)
+        os._exit(1)
+
+    threading.Thread(target=watch, name=WATCH, daemon=True).start()
+
+
+@contextmanager
+def deaf_to_terminals() -> Iterator[None]:
+    """Threads and processes that are started meanwhile do not hear Ctrl-C and SIGHUP, which a terminal sends to all.
+
+    They inherit what is blocked.  What arrives here meanwhile is delivered afterwards.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def start_tracker() -> None:
+    """Start what clears up behind processes of Python, before the first of them.
+
+    Python starts it with the first process and lets that thread hear Ctrl-C again afterwards, and so the process, too.
+    """
+    from multiprocessing import resource_tracker
+
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    resource_tracker.ensure_running()
+    signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
+
+
+@attrs.frozen
+class Serial:
+    """One point after the other, in this process: no start-up, and the debugger's choice."""
+
+    name: ClassVar[str] = "serial"
+
+    def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
+        yield from ((number, work(points)) for number, points in batches)
+
+
+#: What a process may take to import the program, beyond the patience with its first batch [s].
+_START_S = 120.0
+#: Numbers of threads of libraries, 1 where the user says nothing: the cores are the processes' already.
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@attrs.frozen
+class Processes:
+    """Processes on this machine, each with one thread; one that dies is replaced, one that hangs is ended."""
+
+    name: ClassVar[str] = "processes"
+
+    workers: int = option(2, help="parallel processes", rule=between(1, 1024))
+    patience: float = option(
+        1e7, unit="s", help="a batch that takes longer is taken as hung and stopped", rule=between(0.1, 1e9)
+    )
+
+    def compute(self, work: Work, batches: Iterable[Batch]) -> Iterator[Answer]:
+        waiting, tried = iter(batches), set[int]()
+        again: list[Batch] = []
+        idle: list[_Worker] = []
+        busy: dict[Future[object], tuple[_Worker, Batch]] = {}
+
+        def following() -> Batch | None:
+            return again.pop() if again else next(waiting, None)
+
+        batch = following()
+        try:
+            while batch is not None or busy:
+                while batch is not None and len(busy) < self.workers:
+                    worker = idle.pop() if idle else _Worker(work)
+                    busy[worker.begin(work, batch)] = worker, batch
+                    batch = following()
+                done, _ = wait(busy, timeout=1.0, return_when=FIRST_COMPLETED)
+                late = {future for future, (worker, _) in busy.items() if time.monotonic() - worker.begun > self.patience}
+                for future in done | late:
+                    worker, sent = busy.pop(future)
+                    idle.append(worker)
+                    answer = worker.answer(future, self.patience)
+                    if isinstance(answer, Lost):
+                        idle.remove(worker)
+                        worker.end()
+                        if worker.died and sent[0] not in tried:
+                            tried.add(sent[0])
+                            again.append(sent)
+                            continue
+                    yield sent[0], answer
+                batch = batch or following()
+        finally:
+            for worker in [*idle, *(worker for worker, _ in busy.values())]:
+                worker.end()
+
+
+class _Worker:
+    """One process, the only one of its pool."""
+
+    def __init__(self, work: Work) -> None:
+        from joblib.externals.loky import ProcessPoolExecutor
+        from joblib.externals.loky.backend.resource_tracker import ensure_running
+
+        environment = {name: os.environ.get(name, "1") for name in _THREADS}
+        with deaf_to_terminals():
+            ensure_running()  # it clears up behind the workers, and must outlive them
+        with deaf_to_terminals():
+            start_tracker()
+            self.pool = ProcessPoolExecutor(1, initializer=_begin, initargs=(os.getpid(),), env=environment)
+            self.ready = self.pool.submit(type, work)  # imports the program
+        self.begun, self.died = time.monotonic() + _START_S, False
+        self.ready.add_done_callback(self._start)
+
+    def _start(self, *_: object) -> None:
+        """The time of its batch begins."""
+        self.begun = time.monotonic()
+
+    def begin(self, work: Work, batch: Batch) -> Future[object]:
+        from joblib.externals.loky.process_executor import BrokenProcessPool
+
+        if self.ready.done():
+            self._start()
+        try:
+            return self.pool.submit(work, batch[1])
+        except BrokenProcessPool as why:  # it died while it had nothing to do
+            future = Future[object]()
+            future.set_exception(why)
+            return future
+
+    def answer(self, future: Future[object], patience: float) -> object:
+        from joblib.externals.loky.process_executor import BrokenProcessPool
+
+        if not future.done():
+            return Lost(f"no answer within {patience:g} s: it hangs")
+        try:
+            return future.result()
+        except BrokenProcessPool as why:
+            if self.ready.exception() is not None:
+                raise PluginError(f"processes cannot be started: {why}") from None
+            self.died = True
+            return Lost(f"its process died ({str(why).partition('{')[2].partition('}')[0]})")
+
+    def end(self) -> None:
+        self.pool.shutdown(kill_workers=True)
+
+
+def _begin(parent: int) -> None:
+    """In a process, before its first batch."""
+    from joblib.externals.loky import process_executor
+
+    # Otherwise loky replaces, with a warning, a process that grows by 300 MB, as elastic bodies make it.
+    process_executor._MAX_MEMORY_LEAK_SIZE = math.inf
+    end_with(parent)
 
 
 #: How often the list of workers is looked at [s].
@@ -90,7 +263,7 @@ class _Flight:
         self.unfit: dict[str, str] = {}
         self.fit: set[str] = set()
         #: future -> its batch, and the workers that it is bound to (none: any)
-        self.flying: dict[Future, tuple[Batch, frozenset[str]]] = {}
+        self.flying: dict[DaskFuture, tuple[Batch, frozenset[str]]] = {}
         self.refusals: dict[int, int] = {}
         self.looked, self.alone_since = -_LOOK_S, time.monotonic()
 
@@ -197,7 +370,7 @@ def _greet(address: str, patience: float) -> None:
         thread.submit(asyncio.run, meet()).result()
 
 
-def _outcome(future: Future) -> object:
+def _outcome(future: DaskFuture) -> object:
     from distributed import KilledWorker
 
     try:

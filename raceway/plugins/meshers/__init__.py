@@ -1,4 +1,0 @@
-"""Meshers.
-
-structured   hexahedra of a whole bearing
-"""
