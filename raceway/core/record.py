@@ -207,21 +207,18 @@ class State:
 
 @attrs.frozen(eq=False)
 class Observation:
-    """What a ``Record`` keeps of one step.
+    """What a ``Record`` keeps of one step."""
 
-    displacement, velocity : (5,) of the ring's reference point
-    gap, contact_force : (2 Z,) inner races first [m, N]
-    ball : (Z, 2 or 4) positions (and slips) of the balls [m]
-    energies : name -> [J]; the same names at every step, none where the system has none.  "elastic", "kinetic" and
-        "contact" are stored (sticking friction's springs in "contact"), "friction" and "damping" lost since the beginning,
-        "hourglass" is a part of "elastic"; the recorder adds "external", the work of all outer forces
-    """
-
+    #: displacement, velocity : (5,) of the ring's reference point
     displacement: np.ndarray
     velocity: np.ndarray
+    #: gap, contact_force : (2 Z,) inner races first [m, N]
     gap: np.ndarray
     contact_force: np.ndarray
-    ball: np.ndarray
+    ball: np.ndarray  # (Z, 2 or 4) positions (and slips) of the balls [m]
+    #: name -> [J]; the same names at every step, none where the system has none.  "elastic", "kinetic" and "contact" are
+    #: stored (sticking friction's springs in "contact"), "friction" and "damping" lost since the beginning, "hourglass" is a
+    #: part of "elastic"; the recorder adds "external", the work of all outer forces
     energies: dict[str, float] = attrs.field(factory=dict)
 
 

@@ -44,46 +44,29 @@ _REPEATS = 0.01
 
 @attrs.frozen(eq=False)
 class Start:
-    """How a motion begins.
+    """How a motion begins."""
 
-    Attributes
-    ----------
-    kind : "orbit", "ramp" or "static"
-    orbit : that it begins on
-    orbits : ``motion.orbits`` of result.json: the steady motions that were found in the search for it
-    repeats : False where turns need not repeat: no orbit was found, or only one that is unstable
-    warnings : what a user should know
-    """
-
-    kind: str
-    orbit: Orbit | None = None
+    kind: str  # "orbit", "ramp" or "static"
+    orbit: Orbit | None = None  # that it begins on
+    #: ``motion.orbits`` of result.json: the steady motions that were found in the search for it
     orbits: tuple[Tables, ...] = ()
-    repeats: bool = True
-    warnings: tuple[str, ...] = ()
+    repeats: bool = True  # False where turns need not repeat: no orbit was found, or only one that is unstable
+    warnings: tuple[str, ...] = ()  # what a user should know
 
 
 @attrs.frozen(eq=False)
 class Simulation:
-    """A recorded motion.
+    """A recorded motion."""
 
-    Attributes
-    ----------
-    model, equilibrium : that it is a motion of, and about
-    record : the turns that identification uses;  whole : all of them
-    critical_time_step : stable limit of explicit steps at the stiffest state known before the run [s]
-    start : how it began
-    warnings : what a user should know
-    near : the similar scene's that it was given
-    """
-
+    #: model, equilibrium : that it is a motion of, and about
     model: Model
     equilibrium: Equilibrium
-    record: Record
-    whole: Record
-    critical_time_step: float | None
-    start: Start
-    warnings: tuple[str, ...]
-    near: Simulation | None = None
+    record: Record  # the turns that identification uses
+    whole: Record  # all of them
+    critical_time_step: float | None  # stable limit of explicit steps at the stiffest state known before the run [s]
+    start: Start  # how it began
+    warnings: tuple[str, ...]  # what a user should know
+    near: Simulation | None = None  # the similar scene's that it was given
 
     @property
     def steps_per_turn(self) -> int:
@@ -254,21 +237,14 @@ def recording_stride(steps_per_turn: int, turns: int, inertial: bool = True) -> 
 
 @attrs.define
 class SteadyMotions:
-    """Steady motions of an excitation that changes its speed, speed by speed; each is solved for once.
-
-    Attributes
-    ----------
-    on_progress : called in the searches, which what it raises ends
-    values : Z [N/m] by speed [rad/s]
-    last : the motion at the last speed; where several exist, the next one continues it, as the motion that is integrated does
-    missed : speeds in a row without a motion; after some, none is searched for
-    """
+    """Steady motions of an excitation that changes its speed, speed by speed; each is solved for once."""
 
     model: Model
-    on_progress: OnProgress | None = None
-    values: dict[float, complex | None] = attrs.field(factory=dict)
+    on_progress: OnProgress | None = None  # called in the searches, which what it raises ends
+    values: dict[float, complex | None] = attrs.field(factory=dict)  # Z [N/m] by speed [rad/s]
+    #: the motion at the last speed; where several exist, the next one continues it, as the motion that is integrated does
     last: Record | None = None
-    missed: int = 0
+    missed: int = 0  # speeds in a row without a motion; after some, none is searched for
 
     def value(self, speed: float) -> complex | None:
         """Z [N/m] at one speed [rad/s]; None where there is no motion that can be solved for, or none is found."""

@@ -74,16 +74,12 @@ def settled_value(run: Identified) -> complex | None:
 
 @attrs.frozen
 class Clean:
-    """Z without leakage [N/m]; what the free vibration shifts it by, still in it [N/m]; how both were found.
-
-    Attributes
-    ----------
-    halves : distance of Z of both halves of the turns [N/m]; None below four turns, whose halves are too short for the window
-    """
+    """Z without leakage [N/m]; what the free vibration shifts it by, still in it [N/m]; how both were found."""
 
     value: complex
     lasting: complex
     how: Note
+    #: distance of Z of both halves of the turns [N/m]; None below four turns, whose halves are too short for the window
     halves: float | None = None
 
 

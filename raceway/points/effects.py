@@ -233,18 +233,13 @@ class Course:
 
 @attrs.frozen(eq=False, slots=False)
 class Findings:
-    """Findings of a comparison.
+    """Findings of a comparison."""
 
-    Attributes
-    ----------
-    title : of the scene;  axes, rows : in the order given, the last axis running fastest
-    notes : options that were left out, and the like
-    """
-
-    title: str
+    title: str  # of the scene
+    #: axes, rows : in the order given, the last axis running fastest
     axes: tuple[Axis, ...]
     rows: tuple[Row, ...]
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # options that were left out, and the like
 
     def axis(self, key: str) -> Axis:
         """The axis of a key that was varied."""

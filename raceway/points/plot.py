@@ -122,23 +122,21 @@ _MOST_PANELS = 6
 
 @attrs.frozen(eq=False)
 class _Layout:
-    """A picture of one quantity.
+    """A picture of one quantity."""
 
-    data : dimensions among ``x``, ``y`` and ``panels``, or ``point``; nan where there is no result; units and description in its
-        attributes
-    x, y : keys; in curves y is what the colours stand for and may be None
-    panels : key of one panel a value, or None;  title, remark : lines over the picture;  ends : of the quantity's interval, or none
-    """
-
+    #: dimensions among ``x``, ``y`` and ``panels``, or ``point``; nan where there is no result; units and description in its
+    #: attributes
     data: DataArray
     name: str
     kind: str
+    #: x, y : keys; in curves y is what the colours stand for and may be None
     x: str
     y: str | None
-    panels: str | None
+    panels: str | None  # key of one panel a value, or None
+    #: title, remark : lines over the picture
     title: str
     remark: str
-    ends: tuple[DataArray, ...]
+    ends: tuple[DataArray, ...]  # of the quantity's interval, or none
 
     def parts(self, factor: float) -> list[tuple[str, list[DataArray]]]:
         """Of each panel its words, and the numbers in a unit that people read, then the ends of their intervals."""

@@ -113,14 +113,12 @@ def load_at_edge(ellipse: Ellipse, ball_radius: float, angle: float) -> float:
 
 @attrs.frozen
 class Grooves:
-    """Growth of one row's grooves [m].
+    """Growth of one row's grooves [m]."""
 
-    axial, radial : of the vector from the outer to the inner groove centre, at rest
-    inner, outer : of the distance of groove centre and ball centre at the first touch
-    """
-
+    #: axial, radial : of the vector from the outer to the inner groove centre, at rest
     axial: float
     radial: float
+    #: inner, outer : of the distance of groove centre and ball centre at the first touch
     inner: float
     outer: float
 

@@ -109,17 +109,15 @@ _TABLES = {"nsk": "NSK", "gmn": "GMN", "nsk_deep_groove": "NSK", "nmb_deep_groov
 
 @attrs.frozen(eq=False, repr=False)
 class _InferredTable(Answer):
-    """Inferred sizes of a table, and what could not be inferred.
-
-    table, maker : what was read;  sizes : how many, and ``internals`` of them with printed balls
-    answers : inferred sizes, and what is refused, in the order of the table: a name, or a reason by name
-    """
+    """Inferred sizes of a table, and what could not be inferred."""
 
     stem: ClassVar[str] = "inferred"
+    #: table, maker : what was read
     table: str
     maker: str | None
-    sizes: int
+    sizes: int  # how many, and ``internals`` of them with printed balls
     internals: int
+    #: inferred sizes, and what is refused, in the order of the table: a name, or a reason by name
     answers: list[Inferred | tuple[str, str]]
 
     @property

@@ -178,11 +178,9 @@ _UNSURE = 0.0125
 
 @attrs.frozen(eq=False)
 class ElasticResultants(ElasticBodies):
-    """A force for each ball and race.
+    """A force for each ball and race."""
 
-    compliances : of the bearing's own rings and balls, for the calibration of the law by contacts at surface points
-    """
-
+    #: of the bearing's own rings and balls, for the calibration of the law by contacts at surface points
     compliances: Compliances
 
     @property

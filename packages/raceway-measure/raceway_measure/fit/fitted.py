@@ -22,23 +22,20 @@ _SMALL = 0.02
 
 @attrs.frozen(eq=False)
 class Series:
-    """One measured quantity beside the fit.
+    """One measured quantity beside the fit."""
 
-    name, unit : of the quantity;  over, over_unit : of the abscissa
-    x, measured, fitted : (n,)
-    error : (n,) standard errors, by the residuals where none were stated
-    band : (n,) half-widths of the fitted curve at 95 %
-    """
-
+    #: name, unit : of the quantity
     name: str
     unit: str
+    #: over, over_unit : of the abscissa
     over: str
     over_unit: str
+    #: x, measured, fitted : (n,)
     x: np.ndarray
     measured: np.ndarray
     fitted: np.ndarray
-    error: np.ndarray
-    band: np.ndarray
+    error: np.ndarray  # (n,) standard errors, by the residuals where none were stated
+    band: np.ndarray  # (n,) half-widths of the fitted curve at 95 %
 
 
 @attrs.frozen

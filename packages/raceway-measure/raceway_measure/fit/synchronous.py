@@ -191,13 +191,11 @@ def slow_roll_run_out(slow: Synchronous, bearing: Bearing, shaft: Rotor, unbalan
 
 @attrs.frozen(eq=False)
 class _Response:
-    """The 1x response at the sensor against the unbalance: of a record, less its run-out.
+    """The 1x response at the sensor against the unbalance: of a record, less its run-out."""
 
-    run_out : that was subtracted
-    deflection, fourier : at the sensor [m], by least squares and by a Fourier transform of full turns; without pulses their sizes
-    """
-
-    run_out: RunOut
+    run_out: RunOut  # that was subtracted
+    #: deflection, fourier : at the sensor [m], by least squares and by a Fourier transform of full turns; without pulses
+    #: their sizes
     deflection: complex
     fourier: complex
 

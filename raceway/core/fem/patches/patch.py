@@ -140,17 +140,14 @@ class Patch:
 
 @attrs.frozen
 class Solid:
-    """Material and element formulation of a body.
+    """Material and element formulation of a body."""
 
-    young, poisson, formulation : [Pa, -], see ``raceway.core.fem.revolution.body``; between points of a contact "full" converges
-        faster than "incompatible" (at 4 points along a semi-axis the peak pressure is 0.4 % low, not 0.7 %)
-    bulk : size of elements far from the contacts [m]
-    """
-
+    #: young, poisson, formulation : [Pa, -], see ``raceway.core.fem.revolution.body``; between points of a contact "full"
+    #: converges faster than "incompatible" (at 4 points along a semi-axis the peak pressure is 0.4 % low, not 0.7 %)
     young: float
     poisson: float
     formulation: str = "full"
-    bulk: float = 0.8e-3
+    bulk: float = 0.8e-3  # size of elements far from the contacts [m]
 
 
 @attrs.frozen
@@ -228,16 +225,13 @@ class _FreeBall:
 
 @attrs.frozen
 class BallElements:
-    """Sizes of a ball's elements.
+    """Sizes of a ball's elements."""
 
-    divisions : sectors around the equator
-    lateral_step, half_width : distance of the nodes along the rolling direction, and up to where, as arc lengths [m]
-    depth_step, bulk : first layer below the surface, and elements far from it [m]
-    """
-
-    divisions: int
+    divisions: int  # sectors around the equator
+    #: lateral_step, half_width : distance of the nodes along the rolling direction, and up to where, as arc lengths [m]
     lateral_step: float
     half_width: float
+    #: depth_step, bulk : first layer below the surface, and elements far from it [m]
     depth_step: float
     bulk: float
 

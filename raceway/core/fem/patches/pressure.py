@@ -445,16 +445,13 @@ Window = tuple[float, float]
 
 @attrs.frozen
 class Reach:
-    """Extent that patches have to cover.
+    """Extent that patches have to cover."""
 
-    inner, outer : lowest and highest angle of points in contact [rad]
-    widest : largest minor semi-axis, with room [m]
-    mean_load, largest_load : of the balls that carry, on the inner race, and of all contacts [N]
-    """
-
+    #: inner, outer : lowest and highest angle of points in contact [rad]
     inner: Window
     outer: Window
-    widest: float
+    widest: float  # largest minor semi-axis, with room [m]
+    #: mean_load, largest_load : of the balls that carry, on the inner race, and of all contacts [N]
     mean_load: float
     largest_load: float
 
