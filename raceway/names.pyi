@@ -48,8 +48,6 @@ from .points.function import PointStatus as PointStatus
 from .points.function import function as function
 from .points.law import LawCurves as LawCurves
 from .points.law import law as law
-from .points.precision import Precision as Precision
-from .points.precision import precision as precision
 from .points.sensitivities import Sensitivities as Sensitivities
 from .points.sensitivities import sensitivities as sensitivities
 from .points.sweep import sweep as sweep

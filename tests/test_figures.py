@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from raceway_article import figures as article
 from raceway_catalogue import catalogue as drawing
+from raceway_checks.precision import picture as precision
 from raceway_measure.fit import picture as fits
 from raceway_measure.fit.shaft_angle import rotation_of
 from raceway_measure.fit.synchronous import synchronous
@@ -41,7 +42,6 @@ from raceway.points import branch as followed
 from raceway.points import compare as comparison
 from raceway.points import law as law_picture
 from raceway.points import plot as store_picture
-from raceway.points import precision_picture as precision
 from raceway.points import sensitivities as bars
 from raceway.points.branch import Label, Orbit
 from raceway.points.plot import layout

@@ -118,23 +118,6 @@ ANSWERS: tuple[Command | Later, ...] = (
         aliases=("sensitivities",),
     ),
 )
-TRUST = (
-    Command(
-        "precision",
-        "raceway.points.precision:precision",
-        "Error against run time of numerical settings.",
-        "raceway precision examples/b7206.toml \\\n"
-        "    --vary integrator.kind=newmark,central_difference \\\n"
-        "    --vary integrator.steps_per_turn=45,90,180,360",
-        {
-            "vary": Option(metavar="A.B=X,Y", help="Axis; all combinations are run; without, a default design"),
-            "reference": Option(metavar="A.B=C", help="Key of the reference; without, chosen automatically"),
-            "limit_s": Option("limit", "SECONDS", "Omit settings predicted to take longer."),
-        },
-        folder="-precision",
-        unchecked=True,
-    ),
-)
 DEVELOPERS = (
     Later("new-plugin", "raceway.cli.plugins:new_plugin_command", "Write a package for a new plug-in."),
     Later("check-plugin", "raceway.cli.plugins:check_plugin", "Test a plug-in against its contract."),
@@ -161,7 +144,6 @@ DEVELOPERS = (
 #: Heading in --help -> its commands.
 SECTIONS: dict[str, tuple[Command | Later, ...]] = {
     "Answers": ANSWERS,
-    "Trust": TRUST,
     "Studies": (Later("study", "raceway.cli.main:study", "Whole studies that end in a page, and others' studies."),),
     "Developers": (Later("dev", "raceway.cli.main:dev", "Plug-ins: templates, conformance, laws, schema, caches."),),
 }

@@ -5,7 +5,6 @@ engine      items of work, versions and plug-ins that decide a row;  timing: run
 store       rows and states on disk;  dataset: labelled results, NetCDF and CSV
 sweep       ``raceway.sweep``;  selection: a part of it;  plot: its pictures
 compare     ``raceway.compare``;  effects: two-level factorial analysis and findings in words
-precision   ``raceway.precision``: error against run time;  settings: what is run, and the reference;  precision_picture: page
 band        ``raceway.band``;  sensitivities: derivatives by every number of a scene
 workload    points before any is computed: mistakes, plug-ins and files in them, size and cost
 function    ``raceway.function``: quantities as a function of arrays;  column_quantities: what it computes, with derivatives

@@ -54,13 +54,12 @@ def measured_once(scene: Scene, repeats: int, extra: object, registry: Registry,
     In this process, with nothing beside it: times are what is asked for.
     """
     item = Item(row_key(scene, registry, extra), scene.title, (scene, repeats))
-    (row,), reused = work_through(_measurement, [item], store, local(registry, 0), registry)
+
+    def measurement(task: tuple[Scene, int], registry: Registry) -> Tables:
+        return cast(Tables, measured(task[0], registry, task[1]))
+
+    (row,), reused = work_through(measurement, [item], store, local(registry, 0), registry)
     return cast(Measured, row), reused == 1
-
-
-def _measurement(task: tuple[Scene, int], registry: Registry) -> Tables:
-    scene, repeats = task
-    return cast(Tables, measured(scene, registry, repeats))
 
 
 def measured(scene: Scene, registry: Registry, repeats: int) -> Measured:

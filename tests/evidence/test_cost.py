@@ -10,6 +10,7 @@ import time
 from functools import cache
 
 import pytest
+from raceway_checks.precision.study import EXACT
 
 import raceway as rw
 from checks.validation import plan_time
@@ -17,7 +18,6 @@ from checks.validation.command_line import ARTICLE, MINIMAL, python, raceway
 from raceway import load_scene, precision
 from raceway.extend import read_toml
 from raceway.planning.plan import column_time
-from raceway.points.precision import EXACT
 from tests.checks.test_leave_out import ELASTIC
 
 pytestmark = pytest.mark.night

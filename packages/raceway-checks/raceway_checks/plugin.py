@@ -1,4 +1,4 @@
-"""What this package adds to ``raceway``: stability on stiff and extreme cases, published reference cases."""
+"""What this package adds to ``raceway``: error against run time, stability on stiff and extreme cases, published reference cases."""
 
 from __future__ import annotations
 
@@ -9,6 +9,21 @@ import raceway as rw
 def raceway_commands() -> dict[str, tuple[rw.Command, ...]]:
     return {
         "Trust": (
+            rw.Command(
+                "precision",
+                "raceway_checks.precision.study:precision",
+                "Error against run time of numerical settings.",
+                "raceway precision examples/b7206.toml \\\n"
+                "    --vary integrator.kind=newmark,central_difference \\\n"
+                "    --vary integrator.steps_per_turn=45,90,180,360",
+                {
+                    "vary": rw.Option(metavar="A.B=X,Y", help="Axis; all combinations are run; without, a default design"),
+                    "reference": rw.Option(metavar="A.B=C", help="Key of the reference; without, chosen automatically"),
+                    "limit_s": rw.Option("limit", "SECONDS", "Omit settings predicted to take longer."),
+                },
+                folder="-precision",
+                unchecked=True,
+            ),
             rw.Command(
                 "stability",
                 "raceway_checks.stability.study:stability",
@@ -30,3 +45,8 @@ def raceway_commands() -> dict[str, tuple[rw.Command, ...]]:
             ),
         )
     }
+
+
+@rw.hookimpl
+def raceway_names() -> dict[str, str]:
+    return dict.fromkeys(("Precision", "precision"), "raceway_checks.precision.study")

@@ -11,47 +11,23 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import attrs
 import numpy as np
 
-from raceway.answers.answer import Answer, Part
-from raceway.answers.picture import given_axes
-from raceway.answers.progress import ShowProgress, telling
-from raceway.answers.quantities import AXIAL_DISPLACEMENT, PRECISION, Z_REAL
-from raceway.answers.table import Words
-from raceway.errors import ConvergenceError, RacewayError, SceneError
-from raceway.framework.doors import DURATION, KEY_VALUES, PATH, PATHS, door, member
-from raceway.framework.options import at_least
-from raceway.framework.registry import Registry, registry_with
-from raceway.framework.shown import Fact
-from raceway.planning.resolve import resolve
-from raceway.plugins.formats import labelled_dataset
-from raceway.points.axes import Vary, shown
-from raceway.points.settings import (
-    Design,
-    Judged,
-    Reference,
-    Runner,
-    Setting,
-    SettingRun,
-    distance,
-    find_reference,
-    main_size,
-    make_design,
-    minus,
-    needs_motion,
-    setting_at,
-)
-from raceway.points.store import Store, written
-from raceway.points.timing import Measured, measured_once
-from raceway.scene.inputs import parse_change, tidy
-from raceway.scene.scene import SceneSource, plain_tables
-from raceway.storage.files import writable
-from raceway.storage.tables import Tables
+from raceway import Answer, ConvergenceError, RacewayError, SceneError, at_least, door
+from raceway.extend import (
+    AXIAL_DISPLACEMENT, DURATION, Fact, KEY_VALUES, Measured, PATH, PATHS, PRECISION, Part, Registry, SceneSource,
+    ShowProgress, Store, Tables, Vary, Words, Z_REAL, given_axes, labelled_dataset, measured_once, member, parse_change,
+    plain_tables, registry_with, resolve, shown, telling, tidy, writable, written,
+)  # fmt: skip
+from raceway_checks.precision.settings import (
+    Design, Judged, Reference, Runner, Setting, SettingRun, distance, find_reference, main_size, make_design, minus,
+    needs_motion, setting_at,
+)  # fmt: skip
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from xarray import Dataset
 
-    from raceway.pipeline.simulate import OnProgress
+    from raceway.extend import OnProgress
 
 
 #: Of a row in precision.json, in its order.
@@ -261,7 +237,7 @@ class Precision(Answer):
         RacewayError
             matplotlib is missing.
         """
-        from raceway.points.precision_picture import draw_on, put_beside
+        from raceway_checks.precision.picture import draw_on, put_beside
 
         panel = given_axes(ax, 9.0, 6.0)
         labels = draw_on(panel, self.to_dict())
@@ -300,13 +276,13 @@ class Precision(Answer):
 
     def texts(self, pictures: bool) -> dict[str, str]:
         """precision.md."""
-        from raceway.points.precision_picture import page
+        from raceway_checks.precision.picture import page
 
         return {"md": page(self.to_dict(), pictures)}
 
     def draw(self) -> Figure:
         """Error against run time."""
-        from raceway.points.precision_picture import draw
+        from raceway_checks.precision.picture import draw
 
         return draw(self.to_dict())
 

@@ -17,16 +17,11 @@ from typing import NotRequired
 
 import attrs
 
-from raceway.answers.quantities import AXIAL_DISPLACEMENT, Z_IMAG, Z_REAL
-from raceway.errors import RacewayError, SceneError
-from raceway.framework.contracts import Integrator, Mesher
-from raceway.framework.registry import Registry
-from raceway.planning.plan import make_plan
-from raceway.points.axes import Vary, axes_of, points, refuse_mistakes, tables_at
-from raceway.points.store import Store
-from raceway.points.timing import Measured, measured_once
-from raceway.scene.scene import Scene, scene_from_dict
-from raceway.storage.tables import ReadTables, Tables
+from raceway import RacewayError, Scene, SceneError, make_plan, scene_from_dict
+from raceway.extend import (
+    AXIAL_DISPLACEMENT, Integrator, Measured, Mesher, ReadTables, Registry, Store, Tables, Vary, Z_IMAG, Z_REAL,
+    axes_of, measured_once, points, refuse_mistakes, tables_at,
+)  # fmt: skip
 
 STEPS = (45, 90, 180, 360, 720, 1440)
 TURNS = (3, 6, 12, 24, 48)

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from raceway.answers.picture import COLOURS, GREY, GRID, MARKERS, dress, new_figure, wrapped
-from raceway.answers.quantities import P0, PEAK_BALL_LOAD, K
-from raceway.storage.tables import Tables
+from raceway.extend import (
+    COLOURS, GREY, GRID, K, MARKERS, P0, PEAK_BALL_LOAD, Tables, dress, new_figure, wrapped,
+)  # fmt: skip
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from raceway.points.settings import Judged
+    from raceway_checks.precision.settings import Judged
 
 
 #: Text, the point that it belongs to in the axes' data, its colour.

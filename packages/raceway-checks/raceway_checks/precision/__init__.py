@@ -1,0 +1,6 @@
+"""Error against run time.
+
+study      ``raceway precision``: a scene's settings beside their references, the cheapest ones, orders
+settings   what is run, and the reference
+picture    page, and the picture of error against run time
+"""
