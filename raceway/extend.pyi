@@ -210,7 +210,7 @@ from .points.workload import stored_rows as stored_rows
 from .scene.bearing import Bearing as Bearing
 from .scene.catalogue import found_by as found_by
 from .scene.catalogue import geometry_of as geometry_of
-from .scene.catalogue import materials as materials
+from .scene.bearing import materials as materials
 from .scene.catalogue import no_preset as no_preset
 from .scene.keys import Key as Key
 from .scene.keys import continuous_keys as continuous_keys

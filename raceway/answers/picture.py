@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
 #: Colours of curves, neighbours of which differ in grey and for the colour-blind, that of secondary marks, and that of the grid.
 COLOURS = ("#0b4f8a", "#d9621e", "#4b2a6b", "#3fa7d6", "#1d6b4a", "#e0a100", "#7a1f3d", "#8d99a6")
 GREY, GRID = "#555f6b", "#e3e7eb"

@@ -215,7 +215,6 @@ DIFFERENTIABLE = {number.symbol: number for number in (K, C, AMPLITUDE, KXX, KYY
 #: All that a function or a sweep states, by names.
 KNOWN = COLUMNS | named(*IDENTIFIED, *DIFFERENTIABLE.values(), BALL_LOAD, CONTACT_ANGLE)
 
-
 #: What only the loop over steady orbits states: the largest Floquet multiplier, and the change of stiffness along an orbit.
 OF_ORBITS = ("largest_multiplier", "stiffness_change")
 
@@ -243,14 +242,11 @@ def quantity_of(symbol: str) -> Quantity:
 #: given damping (``ross.BallBearingElement``), the middle of its "typical range" of 0.25e-5 to 2.5e-5 s.
 RULE_OF_THUMB_S = 1.25e-5
 
-
 #: Part of the rule's damping below which a damping is next to nothing: a twentieth of the lower end of the typical range.
 _NOTHING = 1e-2
 
-
 #: Of scenes without any damping.
 DRY = "dry: no damping is modelled"
-
 
 #: What to do in the scene.
 _REMEDY = "set contact.damping or contact.time_constant"

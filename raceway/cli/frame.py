@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from raceway.planning.plan import ScenePlan
     from raceway.scene.scene import Given, Scene
 
-
 #: Arguments of fronts that take keys of a scene.
 OF_KEYS = ("changes", "keys", "vary", "axes", "free", "at", "ranges", "tolerances")
 

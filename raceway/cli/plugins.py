@@ -225,14 +225,12 @@ _KEYS: dict[str, dict[str, tuple[Any, bool]]] = {
     "integrator": {"turns": (12, True)},
 }
 
-
 #: The same of a bearing that brings its bodies, contacts and supports: cylindrical rollers carry no axial load.
 _ROLLERS = {
     "bearing": {},
     "load": {"radial": ([2000.0, 0.0], False)},
     **{table: _KEYS[table] for table in ("rotor", "excitation", "integrator")},
 }
-
 
 #: Plug-ins by table, and what is said of them.
 _KINDS = {
@@ -243,7 +241,6 @@ _KINDS = {
     "contact": ("hertz", "contact law; raceway dev plugins lists others"),
     "integrator": ("auto", "the steady orbit where one exists; 'newmark' and others integrate over time"),
 }
-
 
 _HEAD = """# A scene of Raceway: SI units, or text with a unit such as "1 kN".  Lines that begin with # are comments;
 # every key with unit and default: docs/scene.md.  Validate: raceway check FILE

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from raceway.framework.contracts import ContactPairs
     from raceway.storage.tables import Tables
 
-
 #: Lambda below which surfaces carry through asperities.
 _MIXED, _BOUNDARY = 3.0, 1.0
 #: Thermal reduction that is reported as strong, and the thermal loading to which its formula was compared with Grubin's inlet.

@@ -16,7 +16,6 @@ import attrs
 if TYPE_CHECKING:
     import numpy as np
 
-
 T = TypeVar("T", bound=attrs.AttrsInstance)
 #: A number, or a column of them.
 Number = Any

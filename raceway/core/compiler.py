@@ -165,7 +165,6 @@ class Compiler(CompilerBase):
 
 Dispatcher: Numba = CPUDispatcher
 
-
 #: Modules whose kernels need no more than ``Compiler`` does, and whose sources name the folders of compiled kernels.
 CORE_MODULES = tuple(f"raceway.{folder.replace('/', '.')}." for folder in SHARED)
 

@@ -171,8 +171,7 @@ class Kernel(Dispatcher):
 
     @classmethod
     def _rebuild(cls, function: Callable[..., Any], signature: Signature, options: dict[str, Any], uuid: str) -> "Kernel":
-        kernel = cls._memo.get(uuid)
-        if kernel is None:
+        if (kernel := cls._memo.get(uuid)) is None:
             kernel = cls(function, signature, options)
             kernel._set_uuid(uuid)
         return kernel
@@ -191,8 +190,7 @@ class Kernel(Dispatcher):
         start, processor, processor_billed = time.perf_counter(), time.thread_time(), clock["compile_processor_s"]
         name = f"{function.__module__}:{function.__qualname__}"
         finished = awaited.pop(name, None)
-        if finished is not None:
-            any(other == name for other in finished)
+        any(other == name for other in finished or ())  # waits for it
         try:
             if not self._from_wheel():
                 self._through_cache()

@@ -14,10 +14,8 @@ from raceway.errors import ConvergenceError, RacewayError, StabilityError
 #: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
 BOUND = 1.0
 
-
 #: Entries of vectors that are summed together: of long ones by one thread at a time, always the same.
 _BLOCK = 16384
-
 
 #: Seconds between two reports of progress.
 _REPORT_S = 0.1
@@ -39,8 +37,7 @@ class Recorder:
     system, schedule : what is integrated, over which times
     on_chunk : called with the steps done and the steps in all
 
-    state : the last accepted ``State``
-    device : that takes the steps
+    state : the last accepted ``State``;  device : that takes the steps
     evaluations : of the internal forces, all steps together
     """
 

@@ -589,7 +589,6 @@ KINDS: dict[str, tuple[str, tuple[str, ...]]] = {
     "study": ("raceway_studies", ("help", "command")),
 }
 
-
 #: What a class may leave out -> its default; of a duty None, where its caller says what holds then.
 DEFAULTS: dict[str, Any] = {
     **dict.fromkeys(("renewed", "line_contact", "constraint", "foundation", "elementwise", "hertzian"), False),

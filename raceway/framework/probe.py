@@ -20,7 +20,6 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     from numba.core.typing.templates import Signature
 
-
 #: Kernels that are compiled for the signature of their kind, by identity; they stay alive in it.
 _LOOKED_AT: dict[int, tuple[object, Signature]] = {}
 
@@ -30,8 +29,6 @@ def plugin_kernel(plugin: ContactLaw | Excitation, kind: str, signature: Signatu
 
     PluginError: ``kernel()`` raises, returns something that is not compiled, or is compiled for other arguments.
 
-    Parameters
-    ----------
     plugin : with ``kernel()``;  kind : "contact law" or "excitation", for messages
     signature : ``raceway.core.signatures.LAW`` or ``FORCE``;  name : "LAW" or "FORCE"
     """
@@ -98,8 +95,6 @@ def probe_law(
 ) -> None:
     """Refuse a contact law that breaks its contract on a few gaps and rates: ``PluginError`` with what was found, and the contract.
 
-    Parameters
-    ----------
     law : the plug-in, for its name;  kernel : what its ``kernel()`` returned
     params : what its ``build()`` returned, (n, k);  state : (n, m), a row for each contact; not changed
     distribution : whose it is; looked up in the registry when left out

@@ -143,8 +143,6 @@ def equilibrium_table(model: Model, equilibrium: Equilibrium) -> AtRest:
 def motion_table(model: Model, record: Record) -> Tables:
     """The table ``motion`` of result.json: mean axial displacement, and the largest of each race in the evaluated turns.
 
-    Parameters
-    ----------
     record : its columns of ``contact_force`` (n, 2 Z) are the inner races, then the outer ones [N]
     """
     peaks = np.array([peak(column[:, None]) for column in record.contact_force.T])

@@ -170,8 +170,6 @@ def distance(motion: Simulation, run: Run, on_progress: OnProgress | None = None
 
     ConvergenceError, StabilityError: No other start gives a motion.
 
-    Parameters
-    ----------
     motion : from the scene's own start;  run : from the same start, over as many turns
     """
     kinds = (_OTHERS if motion.model.problem.integrator.method.inertial else _SERIES)[motion.start.kind]

@@ -334,8 +334,7 @@ _ITERATIONS, _LEAST = 20, 1e-3
 def elastic_change(model: Model, equilibrium: Equilibrium) -> dict[str, float] | str:
     """Relative change of ``kxx`` and ``kyy`` on rigid seats, at most; or why there is none.
 
-    model : rigid bodies
-    equilibrium : its static state
+    model : rigid bodies;  equilibrium : its static state
 
     Half-spaces under a Hertz contact give way by more than a ring's wall on a rigid seat and a ball of finite size.  The difference
     c, the structural compliance of ``bodies.kind = "condensed"`` with its sign changed, is that of a layer: a ring's wall t below

@@ -49,12 +49,10 @@ _LIFE = "l10r_hours"
 #: Speeds at once, and rounds, in which the first one without steady temperatures is looked for: to 1/4000 of the range.
 _SPEEDS, _ROUNDS = 17, 3
 
-
 #: Reason of points without steady temperatures.
 RUNAWAY = f"no steady temperature below {_HOTTEST:g} °C: the friction heat exceeds the heat removed at every temperature up to there"
 #: Part of the highest temperature that steady ones reach at the limit speed where it is no fold that ends them.
 _AT_LIMIT = 0.9
-
 
 #: Temperatures (m, 6) that follow from columns of keys at points (m,), with factors of friction and conductances.
 Solve = Callable[[Mapping[str, np.ndarray], np.ndarray, list[np.ndarray]], np.ndarray]

@@ -35,10 +35,8 @@ _SAMPLES = 72_000
 _COPIES = 4
 _MEMORY_LIMIT = 4 * 2**30
 
-
 #: Why what needs balls of one kind is refused.
 ROWS = "the rows of this set are different bearings"
-
 
 T = TypeVar("T")
 
@@ -374,7 +372,6 @@ _UNSTEADY: tuple[Rule[Problem], ...] = (
     ),
 )  # fmt: skip
 
-
 #: Why integrator.kind = "auto" integrates over time nevertheless.
 _TRANSIENT: tuple[Rule[Problem], ...] = (
     *(
@@ -384,7 +381,6 @@ _TRANSIENT: tuple[Rule[Problem], ...] = (
     Rule("excitation.ramp_turns", lambda p: p.ramped, "the force grows from zero"),
     Rule("bodies.kind", lambda p: not p.traits.compiled, "forces of these bodies and contacts are not compiled"),
 )
-
 
 #: Why gyroscopic moments of the balls cannot be computed.
 MOMENTS: tuple[Rule[Problem], ...] = (

@@ -109,7 +109,6 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
     ),
 )  # fmt: skip
 
-
 _HEAT: tuple[Rule[Problem], ...] = (
     Rule(
         "heat", lambda p: p.heat is not None and p.lubricant is None, "needs the oil's viscosity: give a table [lubricant]",
@@ -139,7 +138,6 @@ _HEAT: tuple[Rule[Problem], ...] = (
         for key in keys
     ),
 )  # fmt: skip
-
 
 _MOTION: tuple[Rule[Problem], ...] = (
     Rule(

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from distributed import Client
     from distributed import Future as DaskFuture
 
-
 #: Name of the thread that looks, and how often it does [s].
 WATCH, _WATCH_S = "end with parent", 1.0
 

@@ -27,7 +27,6 @@ from raceway.storage.tables import ReadTables, Tables
 MOST_POINTS = 10_000
 _FORM = "must have the form table.key=a,b,c or table.key=start:stop:count"
 
-
 #: Axes: texts ``KEY=a,b,c`` or ``KEY=start:stop:count``, or keys with their values.
 Vary: TypeAlias = Iterable[str] | Mapping[str, object]
 

@@ -75,7 +75,6 @@ def indices(values: np.ndarray, dimensions: int) -> _Indices:
 
 _SAMPLES, _LIMIT_COLOUR, _TOTAL, _FIRST = "#b9c9da", "#0b5fa5", "#b9c9da", "#0b5fa5"
 
-
 #: Samples of a piece of work, which is what a killed worker loses; limits of the band.
 _CHUNK, _LIMITS = 256, (0.025, 0.975)
 #: Derivatives by all keys, over a run; least time of a run [s].

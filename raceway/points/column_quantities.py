@@ -260,20 +260,15 @@ def of_result(name: str, result: Result) -> np.ndarray | float | None:
 #: Values by the names of outputs.
 Columns: TypeAlias = dict[str, np.ndarray]
 
-
 #: Relative step of differences, of fourth order.
 _STEP = 1e-3
-
 
 #: Weights of values at shifts by so many steps: their sum over the step is the derivative.
 _CENTRAL = {-2: 1.0 / 12.0, -1: -8.0 / 12.0, 1: 8.0 / 12.0, 2: -1.0 / 12.0}
 
-
 _FORWARD = {0: -25.0 / 12.0, 1: 4.0, 2: -3.0, 3: 4.0 / 3.0, 4: -0.25}
 
-
 _BACKWARD = {-shift: -weight for shift, weight in _FORWARD.items()}
-
 
 #: What numbers that are 0 are taken for in such a step, by their units; 1 otherwise.
 _LEAST = {"m": 1e-6}

@@ -43,7 +43,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
 
-
 #: Panels of a quantity at most, and differences that one sentence tells by themselves.
 _MOST_PANELS, _FEW = 4, 3
 

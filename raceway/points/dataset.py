@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
     import xarray
 
-
 #: Coordinates of the ring, in the order of ``displacement`` and ``stiffness``.
 DOF = ("x", "y", "z", "tilt_y", "tilt_z")
 

@@ -36,7 +36,6 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-
 #: The bearing of the article under its load, where no scene is given, and the frequency of its cycle [Hz].
 BASE: Tables = {"title": "B7206C, 1 kN axial", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
 _FREQUENCY = 200.0
@@ -69,8 +68,7 @@ class LawContact:
     ) -> tuple[float, float, float, np.ndarray]:
         """Force [N], its derivatives by approach [N/m] and by the approach's rate [N s/m], and the law's memory (2, m).
 
-        approach, rate : [m, m/s]
-        step : since the memory was committed; None: at rest, without a history
+        approach, rate : [m, m/s];  step : since the memory was committed; None: at rest, without a history
         """
         q, v = np.zeros(5), np.zeros(5)
         q[0], v[0] = approach + self.reach, rate

@@ -23,7 +23,6 @@ from raceway.storage.tables import ReadTables, Tables
 if TYPE_CHECKING:
     from xarray import Dataset
 
-
 #: The dimension of a sweep over a list of points; a grid has one dimension for each key instead.
 LIST = "point"
 #: Numbers of an axis that differ by less are one value [relative].

@@ -40,7 +40,6 @@ from raceway.storage.tables import ReadTables, Tables
 if TYPE_CHECKING:
     import xarray
 
-
 #: Predicted time [s] of runs beyond which a sweep has to be forced.
 _LIMIT_S = 86_400.0
 #: A run in both files [bytes].

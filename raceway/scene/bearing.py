@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from functools import cached_property, lru_cache
+import tomllib
+from functools import cache, cached_property, lru_cache
+from importlib.resources import files
 from math import asin, degrees, pi
 from typing import Any, cast
 
@@ -10,9 +12,10 @@ import attrs
 
 from raceway.core.columns import acos, cos, has_columns, radians, sin, some, with_values
 from raceway.errors import MeshError, SceneError
-from raceway.framework.options import at_least, between, finite, inside, length, one_of, option, optional, positive
+from raceway.framework.options import at_least, between, finite, inside, length, nearest, one_of, option, optional, positive
 from raceway.framework.rules import Rule, speaking
 from raceway.scene.designation import GEOMETRY, RATINGS, arrangement, places_of, signs_of, travel
+from raceway.storage.tables import Tables
 
 #: Young's moduli of bearing steels [Pa], 206 to 212 GPa in catalogues with 1 % on either side, and their thermal expansion [1/K].
 STEEL, STEEL_EXPANSION = (2.04e11, 2.14e11), 12.5e-6
@@ -41,6 +44,46 @@ class Material:
             rule = f"is required: {kelvin:g} K act on a body of {1e-9 * self.young:.4g} GPa, which is not steel (204 to 214 GPa)"
             raise SceneError.at(f"{path}.thermal_expansion", None, f"{rule}. Give it, or `material` by its name")
         return kelvin * (0.0 if self.thermal_expansion is None else self.thermal_expansion)
+
+
+@attrs.frozen
+class _NamedMaterial:
+    """young [Pa], poisson, density [kg/m3], thermal_expansion [1/K]; title and source."""
+
+    name: str
+    title: str
+    young: float
+    poisson: float
+    density: float
+    thermal_expansion: float
+    source: str
+
+
+@cache
+def materials() -> dict[str, _NamedMaterial]:
+    """All by name."""
+    return {name: _NamedMaterial(name, **row) for name, row in data_table("materials").items()}
+
+
+@cache
+def data_table(name: str) -> Tables:
+    """A file of the folder ``data``, by its name without the ending."""
+    return tomllib.loads(files("raceway").joinpath(f"data/{name}.toml").read_text(encoding="utf-8"))
+
+
+def with_material(table: Tables, path: str, preset: Tables) -> Tables:
+    """A table [bearing.rings] or [bearing.balls] with the numbers of its ``material``; own keys override them, the preset's do not.
+
+    SceneError: Unknown name, with the nearest one.
+    """
+    name = table.get("material")
+    if name is None:
+        return {**preset, **table}
+    if not isinstance(name, str) or name not in materials():
+        names = ", ".join(materials())
+        raise SceneError.at(f"{path}.material", name, f"no such material{nearest(str(name), materials())}; known: {names}")
+    material = attrs.asdict(materials()[name])
+    return {**{key: material[key] for key in attrs.fields_dict(Material) if key in material}, **table}
 
 
 @attrs.frozen

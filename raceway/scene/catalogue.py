@@ -24,8 +24,7 @@ from typing import TYPE_CHECKING
 import attrs
 
 from raceway.errors import SceneError
-from raceway.framework.options import nearest
-from raceway.scene.bearing import Material
+from raceway.scene.bearing import data_table
 from raceway.scene.designation import RATINGS
 from raceway.storage.tables import ReadTables, Tables, nested
 
@@ -229,12 +228,7 @@ def _single(file: Traversable) -> Preset:
 
 
 def _uncertainty(names: Iterable[str]) -> tuple[Tables, ...]:
-    return tuple(_data_table("uncertainty")[name] for name in names)
-
-
-@cache
-def _data_table(name: str) -> Tables:
-    return tomllib.loads(files("raceway").joinpath(f"data/{name}.toml").read_text(encoding="utf-8"))
+    return tuple(data_table("uncertainty")[name] for name in names)
 
 
 def _facts(tables: ReadTables, prefix: str) -> list[Fact]:
@@ -376,37 +370,3 @@ def _inference(name: object, tables: ReadTables) -> Tables | None:
         "stiffness_basis": own["why"],
         "data": data,
     }
-
-
-@attrs.frozen
-class _NamedMaterial:
-    """young [Pa], poisson, density [kg/m3], thermal_expansion [1/K]; title and source."""
-
-    name: str
-    title: str
-    young: float
-    poisson: float
-    density: float
-    thermal_expansion: float
-    source: str
-
-
-@cache
-def materials() -> dict[str, _NamedMaterial]:
-    """All by name."""
-    return {name: _NamedMaterial(name, **row) for name, row in _data_table("materials").items()}
-
-
-def with_material(table: Tables, path: str, preset: Tables) -> Tables:
-    """A table [bearing.rings] or [bearing.balls] with the numbers of its ``material``; own keys override them, the preset's do not.
-
-    SceneError: Unknown name, with the nearest one.
-    """
-    name = table.get("material")
-    if name is None:
-        return {**preset, **table}
-    if not isinstance(name, str) or name not in materials():
-        names = ", ".join(materials())
-        raise SceneError.at(f"{path}.material", name, f"no such material{nearest(str(name), materials())}; known: {names}")
-    material = attrs.asdict(materials()[name])
-    return {**{key: material[key] for key in attrs.fields_dict(Material) if key in material}, **table}

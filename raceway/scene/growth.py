@@ -373,7 +373,6 @@ SIZES: tuple[Rule[RunningBearing], ...] = (
     Rule(_cause, _open_rows, _opened_words),
 )
 
-
 #: Loss of fit [m] that is reported: the finest standard tolerance of any diameter (ISO 286-1, IT01 up to 3 mm).
 _FINEST_TOLERANCE = 0.3e-6
 

@@ -73,7 +73,6 @@ def is_text(source: str) -> bool:
 #: Bytes of a scene file at most.
 _LONGEST = 2**24
 
-
 #: Likeness of two files' names from which one is taken for a slip of the other.
 _NEAR = 0.6
 

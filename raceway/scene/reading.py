@@ -14,7 +14,8 @@ from raceway.errors import Mistake, PluginError, SceneError
 from raceway.framework.options import nearest
 from raceway.framework.packages import named, names_in
 from raceway.framework.registry import Registry
-from raceway.scene.catalogue import preset, preset_of, with_material
+from raceway.scene.bearing import with_material
+from raceway.scene.catalogue import preset, preset_of
 from raceway.scene.designation import GEOMETRY
 from raceway.scene.lubricant import lubricant_mistakes
 from raceway.scene.structure import structure, table_without_units

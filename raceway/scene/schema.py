@@ -11,7 +11,8 @@ import attrs
 
 from raceway.framework.packages import named
 from raceway.framework.registry import Registry, default_registry
-from raceway.scene.catalogue import catalogue, materials
+from raceway.scene.bearing import materials
+from raceway.scene.catalogue import catalogue
 from raceway.scene.structure import table_of_list
 from raceway.scene.tables import PLUGIN_TABLES as PLUGIN_TABLES
 from raceway.scene.tables import TABLES, AutoIntegrator, quantities_table

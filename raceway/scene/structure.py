@@ -104,7 +104,6 @@ _HOOKS: dict[object, Any] = {
     str | None: _optional(_word),
 }
 
-
 #: Types of keys whose numbers may be text with a unit; counts have none.
 _WORDS = (float | str, str | float)
 _LISTS = (tuple[float, float], tuple[float, ...], tuple[tuple[float, float], ...] | None)

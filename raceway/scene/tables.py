@@ -276,7 +276,6 @@ TABLES: dict[str, type] = {
     "identifier": Identifying,
 }
 
-
 #: Tables whose ``kind`` names a plug-in: the plug-in's kind, and the kind where the table names none.
 PLUGIN_TABLES = {
     "excitation": ("excitation", None),
@@ -287,10 +286,8 @@ PLUGIN_TABLES = {
     "identifier": ("identifier", "fft_1x"),
 }
 
-
 #: Tables that may be absent, which means something.
 OPTIONAL_TABLES = ("excitation", "mesh", "lubricant", "heat")
-
 
 #: Tables whose kinds are swapped most: keys of another kind stay without effect, which ``raceway.scene.unused`` tells.
 SWAPPED_TABLES = ("bodies",)

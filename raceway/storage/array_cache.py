@@ -53,8 +53,7 @@ def kept(
 ) -> dict[str, np.ndarray]:
     """The arrays that ``make`` returns, C-contiguous; from the cache where they are there, then read-only.
 
-    kind : what sort of entry, one word
-    label : one short line for people
+    kind : what sort of entry, one word;  label : one short line for people
     inputs : everything that the arrays depend on, by name: numbers, strings, None, arrays, and sequences of these
     sources : files or folders of this package, such as "core/fem/revolution", whose code makes the arrays
     make : makes them, when they are not there

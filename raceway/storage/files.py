@@ -21,8 +21,6 @@ def scratch_file(path: Path, remedy: str) -> Iterator[Path]:
 
     RacewayError: A folder or disk that cannot be written.
 
-    Parameters
-    ----------
     remedy : sentence for who cannot write there
     """
     if os.path.isdir(path):  # no question of pathlib's, which ends in an OSError where a name is too long
@@ -179,10 +177,8 @@ def slug(title: str) -> str:
 
 _PROC, _GROUPS = Path("/proc"), Path("/sys/fs/cgroup")
 
-
 #: Files of a control group by the version of the interface: limit and use [B], and which line of memory.stat may be given back.
 _V1 = ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
-
 
 _V2 = ("memory.max", "memory.current", "inactive_file")
 

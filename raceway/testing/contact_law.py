@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from raceway.core.jit import Kernel
     from raceway.framework.contracts import ContactLaw
 
-
 #: Exponents of length, force and time.
 _UNITS: dict[str, tuple[float, float, float]] = {
     "m": (1, 0, 0), "N": (0, 1, 0), "s": (0, 0, 1), "kg": (-1, 1, 2), "Pa": (-2, 1, 0), "J": (1, 1, 0), "Hz": (0, 0, -1),

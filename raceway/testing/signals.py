@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from raceway.bodies.model import Equilibrium, Model
     from raceway.framework.contracts import Excitation, Identifier
 
-
 #: Samples of a period, and what sampling may change of an amplitude: a force that is sampled 360 times a turn and joined by
 #: straight lines loses 2.5e-5 of its line.
 _SAMPLES, _SAMPLED = 4096, 1e-4

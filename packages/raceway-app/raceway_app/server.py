@@ -28,7 +28,6 @@ from raceway_app.worker import Job, News, Worker
 if TYPE_CHECKING:
     from aiohttp.web import Request, StreamResponse
 
-
 #: Names of this machine that a browser may use; others are another site's that points here.
 _HOSTS = ("127.0.0.1", "localhost", "[::1]")
 _POLICY = (  # {host}: address and port of the server

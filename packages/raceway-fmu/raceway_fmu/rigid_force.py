@@ -147,10 +147,8 @@ NOTES = (
     "cage_angle 0: balls at their azimuths; its integral of cage_speed: ball passing",
 )
 
-
 #: Relative errors: a ball's last step is at most 1e-7 of its approach, of which forces keep the square, stiffness the first power.
 _OF_FORCE, _OF_STIFFNESS = 1e-9, 1e-6
-
 
 _INPUTS = (
     *(Variable(name, "m", "displacement of the inner ring", 0.0) for name in "xyz"),

@@ -20,7 +20,6 @@ from raceway.extend import HexMesh, ReadTables, memory_for, size_of, size_words
 if TYPE_CHECKING:
     from meshio import Mesh
 
-
 #: Bytes of the largest mesh file.
 LARGEST = 2**32
 #: Solids that meshio knows and the kernels do not.

@@ -10,7 +10,6 @@ import attrs
 from raceway import MeshError, PluginError, option, positive
 from raceway.extend import Bearing, HexMesh, Mesher, blamed, nearest
 
-
 BODIES = ("inner_ring", "outer_ring", "ball")
 BALL = "file of one ball about its centre: x rolling, y across, z towards the outer contact"
 

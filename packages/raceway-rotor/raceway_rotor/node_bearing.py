@@ -162,8 +162,7 @@ def node_bearing(
     bearing : name of a preset, or Scene, path, TOML text, dict of tables
     preload : axial load [N]; None: the scene's own
     tilt : "locked", "free", "node" (the node's tilts are the ring's) or a stiffness [N m/rad]; None: the scene's supports.tilt
-    axial : "force" or "displacement"; None: the scene's supports.axial
-    damping : added to the translations [N s/m]
+    axial : "force" or "displacement"; None: the scene's supports.axial;  damping : added to the translations [N s/m]
 
     SceneError: With every mistake that was found.
     """
@@ -190,8 +189,7 @@ def node_bearing(
 def secant_stiffness(tangent: np.ndarray, motion: np.ndarray, load: np.ndarray, unit: np.ndarray) -> np.ndarray:
     """Real symmetric (n, n) K with K u = f, nearest to the tangent.
 
-    tangent : (n, n) [N/m, N, N m/rad]
-    motion, load : (n,) complex amplitudes u, f of one harmonic
+    tangent : (n, n) [N/m, N, N m/rad];  motion, load : (n,) complex amplitudes u, f of one harmonic
     unit : (n,) length of a unit of each coordinate [1 for m, an arm in m for rad], which makes changes comparable
 
     With U = [Re u, Im u], R = [Re f, Im f] - K_t U and the pseudoinverse U+ the symmetric D of least Frobenius norm with D U = R is

@@ -87,8 +87,7 @@ def make_beam(
 ) -> Beam:
     """A round shaft of one diameter.
 
-    nodes : (n,) ascending [m]
-    shear : False gives an Euler-Bernoulli beam
+    nodes : (n,) ascending [m];  shear : False gives an Euler-Bernoulli beam
     stiff : (n - 1,) diameters that bend, where something stiffens the shaft [m]; its mass is not added
 
     Shear coefficient of a solid round section: 6 (1 + nu) / (7 + 6 nu) (Cowper 1966).
@@ -172,8 +171,7 @@ class Rotor:
 def shaft(rig: Rig, shear: bool = True, finer: int = 1) -> Beam:
     """The rig's shaft with its disc.
 
-    shear : False leaves shear and rotary inertia out of the shaft
-    finer : divides the length of the elements
+    shear : False leaves shear and rotary inertia out of the shaft;  finer : divides the length of the elements
     """
     middle, half = 0.5 * rig.shaft_length, 0.5 * rig.disc_thickness
     places = sorted({0.0, *rig.bearings, rig.sensor, middle - half, middle, middle + half, rig.shaft_length})

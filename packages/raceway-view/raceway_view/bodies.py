@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from raceway.extend import Bearing as Dimensions
     from raceway.extend import Tables
 
-
 #: Corners sharper than this are edges, and are not shaded over [rad].
 _CORNER = 0.4
 
@@ -51,8 +50,7 @@ def joined(parts: list[Surface]) -> Surface:
 def _surface_of_revolution(line: np.ndarray, azimuths: np.ndarray) -> Surface:
     """The surface that a closed line (k, 2) of x and radius sweeps, the body to the left of it.
 
-    line : first and last point differ; corners are kept sharp
-    azimuths : (n,) [rad], from +y towards +z
+    line : first and last point differ; corners are kept sharp;  azimuths : (n,) [rad], from +y towards +z
     """
     # The closed line, cut at its corners
     outline = np.concatenate([line, line[:1]])

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from raceway import Scene
     from raceway.extend import Entry, Format, OnProgress
 
-
 #: Inner ring, outer ring, everything else.
 _COLOURS = {"inner": "#4f8fc0", "outer": "#c9a24d"}
 _OTHER = "#b8bfc6"

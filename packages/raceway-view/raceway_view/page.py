@@ -23,7 +23,6 @@ _MOST, _TOGETHER = 65535, 100
 #: Pictures with more columns than this are never shown narrower than the text on them can be read [px].
 _WIDE = 1000
 
-
 BALL_COLUMNS = [
     "ball", "azimuth [deg]", "load [N]", "contact angle [deg]", "peak pressure [MPa]",
     "a, across [mm]", "b, rolling [mm]",

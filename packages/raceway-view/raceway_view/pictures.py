@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
-
 T = TypeVar("T")
 #: pyvista's: its stubs refuse calls that it takes.
 Plotter: TypeAlias = Any
@@ -35,8 +34,7 @@ def ball_labels(
 ) -> list[tuple[str, tuple[float, float]]]:
     """Texts and their lower left corners [pixels].
 
-    top : the load whose arrow is longest [N]
-    project : points (n, 3) [mm] -> (n, 2) [pixels]
+    top : the load whose arrow is longest [N];  project : points (n, 3) [mm] -> (n, 2) [pixels]
     """
     texts = [f"{k}: {load:.3g} N" for k, load in enumerate(state.load[: len(state.azimuth)])]
     half = np.array([[0.5 * _LETTER * len(text), 0.5 * LETTERS] for text in texts])

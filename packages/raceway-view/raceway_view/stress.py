@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
 _HEXAHEDRON = 12  # VTK's number of the cell
 #: Names of the fields of both scalar stresses in grids.
 _STRESSES = ("von Mises stress [Pa]", "largest shear stress [Pa]")

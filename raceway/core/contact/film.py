@@ -102,8 +102,7 @@ def entraining_speed(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Mean speed of both surfaces against the contact (n,) [m/s], of the inner and of the outer race.
 
-    spin : speed of the inner ring [rad/s], the outer one stands
-    inner, outer : (n,) contact angles [rad]
+    spin : speed of the inner ring [rad/s], the outer one stands;  inner, outer : (n,) contact angles [rad]
 
     A ball that rolls at both races without slip: with g = D cos(a) / d_m of either race the cage turns at
     w_c = w (1 - g_i) / (2 - g_i + g_o), the surfaces of the inner contact run at (w - w_c) d_m/2 (1 - g_i), those of the outer at

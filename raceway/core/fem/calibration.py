@@ -13,23 +13,18 @@ from raceway.storage.array_cache import kept
 #: Points along a semi-axis of the coarser and the finer patch.
 POINTS = (3, 6)
 
-
 #: Loads over the typical one.
 LOADS = np.linspace(0.4, 1.6, 25)
 
-
 #: How much further than the typical ellipse points reach: 1.17 at the largest load, the rest for patches' ends.
 _ROOM = 1.4
-
 
 #: Distance of the finer patch from the limit, over Hertz's approach, above which points tell nothing.  They are apart by 0.4 %;
 #: rings 1e6 times as stiff as steel on a soft bed lose more to rounding.
 _TELLS = 0.01
 
-
 #: How far up the groove the second contact is [rad].
 _FURTHER = 0.15
-
 
 _ITERATIONS = 30
 

@@ -26,8 +26,7 @@ def advance(
 ) -> Record:
     """Take all steps of a schedule.
 
-    loop : kernel with the signature ``raceway.core.signatures.LOOP``
-    coefficients : (k,) the method's own numbers
+    loop : kernel with the signature ``raceway.core.signatures.LOOP``;  coefficients : (k,) the method's own numbers
 
     ConvergenceError, StabilityError: With the reason, the time and the last good motion in ``state``.
     """

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from raceway.bodies.model import BuiltBearing
     from raceway.planning.plan import ScenePlan
 
-
 #: Bytes and seconds of processor time for both rings, by nodes of a section, measured on one core of a small server: the
 #: factor of a harmonic, and some seventy of those; balls and a coarser mesh for the error included.
 _BYTES_PER_NODE = 25_000
@@ -122,7 +121,6 @@ _PATCHES: tuple[Rule[Problem], ...] = (
         lambda s: f"would take {patch_cost(s).bytes / 2**30:.1f} GiB, above {_LIMIT / 2**30:.0f} GiB: use fewer points",
     ),
 )  # fmt: skip
-
 
 _TIMES = Times({"weightless": 10.0e-6, "inertial": 11.0e-6, "tangential": 22.0e-6}, sample=14.0e-6, search=2.5)
 #: What the matrices between balls add to a step [s].

@@ -34,8 +34,6 @@ _COEFFICIENT = 1.6e-10
 class CylindricalRollers:
     """Rigid rings on Z cylindrical rollers in line contact, cut into laminae: radial loads and moments, no axial stiffness.
 
-    References
-    ----------
     ISO/TS 16281:2008, section 5: at least 30 laminae, profile P(x) = 0.00035 D ln[1 / (1 - (2 x / L)^2)] of rollers with L <= 2.5 D.
     """
 

@@ -25,7 +25,6 @@ from raceway.storage.tables import ReadTables, Tables
 if TYPE_CHECKING:
     from raceway.core.rolling_friction import BallContacts, Losses
 
-
 #: Sources of friction, as results name them, and what they are.
 PARTS = {
     "rolling": "the oil's shear in the inlets of the contacts",
@@ -181,10 +180,8 @@ def _by_source(lost: Losses, rows: slice = slice(None)) -> dict[str, np.ndarray]
 #: Volume of oil over that of the space around the balls where nothing says how much there is.
 _LITTLE_OIL = 0.01
 
-
 #: Palmgren's f0 of an oil bath: deep groove and angular contact; half of it for oil and air, twice for jets.
 _BATH = (2.0, 3.3)
-
 
 #: Palmgren's f1 at a tenth of the static rating: 0.0005 0.1^0.55 and 0.001 0.1^0.33.
 _LOAD_FACTORS = (1.4e-4, 4.7e-4)

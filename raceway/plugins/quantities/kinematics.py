@@ -112,8 +112,6 @@ class Sliding:
     the outer race as in motions; along it the inner contacts of a row drive what rolling, drag and slip at the outer race cost, where a
     scene has an oil.  Spin takes none: its slip turns about the contact's centre.  Rows with an unloaded ball are not judged.
 
-    References
-    ----------
     A Brief Examination of Factors Affecting Tractive Friction Coefficients of Spheres Rolling on Flat Plates, ASLE Annual Meeting, Buffalo,
     April 1959 (abstract): up to 0.08.  Hirano, ASLE Trans. 8 (1965) 425: little slip above an axial force of 10 Z F_c.
     """

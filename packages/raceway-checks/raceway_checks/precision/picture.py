@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from raceway_checks.precision.settings import Judged
 
-
 #: Text, the point that it belongs to in the axes' data, its colour.
 _Label = tuple[str, tuple[float, float], str]
 

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 
     from raceway.extend import OnProgress
 
-
 #: Of a row in precision.json, in its order.
 _COLUMNS = (
     "family", "setting", "model", "value", "error", "at_bound", "order", "expected_order", "errors", "quantities", "time_s",

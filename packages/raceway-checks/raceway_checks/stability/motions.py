@@ -18,7 +18,6 @@ from raceway_checks.stability.catalogue import UNDAMPED
 from raceway_checks.stability.study import Limit, Rows
 from raceway_checks.stability.systems import Bench, Still, energy_of_contacts, inverted
 
-
 _BLOCKS = 20
 #: Heights of the fall that chatter is looked for at, over the approach at rest.
 _HEIGHTS = (1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0)

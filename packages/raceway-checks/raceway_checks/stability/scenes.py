@@ -71,10 +71,8 @@ def extreme(
     _check_rest(rows, bench, closed_form)
     if not judge:
         return
-    words, why = "|Z| [N/m], predicted by the steady motion", _STEADY_WHY
-    if judge == "finer":
-        words, why = "|Z| [N/m], predicted by 1440 steps a turn", _FINER_WHY
-    near, note = None, ""
+    truth, why = ("1440 steps a turn", _FINER_WHY) if judge == "finer" else ("the steady motion", _STEADY_WHY)
+    words, near, note = f"|Z| [N/m], predicted by {truth}", None, ""
     try:
         near = abs(_stiffness(bench.changed(_JUDGES[judge]).result()))
     except RacewayError as error:
@@ -208,8 +206,7 @@ def energy_slope(model: Model, equilibrium: Equilibrium) -> float:
     # as a roughness, is integrated to 1e-5 only, which the small difference of two energies magnifies.
     before, after = (energy_of_contacts(system.law, system.law_params, system.law_state, each).sum() for each in gap)
     # What all contacts store [J] between both gaps
-    (first, last), n = gap, gap.shape[1]
-    total = 0.0
+    (first, last), n, total = gap, gap.shape[1], 0.0
     for at, weight in zip(*np.polynomial.legendre.leggauss(4), strict=True):
         force, slopes = np.empty(n), np.empty((2, n))
         here = first + 0.5 * (1.0 + at) * (last - first)
@@ -224,7 +221,7 @@ def _check_rest(rows: Rows, bench: Bench, closed_form: bool) -> None:
     """Axial forces of the contacts against the load; the approach by a closed form where there is one."""
     # Nothing turns and nothing rubs: the balls' loads are along their contact angles.
     bench = bench.changed({"kinematics.gyroscopic": "none", "contact.friction": 0.0})
-    scene = bench.scene
+    scene, load = bench.scene, bench.scene.load.axial
 
     @cache
     def equilibrium_of_model() -> tuple[Model, Equilibrium]:
@@ -236,7 +233,6 @@ def _check_rest(rows: Rows, bench: Bench, closed_form: bool) -> None:
         load = equilibrium.contact_force[: model.system.ball_count]
         return float(np.sum(np.where(load > 0.0, load * np.sin(np.nan_to_num(equilibrium.angle_inner)), 0.0)))
 
-    load = scene.load.axial
     if resolve(scene).traits.contacts_alone:
         why = "an equilibrium is solved to a residual of 1e-11"
         rows.check("sum of the balls' axial forces [N]", axial, why, Limit.equal(load, 1e-8))
@@ -277,10 +273,9 @@ def _raise(error: RacewayError) -> None:
 
 def hertz_factor(rows: Rows, bench: Bench) -> None:
     """Hertz' contacts of a bearing, which laws are calibrated by, against a closed form."""
-    scene = bench.scene
-    basis = make_basis(resolve(scene))
+    basis = make_basis(resolve(bench.scene))
     softness = float(basis.inner.factor ** (-2.0 / 3.0) + basis.outer.factor ** (-2.0 / 3.0))
-    near, words = series_factor(scene.bearing) ** (-2.0 / 3.0), "approach of both races over load^(2/3) [m/N^(2/3)]"
+    near, words = series_factor(bench.scene.bearing) ** (-2.0 / 3.0), "approach of both races over load^(2/3) [m/N^(2/3)]"
     why = "the closed form's fit of the ellipse is good to 5 % (Hamrock and Brewe 1983)"
     rows.check(words, softness, why, Limit.equal(near, 0.05))
 

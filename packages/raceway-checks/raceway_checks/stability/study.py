@@ -25,7 +25,6 @@ from raceway_checks.stability.catalogue import Case, catalogue
 if TYPE_CHECKING:
     from raceway.extend import OnProgress
 
-
 AS_EXPECTED, FAILED = "as expected", "failed"
 PROCESSES = 2
 #: A case that takes longer has hung [s].  The longest takes 20 s, and compiling for the first time on busy cores some minutes.

@@ -26,7 +26,6 @@ from raceway_checks.verify.reference import BASES, Case, Verified, reference_cas
 if TYPE_CHECKING:
     from raceway.extend import Excitation, Integrator, Model
 
-
 _INCH, _POUND, _PSI = 0.0254, 4.4482216152605, 6894.757293168361
 
 Rows = Iterator[Verified]
@@ -269,7 +268,6 @@ COMPUTED: dict[str, Callable[[Case, Registry], Rows]] = {
     "chung-ooi-1-glass": _impact_of_spheres, "chung-ooi-3-alumina": _impact_of_spheres,
     "seed-unbalance": _rig_force, "seed-static-pressures": _article_pressures,
 }  # fmt: skip
-
 
 #: Columns of numbers and their significant digits.
 _DIGITS = {"reference": 5, "computed": 5, "error": 2, "tolerance": 2}

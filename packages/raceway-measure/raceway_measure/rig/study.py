@@ -162,7 +162,6 @@ class _RigStudy(Answer):
 
         RacewayError: a folder that cannot be written, or matplotlib is missing.
         """
-
         folder, files = Path(folder), super().save(folder)
         files += _write_page(self, folder) if pictures else []
         for point in self.points if self.signals else ():

@@ -76,10 +76,7 @@ class Frame:
 class Body:
     """One body.
 
-    name : str
-    operator : HexOperator
-    held : (n, 3) bool, displacements that are zero
-    frame : Frame | None
+    name : str;  operator : HexOperator;  held : (n, 3) bool, displacements that are zero;  frame : Frame | None
     bed : (quads (k, 4) nodes, stiffness [N/m3]) | None: springs on a surface, to the ground or to the frame
     """
 
@@ -317,12 +314,8 @@ class BodyForces:
 class Assembly:
     """Linear part of a system: elastic bodies, beds, frames, cage.
 
-    Parameters
-    ----------
     bodies : list of Body
 
-    Attributes
-    ----------
     cage : Cage | None, set by ``hold``
     groups : of equal parts (``raceway.core.fem.elastic.interface``), set before forces are asked for
 

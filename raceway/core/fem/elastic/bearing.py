@@ -26,7 +26,6 @@ _LINEAR_TOLERANCE = 1e-4
 #: Nodal forces of bodies over those of contacts, one where they balance, below which nothing has deformed yet.
 _PRESSED_BACK = 0.5
 
-
 #: Names of the unknowns in ``Motion.full_state``.
 _UNKNOWNS = ("u", "v", "a", "rest")
 #: Ring displacement, velocity (5,), gaps, contact forces (2 Z,), ball places (Z, 2).
@@ -36,16 +35,11 @@ Seen = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 class ElasticSystem:
     """M a + C v + f(y) = load + scale * excitation(t) for the unknowns of an assembly: a ``SteppedSystem``.
 
-    Parameters
-    ----------
-    assembly : Assembly;  contact : Contact | None
-    modulus : E* of the contacts [Pa]
+    assembly : Assembly;  contact : Contact | None;  modulus : E* of the contacts [Pa]
     load : (size,) constant forces [N, N m]
     condensed : solver by superelements, of a bearing in nodal contact; None: conjugate gradients
     look : what a record keeps, function of (y, v); None: smallest gap and normal force of every pair, no ring
 
-    Attributes
-    ----------
     excitation : function of t -> (frame unknowns,) forces on the first frame's motions, or None
     """
 
@@ -381,13 +375,9 @@ def _ring_parts(assembly: Assembly, index: int, azimuth: np.ndarray) -> Copies:
 class ElasticBearing:
     """One row of balls between two rings.
 
-    Parameters
-    ----------
     meshes : body -> mesh: inner_ring, outer_ring with the sets "raceway" and "seat", balls in the order of their azimuths
     setup : Setup
 
-    Attributes
-    ----------
     system : ElasticSystem
     """
 

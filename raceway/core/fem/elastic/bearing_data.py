@@ -17,15 +17,13 @@ Material = tuple[float, float, float]
 class BearingData:
     """Data of a bearing beyond its meshes.
 
-    geometry : BallBearing;  azimuth : (Z,) of the balls [rad]
-    rings, balls : young [Pa], poisson, density [kg/m3]
+    geometry : BallBearing;  azimuth : (Z,) of the balls [rad];  rings, balls : young [Pa], poisson, density [kg/m3]
     reference_load : load of a ball [N], from which the points that may touch are chosen
     law : kernel of signature ``LAW``;  params : function of (pair (n,), area (n,)) -> (n, k) parameters of the points;
         pairs are counted as in a record: inner races of all balls, then outer
     state_size : columns of the law's memory
     mass, damping, stiffness : (5, 5) of rotor and shaft at the reference point, without the ring
-    free : (5,) bool;  load : (5,) constant load [N, N m]
-    formulation, hourglass, least_step : of the hexahedra
+    free : (5,) bool;  load : (5,) constant load [N, N m];  formulation, hourglass, least_step : of the hexahedra
     seat_inner, seat_outer : "rigid" or a bed [N/m3]
     contact_damping : normal damping [N s/m] of each contact at the reference load
     ball_force : outward force on each ball [N], centrifugal

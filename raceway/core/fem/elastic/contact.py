@@ -152,14 +152,10 @@ class PlaceLaw:
 class Contact(ABC):
     """Places at which forces act between two bodies: points of a surface, or contact resultants.
 
-    Parameters
-    ----------
     place : (n, 3) undisplaced [m];  area : (n,) what pressures are multiplied with [m2], 1 for resultants
     counts : (pairs,) places of each pair of surfaces;  surfaces : (pairs, 8), see ``raceway.core.fem.elastic.contact``
     law : PlaceLaw;  friction : CoulombFriction | None
 
-    Attributes
-    ----------
     move : (3 n, 3 nodes) sparse B: displacement of the places against the second bodies
 
     With y = X + B u, gap = g(y) of the exact surface and its normal n = grad g, the force on a place of the first body is

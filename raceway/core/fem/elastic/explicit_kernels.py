@@ -23,7 +23,6 @@ MARGIN = 1e-6
 #: Nodes that are summed and moved together, so that their forces stay in the first cache.
 _CHUNK = 512
 
-
 #: All bodies as one mesh: see ``raceway.core.fem.hexahedron.stiffness.Mesh``; moduli (ranges, 3); work; parts, the forces
 #: by range.
 Bodies = namedtuple("Bodies", "ranges cells x moduli work parts")

@@ -81,13 +81,9 @@ def tangents(factors, direction, normal, symmetric, out):  # type: ignore[no-unt
 class CoulombFriction:
     """Coulomb friction of n points against the other surface.
 
-    Parameters
-    ----------
     coefficient : mu > 0;  stick : (n,) stiffness of sticking points [N/m3]
     symmetric : whether tangents leave the coupling with the pressure out, for solvers of symmetric systems
 
-    Attributes
-    ----------
     committed, place : (n, 3) resistances [Pa] and displacements [m] at the last commit
     dissipated : (n,) energy lost up to the last commit [J/m2]
     """

@@ -230,10 +230,8 @@ def factored(
 ) -> Fronts:
     """Eliminate all unknowns but those retained.
 
-    dissection : _Dissection
-    cells : (m, 8) uint32, in the order of the dissection
-    matrices : function of a slice of these cells -> (k, 24, 24)
-    free : (3 n,) bool, unknowns; the others are zero
+    dissection : _Dissection;  cells : (m, 8) uint32, in the order of the dissection
+    matrices : function of a slice of these cells -> (k, 24, 24);  free : (3 n,) bool, unknowns; the others are zero
     on_front : called after each front with the work done and that of all, in millions of operations; optional
 
     ConvergenceError: A singular matrix: a motion that neither the retained nodes nor supports hold.

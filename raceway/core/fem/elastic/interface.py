@@ -19,8 +19,7 @@ from raceway.storage.array_cache import kept
 class _Ring:
     """One ring, its displacement u = R q + w of the frame's motions q and of w, which is zero on the seat.
 
-    element : Loose | Closed
-    part : rows of the ring among all nodes' (3 nodes,)
+    element : Loose | Closed;  part : rows of the ring among all nodes' (3 nodes,)
     ride : (3 n, m) R at all nodes; m = 0 without a frame
     apply : function of w (3 nodes,) -> c K w + d M w;  inertia : (3 n,) d / c times the nodes' masses
     size : 3 nodes
@@ -270,14 +269,9 @@ class Motions:
 class Interface:
     """Superelements of all bodies of a bearing.
 
-    Parameters
-    ----------
     rings : the inner ring, with the frame, and the outer one
-    balls : groups of equal balls, each with the numbers of its balls
-    nodes : of the assembly
+    balls : groups of equal balls, each with the numbers of its balls;  nodes : of the assembly
 
-    Attributes
-    ----------
     numbers : (n,) of the contacts' nodes in the assembly;  place : (nodes,) the way back, -1 elsewhere
 
     A ball answers for itself: its contacts' nodes, and the mean motions that its cage and the springs of its superelement
@@ -374,8 +368,7 @@ def interface_of(assembly: Assembly, contacts: np.ndarray, mass: float, on_progr
     """Superelements of c K + d M.
 
     assembly : inner ring, outer ring, balls, with its groups of equal parts
-    contacts : (nodes,) bool, those that contacts may touch
-    mass : d / c [1/s2]
+    contacts : (nodes,) bool, those that contacts may touch;  mass : d / c [1/s2]
     on_progress : told of every body that is factored, optional
     """
     rings = [_ring(assembly, group, contacts, mass, on_progress) for group in assembly.groups[:2]]

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
     from scipy.sparse.linalg import SuperLU
 
-
 #: Neighbours up to this many times the distance of the nearest one are strong: all corners of a cube (1.73) and somewhat more,
 #: for every direction that is left out makes the next level larger.
 REACH = 2.2
@@ -40,8 +39,7 @@ class _Levels:
 def _aggregates(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> _Levels:
     """Aggregates of nodes, of these aggregates, and so on.
 
-    graph : (n, n) CSR, not zero where two nodes share a cell
-    points : (n, 3) float [m]
+    graph : (n, n) CSR, not zero where two nodes share a cell;  points : (n, 3) float [m]
     fewest : nodes that an aggregate holds on average at least; aggregates of aggregates are taken until they do
 
     An aggregate stands at the mean of its nodes, and neighbours those that share a cell with one of its nodes.
@@ -87,14 +85,7 @@ def _aggregates(graph: csr_matrix, points: np.ndarray, fewest: float = 1.0) -> _
 
 
 #: Columns of ``rigid_motions``.
-MOTIONS = (
-    "translation along x",
-    "translation along y",
-    "translation along z",
-    "rotation about x",
-    "rotation about y",
-    "rotation about z",
-)
+MOTIONS = (*(f"translation along {axis}" for axis in "xyz"), *(f"rotation about {axis}" for axis in "xyz"))
 #: Squared singular values below this part of the largest are zero: a support over 1e-4 of a body is no support, rounding 1e-16.
 _RANK = 1e-8
 
@@ -139,17 +130,15 @@ _MULTIPLY = {np.float64: jit(_signature(float64))(_multiply), np.float32: jit(_s
 class BlockMatrix:
     """A square sparse matrix of 3 x 3 blocks.
 
-    matrix : (3 n, 3 n) scipy.sparse
-    real : numpy.float64 or numpy.float32, of the blocks and of all vectors
+    matrix : (3 n, 3 n) scipy.sparse;  real : numpy.float64 or numpy.float32, of the blocks and of all vectors
     """
 
     def __init__(self, matrix: csr_matrix, real: type[np.floating] = np.float64) -> None:
         blocks = matrix.tobsr((3, 3))
         self._starts, self._columns = blocks.indptr.astype(np.int32), blocks.indices.astype(np.int32)
         self._blocks = np.ascontiguousarray(blocks.data.reshape(-1), dtype=real)
+        self._real, self._nothing = real, np.zeros(matrix.shape[0], dtype=real)
         self._kernel: Kernel = _MULTIPLY[real]
-        self._real = real
-        self._nothing = np.zeros(matrix.shape[0], dtype=real)
 
     def times(self, x: np.ndarray, base: np.ndarray | None = None, factor: float = 0.0) -> np.ndarray:
         """(3 n,) A x + factor base."""
@@ -198,8 +187,7 @@ class _WCycle:
     def _cycle(self, level: int, right: np.ndarray) -> np.ndarray:
         if level == len(self._matrices):
             return np.asarray(self._coarse @ right)
-        matrix = self._matrices[level]
-        solution = self._smooth(level, right)
+        matrix, solution = self._matrices[level], self._smooth(level, right)
         coarse = self._down[level] @ (right - matrix.times(solution))
         correction = self._cycle(level + 1, coarse)
         if level + 1 < len(self._matrices):  # the coarsest system is solved at once
@@ -290,12 +278,10 @@ class StaticSolver:
         displacement = np.array(np.broadcast_to(values, load.shape), dtype=float).reshape(-1)
         displacement[self._free] = 0.0
         right = (np.asarray(load, dtype=float).reshape(-1) - self._matrix @ displacement)[self._free]
-        size = float(np.linalg.norm(right))
-        if size == 0.0:
+        if (size := float(np.linalg.norm(right))) == 0.0:
             return _Solution(displacement.reshape(-1, 3), 0, 0.0)
-        iterations = 0
         if self._precondition is None:
-            solution = self._factors.solve(right)
+            solution, iterations = self._factors.solve(right), 0
         else:
             solution, iterations = _conjugate_gradients(self._inner, right, self._precondition, tolerance)
         residual = float(np.linalg.norm(self._inner @ solution - right)) / size
@@ -313,9 +299,7 @@ class Preconditioner:
     graded meshes whose rows differ by orders of magnitude.
 
     matrix : (3 n, 3 n) CSR, symmetric, positive definite on the free degrees of freedom
-    points : (n, 3) float [m]
-    held : (3 n,) bool
-    fewest : nodes of an aggregate, see ``_aggregates``
+    points : (n, 3) float [m];  held : (3 n,) bool;  fewest : nodes of an aggregate, see ``_aggregates``
 
     P. Vanek, J. Mandel, M. Brezina, Computing 56 (1996) 179-196: algebraic multigrid by smoothed aggregation.
     """
@@ -338,8 +322,7 @@ class Preconditioner:
         unit_diagonal = sp.diags(scale) @ inner @ sp.diags(scale) + sp.diags((~loose).astype(float))
         motions = rigid_motions(points)[free]
         candidates = np.divide(motions, scale[:, None], out=np.zeros_like(motions), where=loose[:, None])
-        self.scale = scale[loose]
-        self._size = len(loose)
+        self.scale, self._size = scale[loose], len(loose)
         blocks = unit_diagonal.tobsr((3, 3))
         graph = sp.csr_matrix((np.ones(len(blocks.indices)), blocks.indices, blocks.indptr), (len(loose) // 3,) * 2)
         nodes = _aggregates(graph, points[free[::3]], fewest)

@@ -17,7 +17,6 @@ from raceway.errors import ConvergenceError
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
-
 #: Rings of the ellipse, points on each, and points on the circle that gives the motion of the surroundings.
 _RINGS, _ANGLES, _AROUND = 6, 12, 8
 
@@ -255,8 +254,7 @@ def interpolation_at(points: np.ndarray, cells: np.ndarray, where: np.ndarray) -
 class LoadedBody:
     """One body, to be pressed in many places.
 
-    points, cells : of its mesh
-    stiffness : (3 n, 3 n) CSR, with beds [N/m];  held : (n, 3) bool
+    points, cells : of its mesh;  stiffness : (3 n, 3 n) CSR, with beds [N/m];  held : (n, 3) bool
     mass : (n,) of its nodes [kg], where nothing holds it: a force accelerates it, and displacements are those from the mean of
         its masses; None: ``held`` holds it
     material : young [Pa], poisson, density [kg/m3]

@@ -21,8 +21,7 @@ class StressFit:
     """Fields known at the centres of elements below a surface: moving least squares, in units of the elements' own lengths.
 
     centres : (k, 3) float, the third coordinate the depth below the surface [m]
-    lengths : (k, 3) float, of the elements along the axes [m], the third one into the body
-    values : (k, c) float
+    lengths : (k, 3) float, of the elements along the axes [m], the third one into the body;  values : (k, c) float
 
     Around each point x the polynomial q in s_a = (c_a - x_a) / h_a that minimises sum_k w(|s_k|) |q(s_k) - sigma_k|^2 over the
     centres c_k gives q(0): quadratic, and cubic along the third axis, into the body, where elements grow and stresses change

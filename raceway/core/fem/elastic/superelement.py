@@ -86,8 +86,7 @@ def same_bodies(
 def sectors(points: np.ndarray, cells: np.ndarray, azimuth: np.ndarray, marks: np.ndarray, first: int) -> Copies | None:
     """A ring as equal sectors, one about each ball; None where it is none.
 
-    points, cells : of the ring
-    azimuth : (Z,) of the balls [rad]
+    points, cells : of the ring;  azimuth : (Z,) of the balls [rad]
     marks : (n, k) bool, what must be the same at copies of a node: whether it is held, or belongs to a seat
     first : number of the ring's first node
     """
@@ -231,15 +230,10 @@ REFINED = 3
 class Loose:
     """Copies of a part, each seen from the nodes of its contacts.
 
-    Parameters
-    ----------
-    part : Part
-    flexibility : (3 k, 3 k) of one copy in the frame of the first, with the springs [m/N]
+    part : Part;  flexibility : (3 k, 3 k) of one copy in the frame of the first, with the springs [m/N]
     hold : stiffness [N/m] of springs on the six mean motions of the contacts' nodes, where nothing else holds the body; the caller
         takes them off again
 
-    Attributes
-    ----------
     motions : (3 k, 6) what the springs act on, orthonormal; (3 k, 0) where ``hold`` is zero
     """
 

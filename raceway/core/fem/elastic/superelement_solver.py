@@ -88,8 +88,7 @@ class _Pressing:
 def _add_points(places, weights, blocks, matrix):  # type: ignore[no-untyped-def]
     """Add B^T D B of points to a matrix (3 k, 3 k).
 
-    places : (n, 8) nodes in the matrix;  weights : (n, 8) by which a point moves with them
-    blocks : (n, 3, 3) D
+    places : (n, 8) nodes in the matrix;  weights : (n, 8) by which a point moves with them;  blocks : (n, 3, 3) D
     """
     for i in range(places.shape[0]):
         for a in range(8):
@@ -295,12 +294,8 @@ SLOW = 0.1
 class CondensedSolver:
     """Steps of c_k K + c_c C + c_m M with contacts, every node of every body an unknown.
 
-    Parameters
-    ----------
     assembly : Assembly of inner ring, outer ring and balls;  contact : NodalContact
 
-    Attributes
-    ----------
     iterations, solves, setups : of Newton's method in the contacts, of all bodies, and factorisations
     """
 

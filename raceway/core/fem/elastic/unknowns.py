@@ -16,7 +16,6 @@ from raceway.core.signatures import MATRIX, VECTOR
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
-
 _PLACES = int64[::1]
 
 

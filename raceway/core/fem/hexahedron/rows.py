@@ -32,7 +32,6 @@ from raceway.errors import MeshError
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
 
-
 #: Elements of a batch: some 50 MB of work space.
 BATCH = 16384
 

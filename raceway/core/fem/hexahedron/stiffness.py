@@ -135,7 +135,6 @@ WORK = 48 * WIDTH
 
 _W = float64[::1]
 
-
 _THREE, _FOUR, _SIX, _SEVEN = (types.UniTuple(float64, count) for count in (3, 4, 6, 7))
 _THREE_SEVEN = types.UniTuple(_SEVEN, 3)
 

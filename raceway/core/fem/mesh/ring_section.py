@@ -14,7 +14,6 @@ from raceway.errors import MeshError
 #: Gauss points along the axis in each of three parts, and along the radius: more change growth and moments by 2e-15.
 _ALONG, _ACROSS = 20, 10
 
-
 #: Of the polynomials of the rotating ring; finite elements differ by 1 % (tests/depth/test_growth.py).
 _DEGREE = 8
 
@@ -181,8 +180,7 @@ def polygon_outline(
 ) -> Outline:
     """The outline that a polygon of a section, its groove not yet cut, stands for.
 
-    key : the scene's key, for messages
-    polygon : [x, radius] of the corners in their order around the section [m]
+    key : the scene's key, for messages;  polygon : [x, radius] of the corners in their order around the section [m]
     groove, centre_x, centre_r : radius of the groove and its centre
     MeshError: what is no section, or cannot be filled with quadrilaterals between two lines.
     """

@@ -41,8 +41,7 @@ class Traction:
 class Friction:
     """Stick and slip of one contact, with the memory that makes the next solution cheap.
 
-    patch : with the compliances along the groove (``_Race.shear``, ``_Ball.shear``)
-    coefficient : of friction
+    patch : with the compliances along the groove (``_Race.shear``, ``_Ball.shear``);  coefficient : of friction
     """
 
     def __init__(self, patch: Patch, coefficient: float) -> None:

@@ -38,8 +38,7 @@ class Spacing:
     def of(cls, semi_axes: tuple[float, float], nodes: float, radius: float, widest: float) -> "Spacing":
         """Spacing of ``nodes`` points per semi-axis.
 
-        semi_axes : major and minor one at the load that counts [m]
-        radius : of the ball [m]
+        semi_axes : major and minor one at the load that counts [m];  radius : of the ball [m]
         widest : largest minor semi-axis that has to fit, with margin [m]
 
         MeshError: An ellipse so long that no two points lie around the ball's equator: it is no contact of this ball.

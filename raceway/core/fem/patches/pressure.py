@@ -18,8 +18,7 @@ _BORDER = 0.08
 class ComplianceFactor:
     """Solves C x = r over a set of points, C the compliance of ball and race together.
 
-    patch : where the points are
-    extra : compliance of the law at every point, on the diagonal [m/N]
+    patch : where the points are;  extra : compliance of the law at every point, on the diagonal [m/N]
 
     Sets of neighbouring iterations differ in a few points.  With the factor of a set B, the solution on another set A comes
     by bordering: points that joined are unknowns of their own, points that left get a multiplier that keeps them at zero;
@@ -292,8 +291,7 @@ _NONE = np.zeros(0, dtype=np.int64)
 class Contact:
     """One ball-race pair with the memory that makes the next solution cheap: points in contact and their factor.
 
-    patch : Patch
-    law : what gives the pressure at a point; None for no penetration
+    patch : Patch;  law : what gives the pressure at a point; None for no penetration
     friction : coefficient of Coulomb friction; the patch has compliances along the groove where it is not 0
     """
 
