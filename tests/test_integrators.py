@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import attrs
 import numpy as np
 import pytest
@@ -162,10 +164,26 @@ class Compiled(Trapezoidal):
         return Drivers(compiled=OneStep().compiled)
 
 
+class Continuing(Compiled):
+    """Leaves the last moment of its motion for that of a similar scene."""
+
+    name = "continuing"
+    given: ClassVar[list] = []
+
+    @property
+    def scheme(self):
+        def steps(system, start, schedule, on_chunk=None):
+            self.given.append(start.near)
+            record = OneStep().compiled(system, start, schedule, on_chunk)
+            return attrs.evolve(record, solution=record.final)
+
+        return Drivers(compiled=steps)
+
+
 class ThirdParty:
     @hookimpl
     def raceway_integrators(self):
-        return [Trapezoidal, ByNumbers, Compiled]
+        return [Trapezoidal, ByNumbers, Compiled, Continuing]
 
 
 def registry():
@@ -216,6 +234,19 @@ def test_a_method_without_the_driver_is_refused_by_the_plan(bodies):
     with pytest.raises(SceneError, match=r"`integrator.kind` = 'compiled': has no driver `stepped`"):
         make_plan(scene(bodies, "compiled"))
     make_plan(scene("condensed", "compiled"))
+
+
+def test_a_foreign_integrator_is_given_what_it_solved_for_a_similar_scene():
+    """Of whatever kind; the search for orbits, which goes before a start on one, knows solutions of its own only."""
+    Continuing.given.clear()
+    for start in ("static", "orbit"):
+        chosen = scene("rigid", "continuing")
+        model = build_model(attrs.evolve(chosen, integrator=attrs.evolve(chosen.integrator, start=start)))
+        still = solve_equilibrium(model)
+        first = simulate(model, still)
+        simulate(model, still, near=first)
+        before, given = Continuing.given[-2:]
+        assert before is None and given is first.whole.solution
 
 
 SIX = np.zeros((6, 2))
