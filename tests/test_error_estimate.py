@@ -73,7 +73,12 @@ def test_fits_over_speeds_and_run_ups_have_a_part_for_the_transient():
     tables = rotating(1000.0, "locked", 12000.0, False, "newmark")
     tables["integrator"] |= {"turns": 4, "steps_per_turn": 60, "start": "static"}
     tables["identifier"] = {"kind": "impedance_fit", "speeds_rpm": [9000.0, 12000.0, 15000.0]}
-    sudden = run(tables).error
+    found = run(tables)
+    sudden, z = found.error, found.identification.dynamic_stiffness
+    coarse = run({**tables, "integrator": tables["integrator"] | {"steps_per_turn": 30}}).identification.dynamic_stiffness
+    assert sudden["time_step"] == pytest.approx(
+        abs(z - coarse) / 3.0 / abs(z), rel=1e-6
+    )  # order 2, of the fit over all speeds
     assert sudden["total"] >= 0.3 * sudden["transient"] > 1e-4 and "steady motion" in sudden["how"]["transient"]
     tables["contact"] |= {"friction": 0.03}
     rubbing = run(tables).error
@@ -100,6 +105,7 @@ def test_a_run_up_is_held_against_the_steady_motion_at_its_last_speed(monkeypatc
     wanted = run(steady).identification.dynamic_stiffness
     true = abs(found.identification.dynamic_stiffness - wanted) / abs(wanted)
     assert true > 1e-6 and right(found.error["total"], true), (found.error["total"], true)
+    assert found.identification.series_error[-1] == pytest.approx(true, rel=0.02)  # of the window alone, nothing estimated
 
 
 def test_k_shows_the_digits_that_its_error_leaves():

@@ -226,6 +226,12 @@ def test_the_article_s_bearing_through_its_folds(curve):
     assert any(1.0 < row.multiplier < 1.1 and row.verdict == "unstable" for row in curve.rows)
     folds = [label.row.parameter for label in curve.labels if label.kind == FOLD]
     assert [row.parameter for row in curve.unstable[0]] == folds
+    (peak,) = (label.row for label in curve.labels if label.kind == "peak")
+    before, ahead = (
+        min((row for row in curve.rows if s * (row.arc - peak.arc) > 0.0), key=lambda row: abs(row.arc - peak.arc))
+        for s in (-1, 1)
+    )
+    assert before.swing < peak.swing > ahead.swing
 
 
 @pytest.mark.slow

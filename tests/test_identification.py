@@ -73,6 +73,12 @@ def test_mean_drift_and_harmonics(identifier):
         assert found.residual > 0.3  # the line alone leaves the harmonics, and says so
 
 
+def test_a_window_that_ends_with_the_record_is_tracked():
+    time, force, displacement = signals(6)
+    found, _ = identified("order_tracking", 6, force, displacement, time)
+    assert len(found.series) == 1 and found.dynamic_stiffness == pytest.approx(Z, rel=1e-6)
+
+
 @pytest.mark.parametrize("identifier", ["fft_1x", "sine_fit"])
 def test_noise(identifier):
     """White noise of a tenth of the amplitude: the line's error is noise * sqrt(2 / n), here 0.3 %; three of them pass."""

@@ -98,6 +98,17 @@ def test_stable_limit_is_where_central_differences_blow_up():
         integrate(method, system, start, Schedule(2.02 / w0, 500, 1))
 
 
+def test_equilibria_metres_away_are_told_as_motions_without_bound():
+    """Of a ring that a soft spring alone holds: K u = F is solved in one iteration, at 11 m."""
+    system, w0, _ = orders.oscillator(0.0)
+    pulled = attrs.evolve(system, load=np.array([0.0, -22.0 * w0**2, 0.0, 0.0, 0.0]))
+    held = np.array([-system.scalars[0], 0.0, 0.0, 0.0, 0.0])
+    start = at_rest(system, held, system.evaluate(held).ball, True)
+    method = built_in("integrator", "quasi_static")()
+    with pytest.raises(StabilityError, match="grew without bound"):
+        integrate(method, SteppedBearing(pulled), start, Schedule(1e-5, 10, 1))
+
+
 def test_progress_and_stop():
     model = model_of(rotating(1000.0, "locked", 12000.0, False, "newmark"))
     seen = []

@@ -47,6 +47,12 @@ def test_points_of_runs_are_planned_each(tmp_path):
     )
 
 
+@pytest.mark.parametrize("bodies", [{"kind": "rigid"}, {"kind": "condensed"}])
+def test_what_a_second_run_does_not_take_again_is_a_part_of_the_whole(bodies):
+    still = rw.plan({"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "bodies": bodies})
+    assert 0.0 < still.predicted_once_s <= still.predicted_wall_s
+
+
 def test_band_and_follow():
     assert planned("band", STEADY, "--tolerance", "load.axial=±10 %", "--samples", 64)["looped"] == 3 * 64
     assert planned("band", STEADY, "--by", "load.axial")["points"] == 1

@@ -58,6 +58,11 @@ def test_growth_of_sections_that_are_integrated_at_once(tables):
     ]
     reference = [growth_by_strains(one, 206e9, nu) for one, nu in zip(alone, poisson, strict=True)]
     assert several == pytest.approx(reference, rel=1e-12)
+    for one in alone:  # on the ball, on the side of the groove that its thrust loads
+        assert one.contact[0] < 0.0
+        assert np.hypot(one.contact[0], one.contact[1] - 0.5 * bearing.pitch_diameter) == pytest.approx(
+            0.5 * bearing.ball_diameter
+        )
     assert alone[0].growth(206e9, 0.2) == pytest.approx(reference[0], rel=1e-12)
 
 

@@ -146,6 +146,13 @@ def test_each_row_of_a_pair_has_its_own():
     assert rows[0]["contact_angle_deg"] > rows[1]["contact_angle_deg"] > 15.0
 
 
+def test_the_angle_is_the_mean_of_the_balls_that_carry():
+    result = run({"bearing": {"preset": "B7206C"}, "load": {"axial": 200.0, "radial": [2000.0, 0.0]}})
+    loaded = result.equilibrium.contact_force[:12] > 0.0
+    angles = np.degrees(result.equilibrium.angle_inner[loaded])
+    assert 0 < loaded.sum() < 12 and angles.min() < result.ball_pass["rows"][0]["contact_angle_deg"] < angles.max()
+
+
 def test_forces_know_one_cage_speed_which_the_table_has_beside_the_loaded_one():
     """Centrifugal forces and orbiting balls go round at the free angle."""
     tables = {

@@ -89,6 +89,8 @@ def test_a_forgotten_scale_is_refused_with_the_remedy(millimetres, body):
     with pytest.raises(MeshError, match=r"write mesh.scale = 0.001 "):
         mesh_bodies(resolve(scene(**mesh, scale=1e-6)))
     assert list(mesh_bodies(resolve(scene(**mesh, scale=1e-3)))) == [body]
+    with pytest.raises(MeshError, match=r"write mesh.scale = 0.001"):  # inches in place of millimetres: no power of ten
+        mesh_bodies(resolve(scene(**mesh, scale=25.4e-3)))
 
 
 def test_a_body_of_another_bearing_is_warned_of(millimetres):

@@ -11,8 +11,7 @@ import pytest
 from raceway import ConvergenceError, SceneError, make_plan, scene_from_dict
 from raceway.core.fem.patches.balls import Balls
 from raceway.core.fem.patches.system import Pool
-from raceway.core.ring.kernels.layout import CENTRIFUGAL
-from raceway.extend import CAGE, compiled, surrogate
+from raceway.extend import CAGE, compiled, layout, surrogate
 from raceway.testing import b7206c, model_of, run, settled
 
 NODAL = b7206c(
@@ -56,6 +55,10 @@ def test_ring_and_balls_are_in_equilibrium(free):
     assert now.force[3:] == pytest.approx([0.0, 0.0], abs=1e-8)
     # Without centrifugal forces both races carry the same.
     assert found.contact_force[:12] == pytest.approx(found.contact_force[12:], rel=1e-9)
+    # Both approaches of a ball are the grooves'; it lies less than 1 nm beside the line of their centres.
+    offsets = case.system.scalars[[layout.OFFSET_INNER, layout.OFFSET_OUTER]].sum()
+    grooves = np.linalg.norm(case.system.centre_vectors(found.displacement)[0], axis=1)
+    assert now.gap.reshape(2, 12).sum(axis=0) == pytest.approx(offsets - grooves, abs=1e-9)
     # It is stepped from Python, and a compiled ring is near it.
     assert compiled(case.system) is None and compiled(surrogate(case.system)) is not None
 
@@ -113,13 +116,16 @@ def test_balls_at_cage_speed_press_the_outer_race():
     )
     radial = np.cos(found.angle_outer) * found.contact_force[12:] - np.cos(found.angle_inner) * found.contact_force[:12]
     # A pressure over points leans by some hundredths of a degree against the line through ball and groove centre.
-    assert radial == pytest.approx(case.system.table[:, CENTRIFUGAL], rel=0.02)
+    assert radial == pytest.approx(case.system.table[:, layout.CENTRIFUGAL], rel=0.02)
     assert radial.min() > 10.0
 
 
 def test_the_first_points_hold_the_contacts_of_the_scene_and_get_more_where_they_do_not(free):
     """Patches that are too small would be made again, wider, at several times the cost; three times the load needs it."""
     assert len(free[0].system.pool.generations) == 1
+    turning = {"kind": "bidirectional", "speed_rpm": 60000.0, "unbalance": 1e-7}
+    light, _ = at_rest(mesh={"nodes_per_semi_axis": 2}, load={"axial": 100.0, "radial": [0.0, 0.0]}, excitation=turning)
+    assert len(light.system.pool.generations) == 1, "balls press the outer race alone"
     case = model_of(tables(mesh={"nodes_per_semi_axis": 2}))
     heavy = attrs.evolve(case.system, load=3.0 * case.system.load)
     rows = heavy.pool.patches[0].columns
