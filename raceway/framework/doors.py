@@ -7,6 +7,7 @@ import inspect
 import math
 import operator
 import os
+import sys
 from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import wraps
 from pathlib import Path
@@ -51,16 +52,14 @@ def door(function: F) -> F:
         if not any(each in steps for each in markers):  # whose reader takes the place of the type's
             steps = [*filter(None, [_TYPES.get(text.removesuffix(" | None"))]), *steps]
         if steps and parameter.kind not in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
-            readers.append((parameter.name, parameter.default, "None" in text, steps))
+            place = len(plain) - 1 if parameter.kind is not parameter.KEYWORD_ONLY else sys.maxsize
+            readers.append((parameter.name, place, parameter.default, "None" in text, steps))
 
     @wraps(function)
     def opened(*args: object, **keywords: object) -> Any:
-        try:
-            bound = signature.bind(*args, **keywords)
-        except TypeError:
-            return function(*args, **keywords)  # Python's own words, which name the function
-        for name, default, optional, steps in readers:
-            given = value = bound.arguments.get(name, default)
+        read_args = list(args)
+        for name, place, default, optional, steps in readers:
+            given = value = args[place] if place < len(args) else keywords.get(name, default)
             if given is default or (given is None and optional):
                 continue
             try:
@@ -68,8 +67,11 @@ def door(function: F) -> F:
                     value = read(value)
             except Exception:  # whatever a foreign object makes of being asked
                 raise SceneError.at(name, given, f"must be {', '.join(words for words, _ in steps)}") from None
-            bound.arguments[name] = value
-        return function(*bound.args, **bound.kwargs)
+            if place < len(args):
+                read_args[place] = value
+            else:
+                keywords[name] = value
+        return function(*read_args, **keywords)
 
     opened.__signature__ = signature.replace(parameters=plain)  # type: ignore[attr-defined]
     return opened  # type: ignore[return-value]

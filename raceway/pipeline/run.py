@@ -361,7 +361,7 @@ class Allowance:
     patience: float
     started: float = attrs.field(factory=lambda: working_processor_time())
     bytes: float = 0.0
-    held: float = attrs.field(factory=lambda: _resident_bytes())
+    held: float = attrs.field(default=attrs.Factory(lambda self: _resident_bytes() if self.bytes else 0.0, takes_self=True))
 
     @classmethod
     def of(cls, plan: ScenePlan, patience: float) -> "Allowance":

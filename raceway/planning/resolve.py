@@ -19,7 +19,7 @@ from raceway.framework.rules import Rule, speaking
 from raceway.scene.bearing import Bearing
 from raceway.scene.growth import RunningBearing, ring_inertia
 from raceway.scene.lubricant import lubricated
-from raceway.scene.ratings import LoadRatings, load_ratings
+from raceway.scene.ratings import LoadRatings, load_ratings, ratings_of_numbers
 from raceway.scene.scene import Scene
 from raceway.scene.tables import TIME_CONSTANTS, AutoIntegrator, SceneTables
 from raceway.storage.tables import Tables
@@ -148,7 +148,7 @@ class Problem(SceneTables):
     @cached_property
     def ratings(self) -> tuple[LoadRatings, ...]:
         """Load ratings of each row."""
-        return tuple(map(load_ratings, self.bearing.of_rows))
+        return tuple(map(load_ratings if self.points else ratings_of_numbers, self.bearing.of_rows))
 
     @Derived
     def spin_speed(self) -> tuple[float, str]:

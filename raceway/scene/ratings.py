@@ -1,6 +1,7 @@
 """Load ratings of a bearing: as its keys say, as the catalogue prints them, or by ISO 281 and ISO 76 from its geometry."""
 
 from collections.abc import Callable, Mapping
+from functools import cached_property, lru_cache
 
 import attrs
 import numpy as np
@@ -32,6 +33,16 @@ class LoadRatings:
     static_from: str
     missing: str = ""
 
+    @cached_property
+    def of_contacts(self) -> tuple[np.ndarray, np.ndarray]:
+        """(..., 2) loads of a ball at both races [N]: rings live a million revolutions under the first, C0 permits the second."""
+        return self.row.contact_ratings(self.dynamic).T, self.row.static_contact_ratings(self.static).T
+
+    @cached_property
+    def fatigue_load_limit(self) -> np.ndarray:
+        """C_u [N]."""
+        return self.row.fatigue_load_limit(self.modulus)
+
 
 def load_ratings(bearing: Bearing) -> LoadRatings:
     """Ratings of a bearing of one row.
@@ -54,6 +65,10 @@ def load_ratings(bearing: Bearing) -> LoadRatings:
         return LoadRatings(row, modulus, np.nan, "", static, static_from, missing)
     dynamic, dynamic_from = _rating(bearing, "dynamic_rating", row.dynamic_rating(), BallRow.dynamic_rating)
     return LoadRatings(row, modulus, dynamic, dynamic_from, static, static_from)
+
+
+#: The same of bearings without columns: loads change, bearings stay.
+ratings_of_numbers = lru_cache(maxsize=64)(load_ratings)
 
 
 def _rating(bearing: Bearing, key: str, by_geometry: Number, formula: Callable[[BallRow], Number]) -> tuple[Number, str]:

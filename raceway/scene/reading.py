@@ -210,7 +210,7 @@ def read_tables(tables: ReadTables, registry: Registry) -> tuple[str, Tables, Sc
         if name in OPTIONAL_TABLES and name not in plain:
             parts[name] = None
         elif name not in PLUGIN_TABLES and (name != "bearing" or name in plain):
-            parts[name] = structure(at_inlet.get(name, {}), cls, name, mistakes)
+            parts[name] = _core_table(at_inlet.get(name, {}), cls, name, mistakes)
     if at_inlet is not plain:
         for k, mistake in enumerate(mistakes):  # the oil's temperature is that of the key that gives it
             if mistake.path == "lubricant" and mistake.message.startswith("`temperature_c` = "):
@@ -295,9 +295,25 @@ def _plugin_table(
     method = structure(options, plugin, name, mistakes)
     if core is None:
         return method
-    frame: Any = structure({**shared, "kind": word}, core, name, mistakes)
+    frame: Any = _core_table({**shared, "kind": word}, core, name, mistakes)
     slot = next(f.name for f in attrs.fields(core) if "plugin" in f.metadata)
     return None if frame is None or method is None else attrs.evolve(frame, **{slot: method})
+
+
+#: The core's tables by what stands in them; those of plug-ins may be made of files, which change.
+_READ: dict[tuple[type, str], Any] = {}
+_MOST_READ = 1024
+
+
+def _core_table(table: object, cls: type, name: str, mistakes: list[Mistake]) -> Any:
+    """As ``structure``, once for the same content."""
+    content = cls, repr(table)
+    part: Any = _READ.get(content) or structure(table, cls, name, mistakes)
+    if part is not None:
+        if len(_READ) >= _MOST_READ:
+            _READ.clear()
+        _READ[content] = part
+    return part
 
 
 def options_class(kind: str, word: str, registry: Registry) -> type:

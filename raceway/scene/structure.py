@@ -7,7 +7,7 @@ with a unit, and the translation of what it raises into ``Mistake``.
 import math
 from collections.abc import Callable
 from contextlib import suppress
-from functools import partial
+from functools import lru_cache, partial
 from operator import eq
 from typing import Any, TypeVar, get_args, get_origin
 
@@ -139,20 +139,22 @@ def _without(unit: str, value: object) -> object:
     return number_in(unit, value)
 
 
+#: Fields of a class by their names, with types for their words.
+_resolved: Callable[[type], dict[str, Any]] = lru_cache(maxsize=256)(lambda cls: attrs.fields_dict(attrs.resolve_types(cls)))
+
+
 def table_without_units(table: Tables, cls: type) -> Tables:
     """A copy of a table with all numbers in the keys' own units; what is wrong stays, to be reported where it is checked."""
-    attrs.resolve_types(cls)
-    fields, result = attrs.fields_dict(cls), dict(table)
+    result = dict(table)
     for key, value in table.items():
-        field = fields.get(key)
-        if field is None:
+        if not isinstance(value, str | dict | list | tuple) or (field := _resolved(cls).get(key)) is None:
             continue
         kinds = [kind for kind in (field.type, *get_args(field.type)) if isinstance(kind, type) and attrs.has(kind)]
         if isinstance(value, dict) and kinds:
             result[key] = table_without_units(value, kinds[0])
         elif isinstance(value, list | tuple) and (row_class := table_of_list(field.type)) is not None:
             result[key] = [table_without_units(each, row_class) if isinstance(each, dict) else each for each in value]
-        elif isinstance(value, str | list | tuple):
+        elif not isinstance(value, dict):
             with suppress(ValueError):
                 result[key] = _without_units(value, field)
     return result

@@ -155,16 +155,15 @@ class Life:
         rows, oil, speed = [], points.problem.lubricant, np.where(points.speed, points.speed, np.nan)
         for k, ratings in enumerate(points.problem.ratings):
             loads, most = self._loads(points, k)
-            lives = ring_lives(loads, ratings.row.contact_ratings(ratings.dynamic).T)
+            lives = ring_lives(loads, ratings.of_contacts[0])
             equivalent = ratings.dynamic * np.cbrt(1.0 / system_life(lives))
             kappa = self.viscosity_ratio  # nan where it is not known
             if kappa is None:
                 kappa = np.nan if oil is None else oil.kinematic_viscosity / reference_viscosity(speed, ratings.row.pitch)
             ratio = np.broadcast_to(kappa, points.speed.shape)
             with np.errstate(divide="ignore"):
-                safety = (ratings.row.static_contact_ratings(ratings.static).T / most).min(axis=-1)
-                limit = ratings.row.fatigue_load_limit(ratings.modulus)
-                factor = life_factor(ratio, self.contamination * limit / equivalent)
+                safety = (ratings.of_contacts[1] / most).min(axis=-1)
+                factor = life_factor(ratio, self.contamination * ratings.fatigue_load_limit / equivalent)
             rows.append(_Row(ratings, loads, lives, equivalent, safety, ratio, factor))
         return rows
 
@@ -222,7 +221,7 @@ class _Row:
             "rating_from": ratings.dynamic_from,
             "static_rating_n": _stated(ratings.static),
             "static_rating_from": ratings.static_from,
-            "fatigue_load_limit_n": _stated(ratings.row.fatigue_load_limit(ratings.modulus)),
+            "fatigue_load_limit_n": _stated(ratings.fatigue_load_limit),
             "viscosity_ratio": _stated(self.viscosity_ratio),
             "life_factor": _stated(self.life_factor),
             "rings": [
