@@ -69,10 +69,7 @@ def test_without_damping_the_branch_leads_through_no_force():
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("axial", "speed", "amplitude", "inertia", "found"),
-    [
-        (800.0, 10980.0, "constant", True, "from a higher speed"),
-        (400.0, 13492.5, "unbalance", False, "from a lower speed"),
-    ],
+    [(800.0, 10980.0, "constant", True, "from a higher speed"), (400.0, 13492.5, "unbalance", False, "from a lower speed")],
 )
 def test_a_motion_that_only_another_speed_or_load_leads_to(axial, speed, amplitude, inertia, found):
     """Points of the article's study at which nothing grows out of rest: the orbit closes in a turn of the reference ring."""
