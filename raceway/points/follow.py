@@ -134,6 +134,8 @@ def curve(
 ) -> Followed | Workload:
     """Follow the steady orbit of a scene over a continuous key, through folds, with its stability.
 
+    Parameters
+    ----------
     points : orbits at most
     aim : deviation of an orbit from its prediction along the tangent, over its size, that steps are chosen for
     doubled : follow the branches of twice the period that leave it at period doublings, too

@@ -208,14 +208,24 @@ def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
     def place(k: int) -> tuple[float, float, bool, int]:
         return points[k]["load"]["axial"], points[k]["excitation"]["speed_rpm"], k >= len(steady), k
 
-    near, last, without_friction = None, None, dict[tuple[float, float], Result | None]()
-    for k in sorted((k for k, row in enumerate(rows) if row is None), key=place):
-        near, last, at = near if points[k]["load"] == last else None, points[k]["load"], place(k)[:2]
-        row, result = _point_row(points[k], registry, near if k < len(steady) else without_friction.get(at))
-        rows[k] = row
-        if k < len(steady):
-            led = row["status"] == Status.COMPLETED or row.get("found") == "directly"
-            without_friction[at], near = result, result if led else near
+    looped, near, before, without_friction = (
+        [k for k, row in enumerate(rows) if row],
+        None,
+        0,
+        dict[tuple[float, float], Result | None](),
+    )
+    for k in sorted(range(len(points)), key=place):
+        at, near = place(k)[:2], near if points[before]["load"] == points[k]["load"] else None
+        if k in looped:
+            before, near = k, None
+        elif k >= len(steady):
+            rows[k], _ = _point_row(points[k], registry, without_friction.get(at))
+        else:
+            if before in looped and points[before]["load"] == points[k]["load"]:
+                _, near = _point_row(points[before], registry, None)
+            row, result = _point_row(points[k], registry, near)
+            rows[k], before, without_friction[at] = row, k, result
+            near = result if row["status"] == Status.COMPLETED or row.get("found") == "directly" else near
     return [row for row in rows if row]
 
 
