@@ -186,11 +186,11 @@ from .points.column_quantities import stated_columns as stated_columns
 from .points.dataset import DOF as DOF
 from .points.dataset import open_store as open_store
 from .points.effects import trend as trend
-from .points.timing import Clocks as Clocks
+from .points.engine import Clocks as Clocks
 from .points.engine import Item as Item
 from .points.engine import local as local
-from .points.timing import processor_time as processor_time
-from .points.timing import without_mesh as without_mesh
+from .points.engine import processor_time as processor_time
+from .points.engine import without_mesh as without_mesh
 from .points.engine import work_through as work_through
 from .points.selection import LIST as LIST
 from .points.selection import Selection as Selection
@@ -306,6 +306,7 @@ from .framework.doors import DURATION as DURATION
 from .points.axes import Vary as Vary
 from .points.axes import axes_of as axes_of
 from .points.axes import refuse_mistakes as refuse_mistakes
-from .points.timing import Measured as Measured
-from .points.timing import measured_once as measured_once
 from .scene.inputs import parse_change as parse_change
+from .points.engine import peak_memory as peak_memory
+from .points.engine import reset_peak as reset_peak
+from .pipeline.content import Content as Content

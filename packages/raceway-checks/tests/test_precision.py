@@ -12,6 +12,7 @@ import pytest
 from raceway_checks.precision import study as module
 from raceway_checks.precision.settings import find_reference, make_design
 from raceway_checks.precision.study import THRESHOLDS
+from raceway_checks.precision.timing import measured
 from rich.console import Console
 
 from checks.validation.command_line import ARTICLE, invoke
@@ -19,7 +20,6 @@ from raceway import RacewayError, SceneError, precision, scene_from_dict
 from raceway.extend import Store, read_toml, row_key, written
 from raceway.pipeline.equilibrium import peak
 from raceway.pipeline.transient_error import hann_line
-from raceway.points.timing import measured
 from raceway.testing import b7206c, default_registry, run
 
 TABLES = read_toml(ARTICLE)

@@ -2,5 +2,6 @@
 
 study      ``raceway precision``: a scene's settings beside their references, the cheapest ones, orders
 settings   what is run, and the reference
+timing     runs with their time and memory
 picture    page, and the picture of error against run time
 """

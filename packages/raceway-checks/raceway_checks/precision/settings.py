@@ -19,9 +19,10 @@ import attrs
 
 from raceway import RacewayError, Scene, SceneError, make_plan, scene_from_dict
 from raceway.extend import (
-    AXIAL_DISPLACEMENT, Integrator, Measured, Mesher, ReadTables, Registry, Store, Tables, Vary, Z_IMAG, Z_REAL,
-    axes_of, measured_once, points, refuse_mistakes, tables_at,
+    AXIAL_DISPLACEMENT, Integrator, Mesher, ReadTables, Registry, Store, Tables, Vary, Z_IMAG, Z_REAL,
+    axes_of, points, refuse_mistakes, tables_at,
 )  # fmt: skip
+from raceway_checks.precision.timing import Measured, measured_once
 
 STEPS = (45, 90, 180, 360, 720, 1440)
 TURNS = (3, 6, 12, 24, 48)

@@ -13,14 +13,15 @@ import numpy as np
 
 from raceway import Answer, ConvergenceError, RacewayError, SceneError, at_least, door
 from raceway.extend import (
-    AXIAL_DISPLACEMENT, DURATION, Fact, KEY_VALUES, Measured, PATH, PATHS, PRECISION, Part, Registry, SceneSource,
-    ShowProgress, Store, Tables, Vary, Words, Z_REAL, given_axes, labelled_dataset, measured_once, member, parse_change,
+    AXIAL_DISPLACEMENT, DURATION, Fact, KEY_VALUES, PATH, PATHS, PRECISION, Part, Registry, SceneSource,
+    ShowProgress, Store, Tables, Vary, Words, Z_REAL, given_axes, labelled_dataset, member, parse_change,
     plain_tables, registry_with, resolve, shown, telling, tidy, writable, written,
 )  # fmt: skip
 from raceway_checks.precision.settings import (
     Design, Judged, Reference, Runner, Setting, SettingRun, distance, find_reference, main_size, make_design, minus,
     needs_motion, setting_at,
 )  # fmt: skip
+from raceway_checks.precision.timing import Measured, measured_once
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

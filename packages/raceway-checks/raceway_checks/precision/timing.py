@@ -1,30 +1,16 @@
 """Runs of a study with their time: of the processor without what compiles, of the wall, and the peak of memory."""
 
-import resource
-import sys
 import time
-from pathlib import Path
 from typing import NotRequired, TypedDict, cast
 
-from raceway.answers.quantities import AXIAL_DISPLACEMENT, P0, PEAK_BALL_LOAD, Z_IMAG, Z_REAL, K, named
-from raceway.errors import RacewayError
-from raceway.framework.registry import Registry
-from raceway.pipeline.content import Content, ErrorTable
-from raceway.points.engine import Item, local, work_through
-from raceway.points.store import Store, row_key
-from raceway.scene.scene import Scene
-from raceway.storage.tables import Tables
-
-
-def processor_time() -> float:
-    """Of this process and of those that it has ended [s]."""
-    usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    return sum(usage.ru_utime + usage.ru_stime for usage in usages)
-
+from raceway import RacewayError, Scene
+from raceway.extend import (
+    AXIAL_DISPLACEMENT, P0, PEAK_BALL_LOAD, Content, Item, K, Registry, Store, Tables, Z_IMAG, Z_REAL, local, named,
+    peak_memory, reset_peak, row_key, without_mesh, work_through,
+)  # fmt: skip
 
 #: No further repeat is begun once a setting has taken this long [s].
 PATIENCE_S = 10.0
-_PROCESS = Path("/proc/self")
 _COMPARED = named(Z_REAL, Z_IMAG, K, AXIAL_DISPLACEMENT, PEAK_BALL_LOAD, P0)
 
 
@@ -70,11 +56,11 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Measured:
     or with several threads the wall time.
     The peak of memory is the process's, counted anew for each setting where the system lets a process do so.
     """
-    from raceway.pipeline.run import run
+    from raceway.extend import run
 
     start, compiling = time.perf_counter(), 0.0
     runs: list[dict[str, float]] = []
-    own_peak, cold = _reset_peak(), True
+    own_peak, cold = reset_peak(), True
     while len(runs) < repeats and (not runs or time.perf_counter() - start - compiling < PATIENCE_S):
         cpu = time.process_time()
         try:
@@ -87,7 +73,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Measured:
         cost = result["cost"]
         compiling += cost["compile_s"]
         if cold and cost["compile_s"] > 0.0:
-            own_peak, cold = _reset_peak(), False
+            own_peak, cold = reset_peak(), False
             continue
         times = {name: cost[name] for name in ("wall_s", "solve_s", "error_s")}
         # A plug-in that compiles in every run: no less than the wall time of the solution can be told.
@@ -108,42 +94,7 @@ def measured(scene: Scene, registry: Registry, repeats: int) -> Measured:
             "compile_s": compiling,
             "steps": cost["steps"],
             "iterations": cost["newton_iterations"],
-            **_peak_memory("setting", own_peak),
+            **peak_memory("setting", own_peak),
             "repeats": len(runs),
         },
     }
-
-
-def without_mesh(error: ErrorTable) -> float | None:
-    """The run's own estimate, less its bodies': rows on one mesh are compared with a reference on the same."""
-    return None if error["total"] is None else max(error["total"] - (error["bodies"] or 0.0), 0.0)
-
-
-class Clocks:
-    """Readings of the clocks as a run starts, and the peak of memory counted anew where the system does so."""
-
-    def __init__(self) -> None:
-        from raceway.core.jit import working_process_time
-
-        self._counted_anew, self._clock = _reset_peak(), working_process_time
-        self._cpu, self._wall = self._clock(), time.perf_counter()
-
-    def read(self) -> tuple[float, float, Tables]:
-        """Processor time without what kernels took to compile, and wall time since then [s]; ``_peak_memory`` of the run."""
-        return self._clock() - self._cpu, time.perf_counter() - self._wall, _peak_memory("run", self._counted_anew)
-
-
-def _peak_memory(counted: str, anew: bool) -> Tables:
-    """Peak of memory of this process [bytes], and whose it is: of what is ``counted`` where the count began ``anew`` with it."""
-    scale = 1 if sys.platform == "darwin" else 1024
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * scale
-    return {"peak_memory_bytes": peak, "peak_memory_of": counted if anew else "process so far"}
-
-
-def _reset_peak() -> bool:
-    """Let the system count the peak of memory of this process anew (Linux); whether it does."""
-    try:
-        (_PROCESS / "clear_refs").write_bytes(b"5")
-    except OSError:
-        return False
-    return True
