@@ -121,17 +121,9 @@ def follow(
 
 
 def curve(
-    scene: SceneSource,
-    over: str,
-    *changes: Change,
-    points: int = 1000,
-    aim: float = 1e-3,
-    doubled: bool = False,
-    turns: int = 0,
-    plan: bool = False,
-    plugins: Iterable[str | Path] = (),
-    progress: ShowProgress = None,
-) -> Followed | Workload:
+    scene: SceneSource, over: str, *changes: Change, points: int = 1000, aim: float = 1e-3, doubled: bool = False,
+    turns: int = 0, plan: bool = False, plugins: Iterable[str | Path] = (), progress: ShowProgress = None,
+) -> Followed | Workload:  # fmt: skip
     """Follow the steady orbit of a scene over a continuous key, through folds, with its stability.
 
     Parameters

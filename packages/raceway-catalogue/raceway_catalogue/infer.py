@@ -257,15 +257,9 @@ def _infer_table(table: str, maker: str | None = None, conformity: float | None 
 
 
 def infer_texts(
-    table: str | None = None,
-    bore: str | None = None,
-    outer_diameter: str | None = None,
-    width: str | None = None,
-    ratings: Iterable[str] = (),
-    pairs: Iterable[str] = (),
-    maker: str | None = None,
-    conformity: float | None = None,
-) -> Inferred | _InferredTable:
+    table: str | None = None, bore: str | None = None, outer_diameter: str | None = None, width: str | None = None,
+    ratings: Iterable[str] = (), pairs: Iterable[str] = (), maker: str | None = None, conformity: float | None = None,
+) -> Inferred | _InferredTable:  # fmt: skip
     """Infer ball count, ball diameter, pitch diameter and conformity, each with its uncertainty and reason.
 
     Inverts ISO 281 and ISO 76 for all contact angles of a size together. TABLE is a CSV file with the columns name,

@@ -47,19 +47,11 @@ class Exports(Answer):
 
 
 def export(
-    store: str | Path,
-    ross: str | Path | None = None,
-    nastran: str | Path | None = None,
-    ansys: str | Path | None = None,
-    table: str | Path | None = None,
-    at: Iterable[str] = (),
-    source: str | None = None,
-    damping: float = 0.0,
-    ross_version: str | None = None,
-    node: int = 0,
-    number: int = 1,
+    store: str | Path, ross: str | Path | None = None, nastran: str | Path | None = None,
+    ansys: str | Path | None = None, table: str | Path | None = None, at: Iterable[str] = (),
+    source: str | None = None, damping: float = 0.0, ross_version: str | None = None, node: int = 0, number: int = 1,
     tag: str | None = None,
-) -> Exports:
+) -> Exports:  # fmt: skip
     """Write kyy, kyz, kzy, kzz, cyy, ... over speed, and over speed and frequency, for a rotor program.
 
     For ROSS (axes X, Y, Z are y, z, x here), Nastran, Ansys, or as a table. The sweep needs 5 or more values of

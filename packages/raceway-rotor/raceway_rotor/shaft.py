@@ -77,14 +77,9 @@ class Beam:
 
 
 def make_beam(
-    nodes: np.ndarray,
-    diameter: float,
-    young: float,
-    poisson: float,
-    density: float,
-    shear: bool = True,
+    nodes: np.ndarray, diameter: float, young: float, poisson: float, density: float, shear: bool = True,
     stiff: np.ndarray | None = None,
-) -> Beam:
+) -> Beam:  # fmt: skip
     """A round shaft of one diameter.
 
     nodes : (n,) ascending [m];  shear : False gives an Euler-Bernoulli beam

@@ -43,14 +43,9 @@ class Film:
 
 
 def film(
-    viscous: np.ndarray,
-    alpha: np.ndarray | float,
-    modulus: np.ndarray,
-    along: np.ndarray,
-    across: np.ndarray,
-    load: np.ndarray,
-    k: np.ndarray,
-) -> Film:
+    viscous: np.ndarray, alpha: np.ndarray | float, modulus: np.ndarray, along: np.ndarray, across: np.ndarray,
+    load: np.ndarray, k: np.ndarray,
+) -> Film:  # fmt: skip
     """Film of each contact by the regimes that hold; no film where nothing entrains.
 
     viscous : (n,) eta u [N/m];  alpha : pressure-viscosity coefficient [1/Pa];  modulus : (n,) E' = 2 E* [Pa]

@@ -105,18 +105,10 @@ def reach(shape: RingShape, ball_diameter: float) -> float:
 
 
 def ring_compliance(
-    shape: RingShape,
-    ball_diameter: float,
-    balls: int,
-    half: float,
-    young: float,
-    poisson: float,
-    seat: str | float = "clamped",
-    bulk: float | None = None,
-    surface: float | None = None,
-    around: float | None = None,
-    angles: int = ANGLES,
-) -> RingCompliance:
+    shape: RingShape, ball_diameter: float, balls: int, half: float, young: float, poisson: float,
+    seat: str | float = "clamped", bulk: float | None = None, surface: float | None = None,
+    around: float | None = None, angles: int = ANGLES,
+) -> RingCompliance:  # fmt: skip
     """Structural compliance of a ring at contact angles all over its groove.
 
     balls : Z, evenly spaced

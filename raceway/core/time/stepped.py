@@ -34,14 +34,9 @@ def implicit(system: SteppedSystem, recorder: Recorder, numbers: Numbers, tolera
 
 
 def _implicit_step(
-    recorder: Recorder,
-    t: float,
-    outer: np.ndarray,
-    excitation: float,
-    numbers: Numbers,
-    tolerance: float,
+    recorder: Recorder, t: float, outer: np.ndarray, excitation: float, numbers: Numbers, tolerance: float,
     start: np.ndarray | None,
-) -> State:
+) -> State:  # fmt: skip
     """The state at time t, one step on.
 
     outer : (size,) outer forces at t;  excitation : largest so far [N]

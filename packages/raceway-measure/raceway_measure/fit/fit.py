@@ -113,16 +113,10 @@ def _refuse_foreign(record: Signals | None, by_force: bool, scene: bool, mass: b
 
 
 def fit_texts(
-    data: str | Path,
-    free: Iterable[str] = (),
-    scene: SceneSource | None = None,
-    mass: float | None = None,
-    slow_roll: str | Path | None = None,
-    run_out: str | None = None,
-    columns: Iterable[str] = (),
-    plugins: Iterable[str | Path] = (),
-    progress: ShowProgress = None,
-) -> Fitted | Identified:
+    data: str | Path, free: Iterable[str] = (), scene: SceneSource | None = None, mass: float | None = None,
+    slow_roll: str | Path | None = None, run_out: str | None = None, columns: Iterable[str] = (),
+    plugins: Iterable[str | Path] = (), progress: ShowProgress = None,
+) -> Fitted | Identified:  # fmt: skip
     """Fit numbers of a scene to measured data, or identify K and C of a bearing from the signals of its rig; intervals at 95 %.
 
     DATA is a CSV file: measured quantities over scene keys (load.axial [N], K [N/µm], K error [N/µm]: half-widths at 95 %); signals

@@ -44,14 +44,9 @@ class ElasticSystem:
     """
 
     def __init__(
-        self,
-        assembly: Assembly,
-        contact: Contact | None,
-        modulus: float,
-        load: np.ndarray,
-        condensed_solver: CondensedSolver | None = None,
-        look: Callable[[np.ndarray, np.ndarray], Seen] | None = None,
-    ) -> None:
+        self, assembly: Assembly, contact: Contact | None, modulus: float, load: np.ndarray,
+        condensed_solver: CondensedSolver | None = None, look: Callable[[np.ndarray, np.ndarray], Seen] | None = None,
+    ) -> None:  # fmt: skip
         self.assembly, self.contact, self.load = assembly, contact, np.array(load, dtype=float)
         self.excitation: Callable[[float], np.ndarray] | None = None
         #: Called with the relative residual of every iteration of ``solve_equilibrium``.

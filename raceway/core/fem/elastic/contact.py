@@ -166,14 +166,9 @@ class Contact(ABC):
     resultants_only = False
 
     def __init__(
-        self,
-        place: np.ndarray,
-        area: np.ndarray,
-        counts: np.ndarray,
-        surfaces: np.ndarray,
-        law: PlaceLaw,
+        self, place: np.ndarray, area: np.ndarray, counts: np.ndarray, surfaces: np.ndarray, law: PlaceLaw,
         friction: CoulombFriction | None = None,
-    ) -> None:
+    ) -> None:  # fmt: skip
         self.place, self.area, self.counts, self.law = place, area, counts, law.kernel
         self.params = np.ascontiguousarray(law.params, dtype=float)
         self.damping, self.friction = float(law.damping), friction

@@ -28,14 +28,9 @@ class _Ring:
     """
 
     def __init__(
-        self,
-        element: Loose | Closed,
-        part: slice,
-        ride: np.ndarray,
-        apply: Callable[[np.ndarray], np.ndarray],
-        inertia: np.ndarray,
-        size: int,
-    ) -> None:
+        self, element: Loose | Closed, part: slice, ride: np.ndarray, apply: Callable[[np.ndarray], np.ndarray],
+        inertia: np.ndarray, size: int,
+    ) -> None:  # fmt: skip
         self.element, self.part = element, part
         behind = np.zeros_like(ride)
         if inertia.any():

@@ -261,14 +261,9 @@ class LoadedBody:
     """
 
     def __init__(
-        self,
-        points: np.ndarray,
-        cells: np.ndarray,
-        stiffness: csr_matrix,
-        fixed_dofs: np.ndarray,
-        mass: np.ndarray | None,
-        material: tuple[float, float, float],
-    ) -> None:
+        self, points: np.ndarray, cells: np.ndarray, stiffness: csr_matrix, fixed_dofs: np.ndarray,
+        mass: np.ndarray | None, material: tuple[float, float, float],
+    ) -> None:  # fmt: skip
         self._points, self._cells, self._material = points, cells, material
         self._share = None if mass is None else mass / mass.sum()
         if mass is not None:

@@ -76,14 +76,9 @@ class ElasticRing(SteppedRing):
             return np.asarray(system.static_internal(y))
 
     def evaluate(
-        self,
-        q: np.ndarray,
-        v: np.ndarray | None = None,
-        ball: np.ndarray | None = None,
-        ball_rate: np.ndarray | None = None,
-        t: float = 0.0,
-        step: Increment = AT_ONCE,
-    ) -> Evaluation:
+        self, q: np.ndarray, v: np.ndarray | None = None, ball: np.ndarray | None = None,
+        ball_rate: np.ndarray | None = None, t: float = 0.0, step: Increment = AT_ONCE,
+    ) -> Evaluation:  # fmt: skip
         """The last equilibrium; its tangent is that of the ring with all nodes in balance.
 
         ConvergenceError: A place of the ring that is no equilibrium that was found.

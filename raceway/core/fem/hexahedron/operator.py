@@ -58,16 +58,9 @@ class HexOperator:
     """
 
     def __init__(
-        self,
-        points: ArrayLike,
-        cells: ArrayLike,
-        young: float,
-        poisson: float,
-        density: float,
-        formulation: str = "one_point",
-        hourglass: float = 0.05,
-        least_step: float = 0.0,
-    ) -> None:
+        self, points: ArrayLike, cells: ArrayLike, young: float, poisson: float, density: float,
+        formulation: str = "one_point", hourglass: float = 0.05, least_step: float = 0.0,
+    ) -> None:  # fmt: skip
         if formulation not in KINDS:
             raise ValueError(f"formulation {formulation!r} is none of {', '.join(KINDS)}")
         if not (young > 0.0 and density > 0.0 and -1.0 < poisson < 0.5 and hourglass >= 0.0):

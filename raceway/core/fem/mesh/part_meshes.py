@@ -160,14 +160,9 @@ class RingShape:
 
 
 def ring_mesh(
-    shape: RingShape,
-    left: np.ndarray,
-    arc: np.ndarray,
-    right: np.ndarray,
-    layers: np.ndarray,
-    azimuths: np.ndarray,
+    shape: RingShape, left: np.ndarray, arc: np.ndarray, right: np.ndarray, layers: np.ndarray, azimuths: np.ndarray,
     band: tuple[float, float] | None = None,
-) -> HexMesh:
+) -> HexMesh:  # fmt: skip
     """The swept mesh.
 
     left, right : (n,) points 0 to 1 on the lands, left from the side face to the groove, right from the groove

@@ -241,14 +241,9 @@ class BallElements:
 
 
 def free_ball(
-    radius: float,
-    poisson: float,
-    mesh: BallElements,
-    offsets: np.ndarray,
-    components: tuple[int, ...] = (0, 2),
-    formulation: str = "incompatible",
-    harmonics: str = "all",
-) -> _FreeBall:
+    radius: float, poisson: float, mesh: BallElements, offsets: np.ndarray, components: tuple[int, ...] = (0, 2),
+    formulation: str = "incompatible", harmonics: str = "all",
+) -> _FreeBall:  # fmt: skip
     """The floating ball of a radius [m], from the cache where it is there.
 
     offsets : (o,) sectors from the loaded to the observed meridian; the opposite pole lies divisions / 2 away

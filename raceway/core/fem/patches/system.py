@@ -271,14 +271,9 @@ class PatchSystem(SteppedRing):
         return self.pool.friction > 0.0 and bool(self.scalars[layout.FRICTION] > 0.0)
 
     def evaluate(
-        self,
-        q: np.ndarray,
-        v: np.ndarray | None = None,
-        ball: np.ndarray | None = None,
-        ball_rate: np.ndarray | None = None,
-        t: float = 0.0,
-        step: Increment = AT_ONCE,
-    ) -> Evaluation:
+        self, q: np.ndarray, v: np.ndarray | None = None, ball: np.ndarray | None = None,
+        ball_rate: np.ndarray | None = None, t: float = 0.0, step: Increment = AT_ONCE,
+    ) -> Evaluation:  # fmt: skip
         q = np.asarray(q, dtype=float)
         v = np.zeros(5) if v is None else np.asarray(v, dtype=float)
         return self.pool.widened(lambda: self._evaluate(q, v, ball, ball_rate, t, step))
