@@ -485,7 +485,7 @@ def test_pictures_of_a_command_leave_pyplot_alone():
     """Figures of their own; only ``plot()``, in a notebook, hands out those of pyplot."""
     sources = Path(rw.__file__).parent.rglob("*.py")
     having = {path.name for path in sources if "import pyplot" in path.read_text(encoding="utf-8")}
-    assert having == {"pictures.py", "picture.py"}
+    assert having == {"formats.py", "picture.py"}
 
 
 def test_verbose_leaves_standard_output_to_json_which_is_the_file(tmp_path):
