@@ -46,8 +46,7 @@ def steps(count: int) -> tuple[float, Any, float]:
     from checks.explicit_step import ARTICLE, bearing, pressed
     from raceway import load_scene
     from raceway.core import device
-    from raceway.core.recorder import Recorder
-    from raceway.extend import Schedule
+    from raceway.extend import Recorder, Schedule
 
     built, before, least = bearing(load_scene(ARTICLE)), device.free_bytes(), []
     system, together = built.system, device.together

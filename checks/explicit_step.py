@@ -13,13 +13,11 @@ import numpy as np
 
 from checks.kernel import least
 from raceway import load_scene
-from raceway.contact_laws.penalty import linear
 from raceway.core.fem.elastic.bearing import ElasticBearing
 from raceway.core.fem.elastic.bearing_data import BearingData
 from raceway.core.fem.elastic.contact import penalty_stiffness
-from raceway.core.recorder import Recorder
 from raceway.core.threads import ThreadPool, usable_cores
-from raceway.extend import Schedule, State, make_basis, mesh_bodies, resolve
+from raceway.extend import Recorder, Schedule, State, linear, make_basis, mesh_bodies, resolve
 
 #: The article's mesh.
 ARTICLE = "examples/b7206_article_mesh.toml"
@@ -45,7 +43,7 @@ def bearing(scene: Any) -> ElasticBearing:
         rings=(b.rings.young, b.rings.poisson, b.rings.density),
         balls=(b.balls.young, b.balls.poisson, b.balls.density),
         reference_load=basis.ball_load,
-        law=linear(),
+        law=linear,
         params=params,
         mass=np.diag([0.5, 0.5, 0.5, 1e-4, 1e-4]),
         free=np.ones(5, dtype=bool),

@@ -75,11 +75,10 @@ HARMS: dict[str, harm.Harm] = {
 
 def three_kernels() -> list[float]:
     """Force, slope and the rate's, of the three smallest laws."""
-    from raceway.contact_laws.penalty import linear, square
-    from raceway.extend import three_halves
+    from raceway.extend import linear, square, three_halves
 
     found, none = [], np.zeros((1, 0))
-    for law in (three_halves, square(), linear()):
+    for law in (three_halves, square, linear):
         out = [np.empty(1) for _ in range(3)]
         law(np.array([-4e-6]), np.zeros(1), np.array([[1e9]]), none, none, 0.0, *out)
         found += [float(value[0]) for value in out]

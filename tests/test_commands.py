@@ -25,7 +25,7 @@ from checks.validation.command_line import ARTICLE, COARSE, EXAMPLES, LAW, MINIM
 from raceway.answers.progress import ProgressBar
 from raceway.cli import frame
 from raceway.cli.main import main
-from raceway.framework.contracts import KINDS
+from raceway.testing import SUITES
 
 HERE = click.Context(main)
 LISTED = {name: main.get_command(HERE, name) for name in main.list_commands(HERE)}
@@ -246,7 +246,7 @@ def test_help_of_an_alias_shows_it(alias):
 
 def test_help_of_new_plugin_lists_the_kinds():
     words = invoke("dev", "new-plugin", "--help").stdout.split()
-    assert {kind for kind in KINDS if {kind, f"{kind},", f"{kind}."} & set(words)} == set(KINDS)
+    assert {kind for kind in SUITES if {kind, f"{kind},", f"{kind}."} & set(words)} == set(SUITES)
 
 
 @pytest.mark.parametrize("command", [*RUNNABLE, "study", ""])

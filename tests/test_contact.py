@@ -14,9 +14,8 @@ from checks.validation.reference.ring import Ring
 from raceway import RacewayError, scene_from_dict
 from raceway.bodies.contacts import approach_at_load
 from raceway.core.columns import elliptic_integrals
-from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import ellipticity
-from raceway.extend import contact_modulus, ellipse
+from raceway.extend import BallBearing, contact_modulus, ellipse
 from raceway.testing import run
 
 MODULUS = contact_modulus(212e9, 0.29, 212e9, 0.29)

@@ -6,7 +6,6 @@ import pytest
 
 import raceway as rw
 from raceway import SceneError
-from raceway.scene.catalogue import preset, preset_of
 from raceway.scene.designation import read_designation
 
 #: Designation: name in the catalogue, contact angle [deg], clearance class, class of ISO 492, ceramic balls.
@@ -34,11 +33,11 @@ KNOWN = {
 @pytest.mark.parametrize("text", KNOWN)
 def test_a_designation_is_a_bearing_of_the_catalogue(text):
     name, angle, clearance, tolerance, ceramic = KNOWN[text]
-    said, table = read_designation(text), preset(text)
+    said, table = read_designation(text), rw.catalogue(text)[0].table
     assert name in said.names
     assert (said.clearance, said.tolerance, said.ceramic) == (clearance, tolerance, ceramic)
     same = ("ball_count", "ball_diameter", "pitch_diameter", "bore", "outer_diameter", "width")
-    assert {key: table[key] for key in same} == {key: preset(name)[key] for key in same}
+    assert {key: table[key] for key in same} == {key: rw.catalogue(name)[0].table[key] for key in same}
     assert table["contact_angle_deg"] == angle
     assert table["balls"].get("material", "") == ceramic
 
@@ -47,8 +46,8 @@ def test_a_clearance_class_is_the_middle_of_its_range():
     """ISO 5753-1, over 24 up to 30 mm: C2 1 to 11, CN 5 to 20, C3 13 to 28, C4 23 to 41 um."""
     words = {"": 12.5, "/C2": 6.0, "/CN": 12.5, "/C3": 20.5, "/C4": 32.0}
     for suffix, middle in words.items():
-        assert preset(f"6206{suffix}")["radial_clearance"] == pytest.approx(middle * 1e-6), suffix
-    scatter = {fact.key: fact.scatter for fact in preset_of("6206/C3").facts}["radial_clearance"]
+        assert rw.catalogue(f"6206{suffix}")[0].table["radial_clearance"] == pytest.approx(middle * 1e-6), suffix
+    scatter = {fact.key: fact.scatter for fact in rw.catalogue("6206/C3")[0].facts}["radial_clearance"]
     assert scatter == pytest.approx(7.5 / 20.5)
 
 

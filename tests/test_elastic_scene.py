@@ -9,12 +9,12 @@ import json
 import numpy as np
 import pytest
 
+import raceway as rw
 from raceway import RacewayError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.core.fem.elastic.iterative_solver import LinearSolver
 from raceway.core.fem.elastic.ring import from_orbit
 from raceway.extend import steady_orbit
 from raceway.pipeline.run import Allowance
-from raceway.scene.unused import unused
 from raceway.storage.files import allowed_bytes
 from raceway.testing import run, solve_equilibrium
 
@@ -95,7 +95,7 @@ def test_the_screen_names_all_peak_pressures_and_tells_how_good_the_balance_is(s
 
 
 def test_an_hourglass_coefficient_without_hourglass_modes_is_told():
-    (told,) = unused(scene(bodies={"formulation": "incompatible", "hourglass": 0.01}))
+    (told,) = rw.check(scene(bodies={"formulation": "incompatible", "hourglass": 0.01})).warnings
     assert "`bodies.hourglass` has no effect" in told and "only 'one_point'" in told
 
 

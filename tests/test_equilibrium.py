@@ -11,8 +11,7 @@ from checks.validation.reference.statics import equilibrium
 from checks.validation.scenes import imbalance, static
 from checks.validation.tangent import cases
 from raceway import ConvergenceError
-from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, DAMPING, SINE
-from raceway.extend import resolve
+from raceway.extend import layout, resolve
 from raceway.testing import Model, model_of, settled, solve_equilibrium
 
 
@@ -71,9 +70,9 @@ def test_one_ball_equals_scipy():
     """Each ball's place between the races, with centrifugal force, against scipy's root finder."""
     model, now = settled(static(400.0, "locked", 700.0, 15e3, True))
     system, ring = model.system, twin(model)
-    assert ring.centrifugal == pytest.approx(system.table[0, CENTRIFUGAL], rel=1e-12)
+    assert ring.centrifugal == pytest.approx(system.table[0, layout.CENTRIFUGAL], rel=1e-12)
     for k, e in enumerate(ring.centres(now.displacement)):
-        assert system.table[k, [COSINE, SINE]] == pytest.approx([ring.J[k, 1, 1], ring.J[k, 1, 2]], abs=1e-12)
+        assert system.table[k, [layout.COSINE, layout.SINE]] == pytest.approx([ring.J[k, 1, 1], ring.J[k, 1, 2]], abs=1e-12)
         assert now.ball[k] == pytest.approx(ring.one_ball(e), abs=1e-11)
 
 
@@ -167,7 +166,7 @@ def test_damping_tangent_is_the_derivative_by_velocity(inertia):
             "contact": {"damping": 200.0},
         }
     )
-    assert model.system.scalars[DAMPING] == 200.0
+    assert model.system.scalars[layout.DAMPING] == 200.0
     found = model.system.evaluate(now.displacement, ball=now.ball).damping
     columns = []
     for i in range(5):

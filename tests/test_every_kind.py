@@ -9,7 +9,7 @@ import pytest
 from checks.validation.command_line import MINIMAL, install, invoke, raceway
 from raceway import PluginError
 from raceway.extend import Registry
-from raceway.framework.contracts import KINDS
+from raceway.testing import SUITES
 from tests.test_docs import FILES
 
 ROOT = Path(__file__).parents[1]
@@ -75,7 +75,7 @@ def one_message(found, code=2):
 
 
 def test_the_kinds_are_all_here():
-    assert set(OWN) == set(KINDS)
+    assert set(OWN) == set(SUITES)
 
 
 def test_a_run_uses_law_excitation_integrator_identifier_and_report(files, tmp_path):

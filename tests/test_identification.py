@@ -7,8 +7,17 @@ import pytest
 
 from checks.validation.scenes import rotating, small_force
 from raceway import run
-from raceway.core.signals import stiffness, synchronous_phasor, turns_in, without_drift
-from raceway.extend import Motion, Record, Schedule, fit_harmonics, identification
+from raceway.extend import (
+    Motion,
+    Record,
+    Schedule,
+    fit_harmonics,
+    identification,
+    stiffness,
+    synchronous_phasor,
+    turns_in,
+    without_drift,
+)
 from raceway.testing import model_of, solve_equilibrium
 
 K, M, C, SPEED = 1.7e8, 2.0, 4e3, 400.0 * np.pi

@@ -13,11 +13,9 @@ from checks.validation import orders
 from checks.validation.command_line import EXAMPLES
 from checks.validation.scenes import built_in, rotating
 from raceway import PluginError, SceneError, StabilityError, build_model, hookimpl, make_plan, scene_from_dict
-from raceway.core.ring.ring import Increment
-from raceway.core.ring.stepped import SteppedBearing
 from raceway.core.signatures import Outer
 from raceway.core.time.compiled import outer_force
-from raceway.extend import Drivers, OneStep, Schedule, at_rest, integrate
+from raceway.extend import Drivers, Increment, OneStep, Schedule, SteppedBearing, at_rest, integrate
 from raceway.testing import Registry, model_of, settled, simulate, solve_equilibrium
 
 Newmark = built_in("integrator", "newmark")

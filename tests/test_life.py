@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from raceway import run
-from raceway.core.contact.geometry import BallBearing
 from raceway.core.ratings import (
     STEEL,
     equivalent_loads,
@@ -18,7 +17,7 @@ from raceway.core.ratings import (
     set_rating,
     system_life,
 )
-from raceway.extend import BallRow
+from raceway.extend import BallBearing, BallRow
 
 #: 7 balls of 11.5 mm on 43.5 mm, C = 23 400 N: clearance [m], radial and axial force [N], moment about the radial force [N m], life.
 #: MASTA, in the public test file Test_BallBearing.py of github.com/minzhun/ISO16281; the moment's line has a life of 8e5 and balls

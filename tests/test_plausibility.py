@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+import raceway as rw
 from checks.validation.command_line import EXAMPLES
 from raceway import ConvergenceError, SceneError, check, run, scene_from_dict
-from raceway.extend import nearest, resolve
+from raceway.extend import nearest
 from raceway.pipeline.plausible import inertia_warnings
 from raceway.pipeline.result import facts
 from raceway.pipeline.simulate import recording_stride
 from raceway.planning.resolve import damped_step_limit, samples_per_turn
-from raceway.planning.rules import scene_warnings
 from raceway.testing import b7206c
 
 EXCITED = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
@@ -127,10 +127,7 @@ def test_an_aluminium_housing_that_lets_its_ring_go_is_told():
 
 
 def test_a_check_tells_of_the_loose_ring():
-    assert any(
-        "loose on its shaft" in text
-        for text in scene_warnings(resolve(scene_from_dict({"bearing": SET, "kinematics": FAST})))
-    )
+    assert any("loose on its shaft" in text for text in rw.check({"bearing": SET, "kinematics": FAST}).warnings)
 
 
 def test_a_row_that_lifts_off_is_told():

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from raceway_catalogue.printed import printed_by
 
+import raceway as rw
 from raceway import SceneError, scene_from_dict
 from raceway.core.columns import with_values
-from raceway.scene.catalogue import catalogue
 from raceway.scene.ratings import load_ratings
 
 BARE = {
@@ -24,8 +24,8 @@ def bearing(**keys):
 def test_the_catalogue_holds_what_is_printed():
     printed = {one.names[0]: one.ratings[0] for one in printed_by("nsk")}
     for name, rating in printed.items():
-        assert catalogue()[name].ratings == {"dynamic_rating": rating.dynamic, "static_rating": rating.static}
-    assert "dynamic_rating" not in catalogue()["7014C"].table
+        assert rw.catalogue(name)[0].ratings == {"dynamic_rating": rating.dynamic, "static_rating": rating.static}
+    assert "dynamic_rating" not in rw.catalogue("7014C")[0].table
 
 
 def test_a_bearing_of_the_catalogue_has_the_printed_ratings():

@@ -5,8 +5,7 @@ import pytest
 
 import raceway as rw
 from raceway.answers.quantities import RULE_OF_THUMB_S, dry_damping_note
-from raceway.core.ring.kernels.layout import DAMPING, LEVER, SIDE, TILT_ARM, TIME_CONSTANT
-from raceway.extend import dry_damping_words
+from raceway.extend import dry_damping_words, layout
 from raceway.testing import settled
 
 SPEED = 24000.0
@@ -40,11 +39,15 @@ def complex_condensation(system, equilibrium, w):
         for reach, c in zip(reaches, (k, count + k), strict=True):
             force, length = equilibrium.contact_force[c], np.linalg.norm(reach)
             stiffness = 1.5 * force / -equilibrium.gap[c] if force > 0.0 else 0.0
-            dashpot = stiffness * system.scalars[TIME_CONSTANT] + (force > 0.0) * system.scalars[DAMPING]
+            dashpot = stiffness * system.scalars[layout.TIME_CONSTANT] + (force > 0.0) * system.scalars[layout.DAMPING]
             along = np.outer(reach, reach) / length**2
             contacts.append((stiffness + 1j * w * dashpot) * along + force / length * (np.eye(2) - along))
         inner, outer = contacts
-        (c, s), (side, lever), arm = direction[k], system.table[k, [SIDE, LEVER]], system.scalars[TILT_ARM]
+        (c, s), (side, lever), arm = (
+            direction[k],
+            system.table[k, [layout.SIDE, layout.LEVER]],
+            system.scalars[layout.TILT_ARM],
+        )
         move = np.array([[side, 0.0, 0.0, side * arm * s, -side * arm * c], [0.0, c, s, -lever * s, lever * c]])
         out += move.T @ (inner - inner @ np.linalg.solve(inner + outer, inner)) @ move
     return out

@@ -21,12 +21,12 @@ from typing import Any
 
 import numpy as np
 
+import raceway as rw
 from checks.robustness._doors import called
 from checks.robustness._scenes import fill, scene
 from raceway import ConvergenceError, RacewayError, Result, Scene, ScenePlan, load_scene, make_plan, scene_from_dict
 from raceway.extend import START_S, resolve, run
 from raceway.planning.resolve import record_bytes
-from raceway.planning.rules import foreseen, scene_warnings
 
 #: Processor time [s] in which a scene is checked and planned, and run; and wall time that nothing may sleep through.
 CHECK_S, RUN_S, ASLEEP_S = 10.0, 60.0, 300.0
@@ -93,8 +93,7 @@ def check(tables: dict[str, Any]) -> tuple[Scene | None, ScenePlan | None, str]:
         scene = scene_from_dict(tables)
         plan = make_plan(scene)
         json.dumps(plan.to_dict(), allow_nan=False)
-        mistakes = foreseen(resolve(scene))
-        scene_warnings(resolve(scene))
+        mistakes = rw.check(scene).mistakes
     except RacewayError as error:
         assert error.exit_code in (1, 2), error.exit_code
         assert str(error).strip(), "no message"

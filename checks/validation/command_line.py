@@ -15,6 +15,8 @@ from click.testing import CliRunner, Result
 from raceway.cli.main import main
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+#: Bearings of the catalogue with a file of their own.
+PRESETS = EXAMPLES.parent / "raceway" / "data" / "bearings"
 ARTICLE, MINIMAL = str(EXAMPLES / "b7206.toml"), str(EXAMPLES / "minimal.toml")
 #: A mesh of a second.
 COARSE = ("--set", "mesh.kind=structured", "--set", "mesh.element_size=2e-3", "--set", "mesh.nodes_per_semi_axis=1")

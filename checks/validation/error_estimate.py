@@ -14,8 +14,7 @@ import numpy as np
 
 from checks.validation.scenes import rotating
 from raceway import scene_from_dict
-from raceway.core.signals import stiffness
-from raceway.extend import steady_orbit
+from raceway.extend import steady_orbit, stiffness
 from raceway.testing import model_of, run, solve_equilibrium
 
 #: An estimate is right within this factor, or when it and the error are below this size.  The factor is less than the 4 by which

@@ -13,7 +13,6 @@ import attrs
 import numpy as np
 
 from checks.validation.quarter import ball_layers, half_line, quarter_ball, quarter_groove
-from raceway.contact_laws.penalty import linear
 from raceway.core.fem.elastic.assembly import Assembly, Body, Frame
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.contact import (
@@ -27,8 +26,7 @@ from raceway.core.fem.elastic.contact import (
 )
 from raceway.core.fem.elastic.newton import TOLERANCE, StaticSolution
 from raceway.core.fem.elastic.surface import Facets, surface_points
-from raceway.core.fem.mesh.hex_mesh import growing
-from raceway.extend import HexMesh, HexOperator, contact_modulus, ellipse
+from raceway.extend import HexMesh, HexOperator, contact_modulus, ellipse, growing, linear
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 DIAMETER, CONFORMITY, ROLLING = 9.525e-3, 0.52, 18.25e-3
@@ -144,7 +142,7 @@ def model(
     points = found[near]
     penalty = float(penalty_stiffness(MODULUS, minor / nodes))
     pair = Pair("ball on groove", points, surface, facets, len(ball.points))
-    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear(), np.full((len(points.area), 1), penalty)))
+    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, np.full((len(points.area), 1), penalty)))
     forces = np.zeros(assembly.size)
     forces[0] = 0.0 if prescribed else -0.25 * load
     return Groove(load, nodes, ball, block, ElasticSystem(assembly, contact, MODULUS, forces), penalty)

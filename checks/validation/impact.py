@@ -10,13 +10,12 @@ from scipy.integrate import solve_ivp
 
 from checks.validation.quarter import half_line
 from checks.validation.reference.elastic import grid
-from raceway.contact_laws.penalty import linear
 from raceway.core.fem.elastic.assembly import Assembly, Body
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, penalty_stiffness
 from raceway.core.fem.elastic.surface import Facets, surface_points
 from raceway.core.fem.mesh.part_meshes import ball_mesh
-from raceway.extend import FACES, HexOperator, Motion, solve_static
+from raceway.extend import FACES, HexOperator, Motion, linear, solve_static
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 RADIUS, HEIGHT, HALF_WIDTH = 4.7625e-3, 8e-3, 8e-3
@@ -71,7 +70,7 @@ def model(fine: float, zone: float, formulation: str = "one_point", hourglass: f
     points = surface_points(ball[0], under, np.array([0.0, 0.0, RADIUS]))
     pair = Pair("ball on block", points, plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(block[0], top), first)
     stiffness = penalty_stiffness(MODULUS, 2.0 * np.sqrt(points.area))
-    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear(), stiffness[:, None]))
+    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, stiffness[:, None]))
     system = ElasticSystem(assembly, contact, MODULUS, np.zeros(assembly.size))
     velocity = np.zeros((assembly.nodes, 3))
     velocity[:first, 2] = -1.0

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from raceway.core.fem.mesh.hex_mesh import growing
 from raceway.core.fem.mesh.part_meshes import CUBE, ball_mesh
-from raceway.extend import FACES, HexMesh, boundary, nodes_of
+from raceway.extend import FACES, HexMesh, boundary, growing, nodes_of
 
 
 def half_line(zone: float, length: float, fine: float, coarse: float, growth: float) -> np.ndarray:

@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from raceway.contact_laws.penalty import linear
 from raceway.core.fem.elastic.assembly import Assembly, Body, Cage, Frame
 from raceway.core.fem.elastic.bearing import ElasticSystem, cage_fields, cage_rows, cage_stiffness
 from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, groove
 from raceway.core.fem.elastic.friction import CoulombFriction
 from raceway.core.fem.elastic.surface import Facets, SurfacePoints, surface_points
 from raceway.core.fem.mesh.part_meshes import ball_mesh
-from raceway.extend import HexOperator, Motion
+from raceway.extend import HexOperator, Motion, linear
 
 YOUNG, POISSON, DENSITY = 2.1e11, 0.3, 7810.0
 #: Radius of the ball, of its orbit and of the grooves' tubes, depth of the rings and overlap at the start [m].
@@ -102,7 +101,7 @@ def system(
         )
     area = np.concatenate([pair.points.area for pair in pairs])
     contact = NodalContact(
-        pairs, assembly.nodes, PlaceLaw(law or linear(), np.full((len(area), 1), penalty), 0, damping),
+        pairs, assembly.nodes, PlaceLaw(law or linear, np.full((len(area), 1), penalty), 0, damping),
         CoulombFriction(friction, np.full(len(area), 0.8 * penalty)) if friction else None,
     )  # fmt: skip
     load = np.zeros(3 * assembly.nodes)

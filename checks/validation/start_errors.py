@@ -15,8 +15,7 @@ import numpy as np
 from checks.validation.error_estimate import SMALL
 from checks.validation.scenes import rotating
 from raceway import ConvergenceError, RacewayError, Result, scene_from_dict
-from raceway.core.signals import stiffness
-from raceway.extend import steady_orbit
+from raceway.extend import steady_orbit, stiffness
 from raceway.testing import model_of, run, solve_equilibrium
 
 _SEED = 1

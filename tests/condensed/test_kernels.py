@@ -9,10 +9,9 @@ from scipy.interpolate import CubicSpline
 from raceway import ConvergenceError
 from raceway.core.fem.structural import ElasticBodies, RingCompliance, elastic_system
 from raceway.core.ring.kernels import STORED
-from raceway.core.ring.kernels.layout import CENTRIFUGAL
 from raceway.core.ring.orbit import static_orbit
 from raceway.core.signatures import Balls, Constants, Contacts, Response
-from raceway.extend import Schedule, System, energy_balance, from_orbit, integrate, steady_orbit
+from raceway.extend import Schedule, System, energy_balance, from_orbit, integrate, layout, steady_orbit
 from raceway.testing import b7206c, model_of
 
 ANGLES = np.linspace(-0.7, 0.7, 13)
@@ -173,7 +172,7 @@ def test_stored_energy_is_the_work_of_the_force(name):
         soft.kernel(0.0, place, np.zeros(5), balls, contacts, Constants(soft.scalars, soft.table), response)
         factor = np.repeat([rigid.inner.factor, rigid.outer.factor], soft.ball_count)
         hertz = 0.4 * factor * np.maximum(-work[0], 0.0) ** 2.5
-        return hertz.sum() + work[STORED].sum() - (soft.table[:, CENTRIFUGAL] * rest[:, 1]).sum()
+        return hertz.sum() + work[STORED].sum() - (soft.table[:, layout.CENTRIFUGAL] * rest[:, 1]).sum()
 
     x, w = np.polynomial.legendre.leggauss(8)
     work = sum(

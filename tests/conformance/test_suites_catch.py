@@ -10,7 +10,7 @@ import pytest
 
 from checks.validation.scenes import built_in
 from raceway.extend import Drivers
-from raceway.testing import BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, suite_of
+from raceway.testing import SUITES, BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, suite_of
 from raceway.testing import suite as suites
 from raceway.testing.contact_law import exponents
 from tests import broken_laws
@@ -335,9 +335,8 @@ def test_an_unlisted_failure_fails_under_pytest(expecting):
 
 
 def test_every_suite_says_its_duties():
-    from raceway.framework.contracts import KINDS
 
-    for kind in KINDS:
+    for kind in SUITES:
         checks = suite_of(kind).checks()
         assert len(checks) >= 3
         assert all(method.__doc__ and method.duty for method in checks.values())

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from raceway import run
-from raceway.core.ring.kernels.layout import FRICTION, STICK
-from raceway.extend import energy_balance
+from raceway.extend import energy_balance, layout
 from raceway.testing import b7206c, model_of, simulate, solve_equilibrium
 
 
@@ -62,7 +61,7 @@ def test_every_contact_follows_the_return_mapping(built, friction):
     z = system.ball_count
     li, lo = system.scalars[2], system.scalars[3]
     inner, outer = Contact(1.0, 1.0), Contact(1.0, 1.0)
-    inner.k = outer.k = system.scalars[STICK]
+    inner.k = outer.k = system.scalars[layout.STICK]
     inner.mu = outer.mu = friction
     inner.slip, outer.slip = states[0][1][0, 2:]
     slid = 0
@@ -84,7 +83,7 @@ def test_every_contact_follows_the_return_mapping(built, friction):
 def test_balls_balance_with_their_tangential_forces(built):
     """f_i n_i + h_i t_i = f_o n_o + h_o t_o with h rebuilt from the slips."""
     system, states = driven(built, 0.003)
-    z, k = system.ball_count, system.scalars[STICK]
+    z, k = system.ball_count, system.scalars[layout.STICK]
     for now, _, vectors in states[::7]:
         total = np.zeros((z, 2))
         for sign, x, reach, column, force in (
@@ -118,7 +117,7 @@ def test_hysteresis_loop_of_an_axial_drive(built):
         balls = np.array([now.ball[:, :2] for now, _, _ in cycle])
         inner = system.scalars[2] * np.arctan2(*np.moveaxis(vectors - balls, 2, 0))
         outer = system.scalars[3] * np.arctan2(*np.moveaxis(balls, 2, 0))
-        pull = system.scalars[STICK] * (np.stack([inner, outer], axis=2) - slip)
+        pull = system.scalars[layout.STICK] * (np.stack([inner, outer], axis=2) - slip)
         lost = float((0.5 * (pull[1:] + pull[:-1]) * np.diff(slip, axis=0)).sum())
         size = float(np.ptp(force) * np.ptp(x))
         if slides:
@@ -207,5 +206,5 @@ def test_stick_stiffness_by_default_is_the_ellipses_along_the_groove(built):
     load = model.system.evaluate(q).contact_force[0]
     races = (model.inner, model.outer)
     stick = np.mean([e.stick_ratio(0.29)[0] * 1.5 * e.factor ** (2 / 3) * load ** (1 / 3) for e in races])
-    assert model.system.scalars[STICK] == pytest.approx(stick, rel=0.01)  # the load is estimated to some percent
-    assert model.system.scalars[FRICTION] == 0.03
+    assert model.system.scalars[layout.STICK] == pytest.approx(stick, rel=0.01)  # the load is estimated to some percent
+    assert model.system.scalars[layout.FRICTION] == 0.03

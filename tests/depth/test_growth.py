@@ -12,8 +12,7 @@ from checks.validation.reference.rotating_ring import growth_by_elements
 from raceway import SceneError, make_plan, scene_from_dict
 from raceway.core.columns import with_values
 from raceway.core.fem.mesh.ring_section import RingSection
-from raceway.core.ring.kernels.layout import REST_RADIAL
-from raceway.extend import resolve
+from raceway.extend import layout, resolve
 from raceway.scene.growth import groove_depth
 
 
@@ -103,7 +102,7 @@ def test_growth_is_added_to_expansion_and_goes_with_the_square_of_the_speed(tabl
 def test_expansion_shifts_the_radial_rest_distance(built):
     plain, grown = built(), built(kinematics={"radial_expansion": 2e-6})
     shift = grown.system.scalars - plain.system.scalars
-    assert shift[REST_RADIAL] == pytest.approx(2e-6, rel=1e-9)
+    assert shift[layout.REST_RADIAL] == pytest.approx(2e-6, rel=1e-9)
     assert np.count_nonzero(shift) == 1
 
 

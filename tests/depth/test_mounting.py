@@ -10,12 +10,10 @@ import attrs
 import numpy as np
 import pytest
 
+import raceway as rw
 from checks.validation.reference.mounted import FORCE, approach, axial, row, secant
 from raceway import ConvergenceError, run, scene_from_dict
-from raceway.bodies import mounting
-from raceway.bodies.mounting import preload_table
-from raceway.core.ring.kernels.layout import SHIFT
-from raceway.scene.unused import unused
+from raceway.extend import equilibrium_table, layout
 from raceway.testing import b7206c, solve_equilibrium
 
 #: Of K, kxx and kyy: 0.1 % is asked for; what differs is the time step of newmark and the 1x line of the orbit.
@@ -104,13 +102,13 @@ def test_a_held_displacement_of_a_sprung_pair_is_that_under_the_axial_load(built
     now, loaded = solve_equilibrium(held), solve_equilibrium(free)
     # The spring's force is met to 1e-9, and the force of 400 N by as much of the stiffness.
     assert now.displacement == pytest.approx(loaded.displacement, rel=1e-8, abs=1e-16)
-    assert mounting.held_table(held, now)["running_n"] == pytest.approx(400.0, rel=1e-8)
-    assert preload_table(held, now)["rows_n"] == pytest.approx([700.0, 300.0], rel=1e-8)
+    assert equilibrium_table(held, now)["held_axial"]["running_n"] == pytest.approx(400.0, rel=1e-8)
+    assert equilibrium_table(held, now)["preload"]["rows_n"] == pytest.approx([700.0, 300.0], rel=1e-8)
     if bodies == "rigid":
         assert now.displacement[0] == pytest.approx(approach(row(), 700.0) - approach(row(), 300.0), rel=TOLERANCE)
     running = built(**pair("spring", supports={"axial": "displacement"}, kinematics=ALL, **more))
     assert running.guess[0] == pytest.approx(now.displacement[0], rel=1e-8)
-    assert preload_table(running, solve_equilibrium(running))["rows_n"][1] == pytest.approx(300.0, rel=1e-8)
+    assert equilibrium_table(running, solve_equilibrium(running))["preload"]["rows_n"][1] == pytest.approx(300.0, rel=1e-8)
 
 
 def run_up(first, last, **more):
@@ -130,7 +128,7 @@ def test_a_sprung_row_follows_a_changing_speed(built, bodies, first, last):
         system = model.system.at_speed(0.5 * share)
         q, ball, _ = system.solve_equilibrium(now.displacement)
         moved = attrs.evolve(now, displacement=q, ball=ball)
-        rows = preload_table(attrs.evolve(model, system=system), moved)["rows_n"]
+        rows = equilibrium_table(attrs.evolve(model, system=system), moved)["preload"]["rows_n"]
         assert rows == pytest.approx([400.0, 300.0], rel=1e-4)
 
 
@@ -151,7 +149,7 @@ def test_a_spring_that_the_load_overcomes_is_told():
 
 
 def test_a_search_that_ends_without_the_springs_force_is_refused(monkeypatch):
-    monkeypatch.setattr(mounting, "_LIMIT", 1)
+    monkeypatch.setattr("raceway.bodies.mounting._LIMIT", 1)
     with pytest.raises(ConvergenceError, match=r"no position of the second row.*spring of `bearing.preload` = 300 N"):
         run(pair("spring", kinematics={"spin_speed_rpm": 20000.0}))
 
@@ -176,9 +174,9 @@ def test_every_kind_of_bodies_is_mounted_at_standstill(built, bodies, kinematics
     # Points follow the running contacts: other places of the same points, which the approach feels by less than 1e-3.
     same = 1e-3 if bodies == "patches" else 1e-7
     still, running = (built(**pair(**tables, kinematics=one)) for one in ({}, kinematics))
-    assert running.system.table[:, SHIFT] == pytest.approx(still.system.table[:, SHIFT], rel=same)
+    assert running.system.table[:, layout.SHIFT] == pytest.approx(still.system.table[:, layout.SHIFT], rel=same)
     now = solve_equilibrium(still)
-    assert preload_table(still, now)["rows_n"] == pytest.approx([300.0, 300.0], rel=1e-7)
+    assert equilibrium_table(still, now)["preload"]["rows_n"] == pytest.approx([300.0, 300.0], rel=1e-7)
     held = {"supports": {"axial": "displacement"}, "load": {"axial": 400.0}, **tables}
     still, running = (built(**held, kinematics=one) for one in ({}, kinematics))
     assert running.guess[0] == pytest.approx(still.guess[0], rel=same)
@@ -186,6 +184,6 @@ def test_every_kind_of_bodies_is_mounted_at_standstill(built, bodies, kinematics
 
 def test_the_kind_of_no_preload_is_told_to_do_nothing():
     scene = scene_from_dict(b7206c(bearing={"preload_kind": "spring"}))
-    assert any("preload_kind" in one for one in unused(scene))
+    assert any("preload_kind" in one for one in rw.check(scene).warnings)
     found = run(scene).to_dict()["equilibrium"]
     assert found["preload"] is None and found["held_axial"] is None

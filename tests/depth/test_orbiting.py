@@ -9,10 +9,8 @@ import pytest
 from checks.validation.ball_pass import SPEED, passing_hz
 from checks.validation.ball_pass import passing_scene as scene
 from raceway import SceneError, make_plan, run, scene_from_dict
-from raceway.core.ring.kernels.layout import CENTRIFUGAL, place
-from raceway.core.signals import phasors
 from raceway.core.signatures import Constants
-from raceway.extend import CAGE, ball_pass
+from raceway.extend import CAGE, ball_pass, layout, phasors
 from raceway.testing import b7206c, model_of, simulate, solve_equilibrium
 
 
@@ -46,7 +44,7 @@ def test_rates_of_the_groove_centres(built):
 
     def centres(t):
         out = np.zeros((3, 2 * system.ball_count))
-        place(t, q + v * t, v, Constants(system.scalars, system.table), out, (0, 1, 2))
+        layout.place(t, q + v * t, v, Constants(system.scalars, system.table), out, (0, 1, 2))
         return out
 
     t, h = 1.3e-3, 1e-6
@@ -165,7 +163,7 @@ def test_forces_know_one_cage_speed_which_the_table_has_beside_the_loaded_one():
     cage, b = row["ftf_in_forces"] * model.problem.spin_speed, model.scene.bearing
     assert model.system.scalars[CAGE] == pytest.approx(cage, rel=1e-14)
     centrifugal = model.geometry.ball_mass(b.balls.density) * 0.5 * b.pitch_diameter * cage**2
-    assert model.system.table[:, CENTRIFUGAL] == pytest.approx(centrifugal, rel=1e-13)
+    assert model.system.table[:, layout.CENTRIFUGAL] == pytest.approx(centrifugal, rel=1e-13)
     assert row["ftf"] > 1.005 * row["ftf_in_forces"]
 
 

@@ -11,9 +11,7 @@ import pytest
 from checks.validation.reference.ring import Ring
 from checks.validation.reference.row_set import RowSet, press, press_together
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
-from raceway.bodies.mounting import preload_table
-from raceway.extend import make_basis, resolve, running_pairs
-from raceway.scene.designation import NAMES
+from raceway.extend import default_registry, equilibrium_table, make_basis, resolve, running_pairs, scene_schema
 from raceway.scene.growth import ring_inertia
 from raceway.testing import solve_equilibrium
 
@@ -61,7 +59,9 @@ MAKERS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("word", [name for name in NAMES if name != "single"])
+@pytest.mark.parametrize(
+    "word", scene_schema(default_registry())["properties"]["bearing"]["properties"]["arrangement"]["anyOf"][0]["enum"][1:]
+)
 def test_every_name_is_the_makers(word):
     """Back to back pressure lines meet the axis far apart: rows seated by a motion towards +x stand on the side of -x."""
     along, against, how = MAKERS[word]
@@ -83,7 +83,7 @@ def test_rows_face_to_face_stand_the_other_way_round():
 def test_rows_that_were_ground_share_their_offset(word, rows):
     """n rows against one, each ground for P0: F^(2/3) (1 + n^(-2/3)) = 2 P0^(2/3) at a constant angle, met to 1 % at 20 N."""
     model, now = built(word, 20.0, {"preload_of": "row"})
-    found = preload_table(model, now)
+    found = equilibrium_table(model, now)["preload"]
     assert found["mounted_n"] / 20.0 == pytest.approx((2.0 / (1.0 + rows ** (-2.0 / 3.0))) ** 1.5, rel=0.01)
     offset = press(ring(), 20.0)
     expected = RowSet([ring() for _ in range(rows + 1)], [1.0] * rows + [-1.0], [0.0] * (rows + 1), [offset] * (rows + 1))
@@ -94,7 +94,7 @@ def test_rows_that_were_ground_for_preloads_of_their_own():
     """Offsets of 100 and 300 N: each row by itself under its own, put together."""
     model, now = built("DB", 200.0, {"preload_of": "row", "row": [{"preload": 100.0}, {"preload": 300.0}]})
     expected = RowSet([ring(), ring()], [1.0, -1.0], [0.0, 0.0], [press(ring(), 100.0), press(ring(), 300.0)])
-    rows = preload_table(model, now)["rows_n"]
+    rows = equilibrium_table(model, now)["preload"]["rows_n"]
     assert (
         rows == pytest.approx(expected.rows(expected.solve_equilibrium(np.zeros(3))), rel=SAME) and 100.0 < rows[0] < 300.0
     )
@@ -139,7 +139,7 @@ def test_rows_of_different_bearings(rpm):
     np.testing.assert_allclose(here.force * scale, force * scale, atol=1e-6 * np.abs(force * scale).max())
     scaled = tangent * scale[:, None] * scale
     np.testing.assert_allclose(here.stiffness * scale[:, None] * scale, scaled, atol=1e-5 * np.abs(scaled).max())
-    assert preload_table(model, now)["rows_n"] == pytest.approx(expected.rows(q), rel=1e-5)
+    assert equilibrium_table(model, now)["preload"]["rows_n"] == pytest.approx(expected.rows(q), rel=1e-5)
 
 
 def test_a_row_that_repeats_its_bearing_changes_no_digit():
@@ -182,7 +182,7 @@ def test_peak_pressures_and_edges_are_those_of_each_row():
 def test_both_forces_given():
     """Under their difference as an axial load both directions carry their own."""
     model, now = built("QBT", 300.0, {"second_preload": 120.0}, load={"axial": 180.0})
-    rows = preload_table(model, now)["rows_n"]
+    rows = equilibrium_table(model, now)["preload"]["rows_n"]
     assert (sum(rows[:3]), rows[3]) == pytest.approx((300.0, 120.0), rel=SAME)
     assert abs(now.displacement[0]) < 1e-13
 
@@ -193,7 +193,7 @@ def test_rows_on_a_spring_share_its_force(own):
     bearing = {"preload_kind": "spring", **({} if own is None else {"row": own})}
     kinematics = {"ball_inertia": True, "spin_speed_rpm": 20000.0, "radial_expansion": 2e-6}
     model, now = built("+--", 300.0, bearing, load={"axial": 90.0}, kinematics=kinematics)
-    rows = preload_table(model, now)["rows_n"]
+    rows = equilibrium_table(model, now)["preload"]["rows_n"]
     assert (rows[0], rows[1] + rows[2]) == pytest.approx((390.0, 300.0), rel=SAME)
 
 
@@ -212,7 +212,7 @@ def test_preload_of_a_running_set(rpm):
     model, now = built("TBT", 200.0, kinematics={"ball_inertia": True, "spin_speed_rpm": rpm})
     shifts = [press(ring(), 100.0)] * 2 + [press(ring(), 200.0)]
     expected = RowSet([ring(spin_rpm=rpm) for _ in range(3)], [1.0, 1.0, -1.0], [-DISTANCE, 0.0, DISTANCE], shifts)
-    assert preload_table(model, now)["running_n"] == pytest.approx(
+    assert equilibrium_table(model, now)["preload"]["running_n"] == pytest.approx(
         expected.rows(expected.solve_equilibrium(np.zeros(3)))[2], rel=1e-6
     )
 
@@ -223,7 +223,7 @@ def test_preload_of_a_running_set(rpm):
 def test_lift_off(word, told):
     """Against an independent program's digits (1 %), the reference (1e-8) and the constant angle: n 2^1.5, less than 5 % below."""
     model, now = built(word, 200.0, {"preload_of": "row"}, load={"axial": 60.0, "radial": [50.0, 20.0]})
-    loads = preload_table(model, now)["lift_off_axial_n"]
+    loads = equilibrium_table(model, now)["preload"]["lift_off_axial_n"]
     sides, places = zip(*model.scene.bearing.rows, strict=True)
     offset = press(ring(), 200.0)
     expected = RowSet([ring() for _ in sides], list(sides), list(places), [offset] * len(sides))
@@ -238,10 +238,12 @@ def test_a_row_carries_nothing_at_its_lift_off(kind, rpm):
     """A run under the load: the row has left; under a little less it has not."""
     bearing = {"row": [{}, {}, {"contact_angle_deg": 15.0}]} if kind == "rigid" else {"preset": "B7206C"}
     more = {"bodies": {"kind": kind}, "kinematics": {"ball_inertia": rpm > 0.0, "spin_speed_rpm": rpm}}
-    preload = preload_table(*built("TBT", 200.0, bearing, **more))
+    preload = equilibrium_table(*built("TBT", 200.0, bearing, **more))["preload"]
     for load, row in zip(preload["lift_off_axial_n"], preload["lift_off_row"], strict=True):
         left, there = (
-            preload_table(*built("TBT", 200.0, bearing, load={"axial": part * load}, **more))["rows_n"][row - 1]
+            equilibrium_table(*built("TBT", 200.0, bearing, load={"axial": part * load}, **more))["preload"]["rows_n"][
+                row - 1
+            ]
             for part in (1.0, 0.99)
         )
         # At lift-off a force goes with the 1.5th power of a displacement that is solved to 1e-11 of all forces.
@@ -250,7 +252,7 @@ def test_a_row_carries_nothing_at_its_lift_off(kind, rpm):
 
 def test_lift_off_of_a_sprung_set():
     """Rows on a spring never leave; the others do under the spring's force."""
-    preload = preload_table(*built("TBT", 200.0, {"preload_kind": "spring"}, load={"axial": 90.0}))
+    preload = equilibrium_table(*built("TBT", 200.0, {"preload_kind": "spring"}, load={"axial": 90.0}))["preload"]
     assert preload["lift_off_axial_n"] == [None, pytest.approx(-200.0, rel=1e-6)] and preload["lift_off_row"] == [None, 1]
 
 

@@ -10,7 +10,7 @@ from raceway_rotor.node_bearing import node_bearing
 import raceway as rw
 from checks.validation.reference.mounted import approach, axial, row
 from raceway import ConvergenceError
-from raceway.core.ring.kernels.layout import SHIFT
+from raceway.extend import layout
 from raceway.pipeline.run_parts import mounting_rows
 from raceway.testing import b7206c
 
@@ -231,7 +231,7 @@ def test_the_travel_of_a_spring_counts_from_where_the_preload_sets_the_rows(buil
         kinematics={"spin_speed_rpm": 15000.0},
     )
     model = built(**tables)
-    slid = abs(model.system.table[-1, SHIFT] - built(**sprung(load={"axial": 0.0})).system.table[-1, SHIFT])
+    slid = abs(model.system.table[-1, layout.SHIFT] - built(**sprung(load={"axial": 0.0})).system.table[-1, layout.SHIFT])
     tables["bearing"]["spring_travel"] = 1.01 * slid
     built(**tables)
     tables["bearing"]["spring_travel"] = 0.99 * slid

@@ -8,9 +8,7 @@ import pytest
 from checks.validation.scenes import built_in
 from raceway import ConvergenceError, SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.energy import friction_energy
-from raceway.core.ring.kernels.layout import CENTRIFUGAL, COSINE, SINE
-from raceway.core.ring.stepped import SteppedBearing
-from raceway.extend import CAGE, Schedule, at_rest, integrate
+from raceway.extend import CAGE, Schedule, SteppedBearing, at_rest, integrate, layout
 from raceway.scene.growth import ring_inertia
 from raceway.testing import b7206c
 
@@ -274,10 +272,10 @@ def test_constants_of_a_moment_are_those_of_a_steady_scene(built, bodies):
     now = model.system.at_speed(0.25)
     assert now.scalars == pytest.approx(still.scalars, rel=1e-8)
     assert now.damping == pytest.approx(still.damping, rel=1e-8)
-    assert now.table[:, CENTRIFUGAL:] == pytest.approx(still.table[:, CENTRIFUGAL:], rel=1e-8)
+    assert now.table[:, layout.CENTRIFUGAL :] == pytest.approx(still.table[:, layout.CENTRIFUGAL :], rel=1e-8)
     direction = now.centre_vectors(np.zeros(5), 0.25)[1]
     turned = 0.25 * 0.5 * (6000.0 + 10500.0) * still.scalars[CAGE] / 10500.0
-    expected = np.arctan2(still.table[:, SINE], still.table[:, COSINE]) + turned
+    expected = np.arctan2(still.table[:, layout.SINE], still.table[:, layout.COSINE]) + turned
     assert direction[:, 0] == pytest.approx(np.cos(expected), abs=1e-7)
     assert direction[:, 1] == pytest.approx(np.sin(expected), abs=1e-7)
     assert now.at_speed(0.4) is now and model.system.scalars[CAGE] > now.scalars[CAGE]

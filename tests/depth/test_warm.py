@@ -7,13 +7,12 @@ from math import radians
 import numpy as np
 import pytest
 
+import raceway as rw
 from checks.validation.reference.ring import Ring
 from checks.validation.reference.row_set import RowSet, press, warmed
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
-from raceway.bodies.mounting import preload_table
-from raceway.extend import resolve
+from raceway.extend import equilibrium_table, resolve
 from raceway.scene.growth import ball_growth
-from raceway.scene.unused import unused
 from raceway.testing import run, solve_equilibrium
 
 DISTANCE = 16e-3
@@ -87,8 +86,8 @@ def test_preload_of_a_warm_set(word):
     expected = RowSet(rings, list(sides), list(places), [mounted[side] for side in sides])
     q = expected.solve_equilibrium(np.zeros(3))
     assert now.displacement == pytest.approx(q, rel=1e-6, abs=1e-12)
-    assert preload_table(model, now)["rows_n"] == pytest.approx(expected.rows(q), rel=1e-6)
-    assert preload_table(model, now)["mounted_n"] == 300.0
+    assert equilibrium_table(model, now)["preload"]["rows_n"] == pytest.approx(expected.rows(q), rel=1e-6)
+    assert equilibrium_table(model, now)["preload"]["mounted_n"] == 300.0
 
 
 def test_rows_grow_apart_by_the_planes_of_their_groove_centres():
@@ -108,14 +107,14 @@ def test_one_temperature_changes_next_to_nothing():
     """Everything keeps its shape; of the offset that was built in 4e-4 are missing, and 1.5 times that of the force."""
     same = dict.fromkeys(TEMPERATURES, 30.0)
     (_, cold), (model, warm) = settled(scene()), settled(scene(**same))
-    assert preload_table(model, warm)["running_n"] == pytest.approx(300.0, rel=1e-3)
+    assert equilibrium_table(model, warm)["preload"]["running_n"] == pytest.approx(300.0, rel=1e-3)
     np.testing.assert_allclose(np.diag(warm.stiffness)[:3], np.diag(cold.stiffness)[:3], rtol=1e-3)
 
 
 def test_a_longer_shaft_loosens_rows_back_to_back_and_presses_rows_face_to_face():
     def running(word, distance):
         model, now = settled(scene(word, bearing={"row_distance": distance}, inner_temperature=6.0))
-        return preload_table(model, now)["running_n"]
+        return equilibrium_table(model, now)["preload"]["running_n"]
 
     assert running("DB", 40e-3) < running("DB", 16e-3) < running("DF", 16e-3) < running("DF", 40e-3)
 
@@ -126,7 +125,7 @@ def test_a_held_displacement_and_condensed_bodies_warm_up_alike():
     for kind in ("rigid", "condensed"):
         tables = {**scene(**TEMPERATURES).to_dict(), "bodies": {"kind": kind}}
         model, now = settled(scene_from_dict(tables))
-        found.append(preload_table(model, now)["running_n"])
+        found.append(equilibrium_table(model, now)["preload"]["running_n"])
     assert found[0] > 310.0 and found[1] == pytest.approx(found[0], rel=0.05)
 
 
@@ -165,7 +164,9 @@ def test_a_seat_without_fit_and_warmth_has_no_effect_and_says_so():
     for seat, temperature in (("shaft", "inner_temperature"), ("housing", "outer_temperature")):
         words = f"`mounting.{seat}_material` has no effect"
         cold, warm = ({f"{seat}_material": "AlMgSi", temperature: kelvin} for kelvin in (0.0, 5.0))
-        assert any(words in one for one in unused(scene(**cold))) and not any(words in one for one in unused(scene(**warm)))
+        assert any(words in one for one in rw.check(scene(**cold)).warnings) and not any(
+            words in one for one in rw.check(scene(**warm)).warnings
+        )
 
 
 def test_a_shaft_of_another_material_loosens_otherwise_at_speed():
@@ -300,7 +301,11 @@ def test_growth_of_a_ball():
 def test_growing_balls_press_a_set():
     kinematics = {"spin_speed_rpm": 40000.0, "ring_growth": False}
     (slow, a), (fast, b) = (settled(scene(kinematics={**kinematics, "ball_growth": on})) for on in (False, True))
-    assert preload_table(fast, b)["running_n"] > preload_table(slow, a)["running_n"] == pytest.approx(300.0, rel=1e-8)
+    assert (
+        equilibrium_table(fast, b)["preload"]["running_n"]
+        > equilibrium_table(slow, a)["preload"]["running_n"]
+        == pytest.approx(300.0, rel=1e-8)
+    )
 
 
 @pytest.mark.parametrize(

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from checks.validation.command_line import PRESETS
 from raceway import ConvergenceError, SceneError, band, build_model, load_scene, scene_from_dict, sensitivities
 from raceway.core.jit import working_processor_time
 from raceway.extend import continuous_keys, run, solve_equilibrium, with_number
 from raceway.pipeline.gradient import Gradients, NoDerivative, SteadyOrbit
-from raceway.scene.catalogue import single_presets
 from tests.test_gradients import derivative
 
 pytestmark = pytest.mark.night
@@ -23,7 +23,7 @@ LIMIT = {"at_most": 1e-6, "basis": "own other method"}
 
 def drawn(rng, bodies):
     axial = float(10.0 ** rng.uniform(1.7, 3.3))
-    names = sorted(single_presets())
+    names = sorted(file.stem for file in PRESETS.glob("*.toml"))
     tables = {
         "bearing": {"preset": "B7206C" if bodies == "condensed" else str(rng.choice(names))},
         "bodies": {"kind": bodies},

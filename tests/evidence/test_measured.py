@@ -21,12 +21,12 @@ from raceway_measure.rig.study import rig as rig_study
 from raceway_rotor.rig_table import Rig, rig_of
 from raceway_rotor.shaft import balance, bearing, rotor
 
+import raceway as rw
 from checks.validation.shaker import hammer_record
 from checks.validation.shaker import record as record_of_shaker
 from raceway import RacewayError, evolve, fit, identify, load_scene, run
 from raceway.core.jit import working_process_time
 from raceway.extend import with_number
-from raceway.scene.catalogue import catalogue
 from raceway.testing import b7206c, default_registry
 
 pytestmark = pytest.mark.night
@@ -250,7 +250,7 @@ def fits_to_noise(count):
 
 def fits_to_grooves(count):
     """An angle of 17 deg from kxx of bearings whose grooves are off as the catalogue says, alike or each by itself."""
-    scatter = next(one.scatter for one in catalogue()["B7206C"].facts if one.key == "conformity_inner")
+    scatter = next(one.scatter for one in rw.catalogue("B7206C")[0].facts if one.key == "conformity_inner")
     scene, random, loads = b7206c(load={"axial": 1000.0}), np.random.default_rng(7), (400.0, 900.0, 1800.0, 2800.0)
     for together in (True, False):
         pairs = []

@@ -17,8 +17,7 @@ from checks.validation.reference.shooting import swinging
 from checks.validation.scenes import built_in, rig_force, rotating
 from raceway.core.periodic.refinement import displacements, states
 from raceway.core.periodic.special_points import FOLD, PAIR
-from raceway.core.signals import stiffness
-from raceway.extend import Motion, Schedule, integrate
+from raceway.extend import Motion, Schedule, integrate, stiffness
 from raceway.scene.growth import ring_inertia
 from raceway.testing import model_of, run, simulate, solve_equilibrium
 

@@ -20,7 +20,7 @@ from checks.validation.scenes import random_tables
 from checks.validation.tangent import DIFFERENCES, SYMMETRY, asymmetry, cases, deviation
 from raceway import RacewayError
 from raceway.core.ring.energy import friction_energy
-from raceway.core.signals import phasors
+from raceway.extend import phasors
 from raceway.testing import b7206c, model_of, settled, simulate, solve_equilibrium
 
 SOLVER = "another rigid-ring solver (checks/validation/expected_values.py)"

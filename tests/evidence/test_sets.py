@@ -10,8 +10,7 @@ import pytest
 from checks.validation.reference.ring import Ring
 from checks.validation.reference.row_set import RowSet, press, press_together, warmed
 from raceway import build_model, load_scene, run, scene_from_dict
-from raceway.bodies.mounting import preload_table
-from raceway.extend import solve_equilibrium
+from raceway.extend import equilibrium_table, solve_equilibrium
 
 pytestmark = pytest.mark.night
 
@@ -42,7 +41,7 @@ def factors(word, preset):
     """Preload, axial and radial stiffness of a set whose rows were all ground for one preload."""
     model = build_model(ground(word, preset))
     now = solve_equilibrium(model)
-    return np.array([preload_table(model, now)["mounted_n"], now.stiffness[0, 0], now.stiffness[1, 1]])
+    return np.array([equilibrium_table(model, now)["preload"]["mounted_n"], now.stiffness[0, 0], now.stiffness[1, 1]])
 
 
 def test_factors_over_a_pair(claim):
@@ -86,7 +85,7 @@ def test_lift_off(claim):
     ratios, off = [], []
     for word, printed in (("DB", 2.95), ("TBT", 5.91), ("QBC", 5.91), ("QBT", 8.87)):
         model = build_model(ground(word))
-        load = preload_table(model, solve_equilibrium(model))["lift_off_axial_n"][0]
+        load = equilibrium_table(model, solve_equilibrium(model))["preload"]["lift_off_axial_n"][0]
         ratios.append(abs(load / PRELOAD / printed - 1.0))
         sides, places = zip(*ground(word).bearing.rows, strict=True)
         reference = RowSet([ring() for _ in sides], list(sides), list(places), [press(ring(), PRELOAD)] * len(sides))
@@ -120,7 +119,7 @@ def test_different_and_warm_rows(claim):
     rings = [warmed(ring(), strains, side, x) for side, x in zip(sides, places, strict=True)]
     reference = RowSet(rings, sides, places, shifts)
     expected = reference.rows(reference.solve_equilibrium(np.zeros(3)))[2]
-    off = abs(preload_table(model, solve_equilibrium(model))["running_n"] / expected - 1.0)
+    off = abs(equilibrium_table(model, solve_equilibrium(model))["preload"]["running_n"] / expected - 1.0)
     quantity = "TBT, inner rings +14 K, outer +5 K, balls +11 K: running preload, relative difference"
     claim(quantity, off, at_most=1e-5, **RING)
 

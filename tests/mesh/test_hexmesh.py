@@ -7,8 +7,7 @@ import pytest
 from checks.validation.cubes import block
 from checks.validation.solids import facet_normals
 from raceway import MeshError
-from raceway.core.fem.mesh.quality import cell_quality
-from raceway.extend import HexMesh, merged, refuse_bad_cells, summary
+from raceway.extend import HexMesh, cell_quality, merged, refuse_bad_cells, summary
 
 #: Sums of a few hundred terms in double precision.
 ROUNDING = 1e-12

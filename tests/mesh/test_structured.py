@@ -12,10 +12,8 @@ from checks.validation.scenes import built_in
 from checks.validation.solids import facet_normals
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.core.fem.mesh import part_meshes as sphere
-from raceway.core.fem.mesh.hex_mesh import EDGES, graded, growing
 from raceway.core.fem.mesh.part_meshes import ball_cells, ball_mesh, ring_mesh
-from raceway.core.fem.mesh.quality import cell_quality
-from raceway.extend import mesh_bodies, refuse_bad_cells, resolve, ring_shape, summary
+from raceway.extend import EDGES, cell_quality, graded, growing, mesh_bodies, refuse_bad_cells, resolve, ring_shape, summary
 from raceway.plugins.bodies.mesh import mesher_of
 
 Structured = built_in("mesher", "structured")

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import raceway as rw
 from checks.validation.reference.mindlin import Mindlin
 from checks.validation.single import single
 from raceway import make_plan, scene_from_dict
@@ -15,10 +16,8 @@ from raceway.core.fem.patches.balls import Gyroscopic
 from raceway.core.fem.patches.friction import Friction, Traction
 from raceway.core.fem.patches.pressure import Contact, SlipState
 from raceway.core.fem.patches.system import SlipHistory
-from raceway.core.ring.ring import Increment
-from raceway.extend import resolve
+from raceway.extend import Increment, resolve
 from raceway.plugins.bodies.condensed import patch_cost
-from raceway.scene.unused import unused
 from tests.patches.test_bearing import RESULTANT, at_rest, off_tangent, tables
 
 MU, LOAD = 0.1, 300.0
@@ -162,7 +161,7 @@ def test_what_a_plan_says_of_friction_and_inertia():
     slow = scene_from_dict(tables(**ROTATING, integrator={"kind": "quasi_static"}))
     assert "inertia of the balls in their meridian planes" in {part.part for part in make_plan(slow).left_out}
     assert patch_cost(resolve(found)).step_s > patch_cost(resolve(slow)).step_s
-    assert any("stick_stiffness" in one and "compliance of rings and balls" in one for one in unused(found))
+    assert any("stick_stiffness" in one and "compliance of rings and balls" in one for one in rw.check(found).warnings)
 
 
 @pytest.mark.slow

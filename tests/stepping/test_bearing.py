@@ -10,8 +10,7 @@ import pytest
 
 from checks.validation.scenes import rotating
 from raceway.core.ring.orbit import static_orbit
-from raceway.core.ring.stepped import SteppedBearing
-from raceway.extend import Drivers, Schedule, at_rest, integrate
+from raceway.extend import Drivers, Schedule, SteppedBearing, at_rest, integrate
 from raceway.testing import IntegratorSuite, default_registry, settled
 
 #: Those that march in time.

@@ -20,11 +20,10 @@ from raceway import (
     make_plan,
     scene_from_dict,
 )
-from raceway.contact_laws.hertz import three_halves
 from raceway.core import device
 from raceway.core.fem.elastic import device_steps
 from raceway.core.fem.elastic.device_steps import DeviceSteps
-from raceway.extend import Schedule, integrate
+from raceway.extend import Schedule, integrate, three_halves
 from tests.test_elastic_scene import EXCITED, scene
 
 CentralDifference = built_in("integrator", "central_difference")
@@ -86,7 +85,7 @@ def test_points_that_leave_their_facets_a_law_of_others_with_damping_and_added_m
 @pytest.mark.parametrize("excitation", ["unidirectional", "bidirectional"])
 @pytest.mark.parametrize(
     "changes",
-    [{}, {"law": three_halves(), "penalty": 1e16}, {"damping": 1e6, "facets": 1e-3}],
+    [{}, {"law": three_halves, "penalty": 1e16}, {"damping": 1e6, "facets": 1e-3}],
     ids=["penalty", "root", "damping, other facets"],
 )
 def test_twenty_steps_with_sliding_and_separation(excitation, changes):

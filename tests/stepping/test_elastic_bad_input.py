@@ -11,12 +11,11 @@ from checks.validation.impact import moving, plane
 from checks.validation.reference import elastic
 from checks.validation.scenes import built_in
 from raceway import ConvergenceError, MeshError, StabilityError
-from raceway.contact_laws.penalty import linear
 from raceway.core.fem.elastic.assembly import Assembly, Body
 from raceway.core.fem.elastic.bearing import ElasticSystem
 from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw
 from raceway.core.fem.elastic.surface import Facets, surface_points
-from raceway.extend import FACES, HexOperator, Schedule, boundary, drift, integrate
+from raceway.extend import FACES, HexOperator, Schedule, boundary, drift, integrate, linear
 
 CentralDifference = built_in("integrator", "central_difference")
 Newmark = built_in("integrator", "newmark")
@@ -43,7 +42,7 @@ def cubes(gap: float = 0.0, held: bool = True, penalty: float = 1e14) -> Elastic
     under, top = (_facets(mesh, height) for mesh, height in zip(meshes, (gap, 0.0), strict=True))
     at = surface_points(meshes[0][0], under)
     pair = Pair("upper on lower", at, plane(np.zeros(3), np.array([0.0, 0.0, 1.0])), Facets(meshes[1][0], top), first)
-    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear(), np.full((len(at.area), 1), penalty)))
+    contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, np.full((len(at.area), 1), penalty)))
     force = np.zeros((assembly.nodes, 3))
     force[np.flatnonzero(meshes[0][0][:, 2] > gap + SIDE - 1e-9), 2] = -1.0
     return ElasticSystem(assembly, contact, MODULUS, assembly.reduced(force.ravel()))

@@ -12,8 +12,7 @@ import pytest
 from raceway_checks.verify.reference import reference_cases
 from raceway_checks.verify.study import impact_of, peak_and_duration, transient_integrators
 
-from raceway.core.ring.kernels.layout import DAMPING
-from raceway.extend import default_registry, impact_system, integrate
+from raceway.extend import default_registry, impact_system, integrate, layout
 
 CASES = ("chung-ooi-1-glass", "chung-ooi-3-alumina")
 INTEGRATORS = [entry.name for entry in transient_integrators(default_registry())]
@@ -57,12 +56,11 @@ def test_a_mass_on_a_spring_keeps_its_period_when_the_contact_is_open(name):
 @pytest.mark.parametrize("name", ["newmark", "generalized_alpha", "central_difference"])
 def test_an_impact_on_a_penalty(name):
     """Q = c d^2: energy gives d_max = (3 m v^2 / (2 c))^(1/3).  Tolerance as for Hertz; the frequency is about the same."""
-    from raceway.contact_laws.penalty import square
-    from raceway.extend import Motion, Schedule
+    from raceway.extend import Motion, Schedule, square
 
     mass, speed, factor = 0.01, 2.0, 1e12
     deepest = (1.5 * mass * speed**2 / factor) ** (1 / 3)
-    system = impact_system(mass, square(), np.array([factor]))
+    system = impact_system(mass, square, np.array([factor]))
     dt = 2.8 * deepest / speed / 100  # Hertz's contact lasts 2.94 d_max / v, this one a little less
     balls, first = np.zeros((1, 2)), np.array([1.0, 0, 0, 0, 0])
     start = Motion(-2.5 * dt * speed * first, speed * first, np.zeros(5), balls, balls.copy())
@@ -75,7 +73,7 @@ def test_a_dashpot_takes_energy_and_the_tangents_are_consistent():
     from raceway.extend import three_halves
 
     system = impact_system(1.0, three_halves, np.array([1e10]))
-    system.scalars[DAMPING] = 50.0
+    system.scalars[layout.DAMPING] = 50.0
     first, step = np.array([1.0, 0, 0, 0, 0]), 1e-11
     q, v = 3e-6 * first, 0.02 * first
     now = system.evaluate(q, v)

@@ -19,8 +19,7 @@ from raceway_checks.stability.systems import Bench
 
 from checks.validation.command_line import ARTICLE, EXAMPLES, invoke
 from raceway import ConvergenceError, SceneError
-from raceway.core.ring.ring import Ring
-from raceway.extend import default_registry, registry_with, solve_equilibrium, written
+from raceway.extend import Ring, default_registry, registry_with, solve_equilibrium, written
 
 REGISTRY = default_registry()
 CUBIC, DAMPED = (EXAMPLES.parent / "tests" / f"{name}.py" for name in ("cubic_law", "hunt_crossley"))
