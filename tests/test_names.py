@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray
+from scipy.signal import resample
 
 import raceway as rw
 from checks.validation.command_line import invoke
 from checks.validation.stores import as_list
 from raceway.extend import open_store, select
-from raceway.pipeline.equilibrium import race_of
 from raceway.points.dataset import write_netcdf
 
 FREE: dict[str, Any] = {
@@ -185,17 +185,17 @@ def test_load_and_pressure_may_be_largest_on_different_races(free):
 
 def test_equal_loads_are_those_of_both_races():
     still = rw.run({**FAST, "kinematics": {}}).to_dict()["equilibrium"]
-    assert still["largest_ball_load_race"] == "both" and race_of(2.0, 1.0) == "inner"
+    assert still["largest_ball_load_race"] == "both"
 
 
 def test_the_motions_peaks_are_those_of_both_races():
-    found = rw.run({**FAST, "excitation": EXCITED, "integrator": {"kind": "periodic"}})
+    found = rw.run({**FAST, "excitation": {**EXCITED, "phase_lag_deg": 0.4}, "integrator": {"kind": "periodic"}})
     motion, loads = found.to_dict()["motion"], found.simulation.record.contact_force
     z = loads.shape[1] // 2
     assert motion["peak_ball_load_race"] == "outer" and motion["peak_ball_load_n"] == motion["peak_ball_load_outer_n"]
-    # Samples miss a peak by the square of half a step's angle.
-    assert motion["peak_ball_load_n"] == pytest.approx(loads[:, z:].max(), rel=1e-3)
-    assert motion["peak_ball_load_inner_n"] == pytest.approx(loads[:, :z].max(), rel=1e-3)
+    # The force is largest 0.4 of a step after a sample, which misses the peak by 2e-7 and 3e-8 of it; a parabola by 4e-11.
+    for name, part in (("inner", loads[:, :z]), ("outer", loads[:, z:])):
+        assert motion[f"peak_ball_load_{name}_n"] == pytest.approx(resample(part, 64 * len(part)).max(), rel=1e-9)
     assert motion["peak_pressure_pa"] == max(motion["peak_pressure_inner_pa"], motion["peak_pressure_outer_pa"])
 
 

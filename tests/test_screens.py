@@ -7,6 +7,7 @@ import re
 from functools import cache
 from pathlib import Path
 
+import attrs
 import numpy as np
 import pytest
 from rich.console import Console
@@ -14,10 +15,10 @@ from rich.console import Console
 import raceway as rw
 from checks.validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 from raceway.answers import table
-from raceway.bodies.model import tilts_follow
-from raceway.extend import Words, duration, rows_table
+from raceway.extend import Words, duration, equilibrium_table, rows_table
 from raceway.framework.estimate import Estimate, few_words
 from raceway.pipeline.run_parts import cost_row, equilibrium_rows
+from raceway.testing import b7206c, settled
 
 PACKAGE = Path(__file__).parents[1] / "raceway"
 SCREENS = [*PACKAGE.glob("pipeline/run_parts.py"), *PACKAGE.rglob("*screen.py")]
@@ -76,9 +77,14 @@ def test_tilts_that_follow_are_condensed_statically(tilt):
     held = [1, 3, 4]
     supported = k + np.diag([0.0, 0.0, 0.0, *(2 * [0.0 if tilt == "free" else tilt])])
     moved = np.linalg.solve(supported[np.ix_(held, held)], [1.0, 0.0, 0.0])
-    assert tilts_follow(k, tilt) == pytest.approx(1.0 / moved[0], rel=1e-10)
-    assert tilts_follow(k, "locked") is None
-    assert tilts_follow(np.diag([1.0, 2.0, 3.0, 0.0, 0.0]), "free") == 2.0
+
+    def followed(stiffness, tilt):
+        model, still = settled(b7206c(supports={"tilt": tilt}))
+        return equilibrium_table(model, attrs.evolve(still, stiffness=stiffness))["kyy_tilts_follow_n_per_m"]
+
+    assert followed(k, tilt) == pytest.approx(1.0 / moved[0], rel=1e-10)
+    assert followed(k, "locked") is None
+    assert followed(np.diag([1.0, 2.0, 3.0, 0.0, 0.0]), "free") == 2.0
 
 
 def lines(renderable, width=80):

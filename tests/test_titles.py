@@ -8,9 +8,8 @@ import pytest
 
 from checks.validation.command_line import EXAMPLES, invoke
 from checks.validation.stores import SPEEDS, made
-from raceway import load_scene, scene_from_dict
+from raceway import SceneError, load_scene, scene_from_dict
 from raceway.extend import Page, head, picture, row_key, select, slug
-from raceway.scene.inputs import parse_change, titled
 from raceway.testing import b7206c, default_registry, run
 
 SCENE = EXAMPLES / "b7206.toml"
@@ -28,12 +27,18 @@ FIRST = "B7206C, 1 kN axial, rig unbalance at 12 000 r/min"
         ("T", ["kinematics.orbiting=true", "load.radial=[0, 1.5]"], "T\nkinematics.orbiting = true, load.radial = [0, 1.5]"),
         ("T\nrotor.mass = 1", ["load.axial=2"], "T\nrotor.mass = 1, load.axial = 2"),  # the scene of a result, changed again
         ("own", ["title=own"], "own"),
-        (" ", ["load.axial=1"], " "),  # an empty title stays a mistake
     ],
 )
-def test_the_second_line_says_what_was_changed(title, changes, expected):
-    tables = {} if title is None else {"title": title}
-    assert titled(tables, "file", map(parse_change, changes))["title"] == expected
+def test_the_second_line_says_what_was_changed(title, changes, expected, tmp_path):
+    head = "" if title is None else f"title = {json.dumps(title)}\n"
+    (tmp_path / "file.toml").write_text(f'{head}[bearing]\npreset = "B7206C"\n')
+    assert load_scene(tmp_path / "file.toml", changes).title == expected
+
+
+def test_an_empty_title_stays_a_mistake_of_a_changed_scene(tmp_path):
+    (tmp_path / "file.toml").write_text('title = " "\n[bearing]\npreset = "B7206C"\n')
+    with pytest.raises(SceneError, match="title"):
+        load_scene(tmp_path / "file.toml", ["load.axial=1"])
 
 
 def test_other_titles_and_changes_make_other_folders():

@@ -19,7 +19,6 @@ from matplotlib import pyplot
 import raceway as rw
 from checks.robustness._scenes import GARBAGE, Chance, Tables, example, scene, scene_keys
 from raceway import RacewayError
-from raceway.errors import short
 
 
 def _raises(self: object, *_: object, **__: object) -> Any:
@@ -152,7 +151,7 @@ def called(seed: int, folder: Path) -> tuple[str, str, list[list[str]]]:
         return name, "refused", [] if good else [["traceback", name, f"{error!r}, exit code {error.exit_code}"]]
     except Exception as error:
         word = "nan" if "JSON compliant" in str(error) else "traceback"
-        told = ", ".join(f"{place}={short(value)}" for place, value in given.items())
+        told = ", ".join(f"{place}={repr(value)[:60]}" for place, value in given.items())
         return name, "broken", [[word, name, f"{name}({told}): {traceback.format_exc()[-900:]}"]]
     finally:
         pyplot.close("all")

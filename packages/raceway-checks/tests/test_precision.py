@@ -18,7 +18,6 @@ from rich.console import Console
 from checks.validation.command_line import ARTICLE, invoke
 from raceway import RacewayError, SceneError, precision, scene_from_dict
 from raceway.extend import Store, read_toml, row_key, written
-from raceway.pipeline.equilibrium import peak
 from raceway.pipeline.transient_error import hann_line
 from raceway.testing import b7206c, default_registry, run
 
@@ -262,12 +261,6 @@ def test_hanns_line_of_a_periodic_signal_is_exact_and_leaks_less_of_another():
     free = periodic + np.cos(2.0 * np.pi * 5.37 * t)
     plain = 2.0 * (np.exp(-2j * np.pi * t) * free).mean()
     assert abs(hann_line(t, free[:, None], 1.0)[0] - exact) < 0.05 * abs(plain - exact)
-
-
-def test_a_peak_between_samples_is_found():
-    t = np.linspace(-1.0, 1.0, 21)
-    assert peak(np.column_stack([4.0 - (t - 0.03) ** 2, 0.0 * t])) == pytest.approx(4.0, rel=1e-12)  # a parabola: rounding
-    assert peak(t[:, None]) == 1.0
 
 
 def test_an_axis_that_leaves_no_setting_says_why():
