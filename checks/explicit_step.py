@@ -16,8 +16,7 @@ from raceway import load_scene
 from raceway.core.fem.elastic.bearing import ElasticBearing
 from raceway.core.fem.elastic.bearing_data import BearingData
 from raceway.core.fem.elastic.contact import penalty_stiffness
-from raceway.core.threads import ThreadPool, usable_cores
-from raceway.extend import Recorder, Schedule, State, linear, make_basis, mesh_bodies, resolve
+from raceway.extend import Recorder, Schedule, State, ThreadPool, linear, make_basis, mesh_bodies, resolve, usable_cores
 
 #: The article's mesh.
 ARTICLE = "examples/b7206_article_mesh.toml"

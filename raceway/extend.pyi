@@ -19,6 +19,8 @@ from .cli.frame import set_keys as set_keys
 from .contact_laws.penalty import linear as linear
 from .contact_laws.penalty import square as square
 from .contact_laws.hertz import three_halves as three_halves
+from .core.threads import ThreadPool as ThreadPool
+from .core.threads import usable_cores as usable_cores
 from .core.recorder import Recorder as Recorder
 from .core.contact.geometry import BallBearing as BallBearing
 from .core.contact.damping import stored_energy as stored_energy
@@ -67,6 +69,8 @@ from .core.ring.orbit import at_rest as at_rest
 from .core.ring.orbit import at_time as at_time
 from .core.ring.orbit import from_orbit as from_orbit
 from .core.ring.orbit import steady_orbit as steady_orbit
+from .core.ring.orbit import differentiation as differentiation
+from .core.ring.orbit import static_orbit as static_orbit
 from .core.ring.system import System as System
 from .core.ring.system import compiled as compiled
 from .core.ring.system import surrogate as surrogate
@@ -110,6 +114,7 @@ from .framework.shown import race_words as race_words
 from .framework.shown import tilt_words as tilt_words
 from .framework.sources import blamed as blamed
 from .answers.answer import Part as Part
+from .answers.answer import Interrupted as Interrupted
 from .answers.quantities import dry_damping_words as dry_damping_words
 from .answers.page import Cell as Cell
 from .answers.page import Page as Page

@@ -15,11 +15,11 @@ from checks.validation.oscillators import Oscillator, Pressed, natural_frequency
 from checks.validation.reference.harmonic_balance import harmonic_balance
 from checks.validation.several import article
 from raceway import ConvergenceError, SceneError
-from raceway.answers.answer import Interrupted
 from raceway.core.periodic.branch import Branch, doubled
 from raceway.core.periodic.refinement import displacements
 from raceway.core.periodic.search import directly
 from raceway.core.periodic.special_points import DOUBLING, FOLD, PAIR, special_points
+from raceway.extend import Interrupted
 from raceway.points.attractor import QUASI, REPEATS, WANDERS, kind_of_section
 
 

@@ -19,9 +19,8 @@ from checks.validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, python,
 from checks.validation.scenes import built_in
 from checks.validation.sessions import left, members
 from raceway import Answer, Command, RacewayError
-from raceway.answers.answer import Interrupted
 from raceway.cli.interrupt import Interrupts, farewell
-from raceway.extend import Store, open_store
+from raceway.extend import Interrupted, Store, open_store
 from raceway.plugins.executors import WATCH, deaf_to_terminals
 from raceway.points.store import connected, exists
 

@@ -9,8 +9,7 @@ from checks.validation.reference.ring import Ring
 from checks.validation.reference.shooting import periodic, swinging
 from checks.validation.scenes import rig_force, rotating
 from raceway.core.periodic.floquet import Floquet, floquet_of
-from raceway.core.ring.orbit import differentiation
-from raceway.extend import at_time, from_orbit, steady_orbit
+from raceway.extend import at_time, differentiation, from_orbit, steady_orbit
 from raceway.pipeline.simulate import start_of_motion
 from raceway.testing import b7206c, model_of, solve_equilibrium
 

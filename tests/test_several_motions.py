@@ -11,7 +11,7 @@ from rich.console import Console
 from checks.validation.several import article, by_integration, heavy
 from raceway import ConvergenceError, run
 from raceway.core.periodic import branches, search, steady
-from raceway.core.ring.orbit import differentiation
+from raceway.extend import differentiation
 
 
 def z_of(one):

@@ -8,7 +8,7 @@ import threading
 import pytest
 
 from checks.validation.command_line import PATIENCE_S
-from raceway.core.threads import BOUNDS, ThreadPool, usable_cores
+from raceway.extend import ThreadPool, usable_cores
 
 
 def helpers() -> int:
@@ -65,7 +65,7 @@ def test_a_failure_is_handed_on_when_nothing_runs_any_more():
 
 
 def test_threads_are_the_cores_of_the_process_and_no_more_than_the_environment_allows(monkeypatch):
-    for name in BOUNDS:
+    for name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(os, "sched_getaffinity", lambda pid: set(range(6)), raising=False)
     assert usable_cores() == 6

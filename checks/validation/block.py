@@ -11,8 +11,7 @@ import scipy.sparse.linalg as solvers
 from checks.validation.reference import elastic
 from raceway.core.fem.elastic.friction import CoulombFriction
 from raceway.core.record import Observation
-from raceway.core.threads import ThreadPool
-from raceway.extend import HexOperator, Motion, State
+from raceway.extend import HexOperator, Motion, State, ThreadPool
 
 YOUNG, POISSON, DENSITY = 2e9, 0.3, 7810.0
 

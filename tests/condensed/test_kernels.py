@@ -9,9 +9,8 @@ from scipy.interpolate import CubicSpline
 from raceway import ConvergenceError
 from raceway.core.fem.structural import ElasticBodies, RingCompliance, elastic_system
 from raceway.core.ring.kernels import STORED
-from raceway.core.ring.orbit import static_orbit
 from raceway.core.signatures import Balls, Constants, Contacts, Response
-from raceway.extend import Schedule, System, energy_balance, from_orbit, integrate, layout, steady_orbit
+from raceway.extend import Schedule, System, energy_balance, from_orbit, integrate, layout, static_orbit, steady_orbit
 from raceway.testing import b7206c, model_of
 
 ANGLES = np.linspace(-0.7, 0.7, 13)

@@ -9,8 +9,7 @@ from checks.validation.reference import elastic
 from checks.validation.scenes import built_in
 from raceway import SceneError
 from raceway.core.fem.elastic.bearing import ElasticSystem
-from raceway.core.threads import ThreadPool
-from raceway.extend import HexOperator, Schedule, integrate, standstill
+from raceway.extend import HexOperator, Schedule, ThreadPool, integrate, standstill
 from raceway.testing import settled
 from tests.test_elastic_scene import EXCITED, TINY, scene
 

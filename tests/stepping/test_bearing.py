@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from checks.validation.scenes import rotating
-from raceway.core.ring.orbit import static_orbit
-from raceway.extend import Drivers, Schedule, SteppedBearing, at_rest, integrate
+from raceway.extend import Drivers, Schedule, SteppedBearing, at_rest, integrate, static_orbit
 from raceway.testing import IntegratorSuite, default_registry, settled
 
 #: Those that march in time.

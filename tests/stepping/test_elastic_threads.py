@@ -11,8 +11,7 @@ import pytest
 from checks.validation.scenes import built_in
 from raceway import StabilityError
 from raceway.core.fem.elastic.assembly import threads_for
-from raceway.core.threads import ThreadPool
-from raceway.extend import Schedule, integrate, standstill
+from raceway.extend import Schedule, ThreadPool, integrate, standstill
 from raceway.testing import settled
 from tests.test_elastic_scene import EXCITED, TINY
 

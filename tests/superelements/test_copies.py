@@ -9,7 +9,7 @@ from checks.validation.reference import elastic
 from raceway.core.fem.elastic.assembly import BodyForces, CopiedStiffness
 from raceway.core.fem.elastic.superelement import Copies, same_bodies, sectors, turn
 from raceway.core.fem.hexahedron.rows import BlockRows
-from raceway.core.threads import ThreadPool
+from raceway.extend import ThreadPool
 from tests.superelements.bearings import built, tiny
 
 Z = 5
