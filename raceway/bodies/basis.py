@@ -72,8 +72,10 @@ def make_basis(problem: Problem, meshed: bool = False) -> Basis:
 
 def growth_of(running: RunningBearing, row: np.ndarray) -> Growth:
     """Of the grooves; ``row`` (Z,) is each ball's."""
-    numbers = np.broadcast_arrays(*(number for grown in running.grooves for number in (*attrs.astuple(grown), 0.0)))
-    rows = np.stack(numbers, axis=-1).reshape(*numbers[0].shape, len(running.grooves), -1)
+    numbers = [[grown.axial, grown.radial, grown.inner, grown.outer, 0.0] for grown in running.grooves]
+    rows = np.empty((*np.broadcast_shapes(*(np.shape(number) for grown in numbers for number in grown)), len(numbers), 5))
+    for place in np.ndindex(rows.shape[-2:]):
+        rows[(..., *place)] = numbers[place[0]][place[1]]
     # What places make of temperatures is each row's own, and so is all that rows of other bearings have beyond the first.
     common = rows[..., 0, :].copy()
     if running.bearing.equal_rows:
@@ -87,8 +89,10 @@ def contact_pairs(problem: Problem, basis: Basis) -> ContactPairs:
     rings, balls, shape = problem.bearing.rings, problem.bearing.balls, (*problem.points, len(basis.row))
 
     def both(a: Number, b: Number) -> np.ndarray:
-        halves = [np.broadcast_to(per_ball(value) if problem.points else value, shape) for value in (a, b)]
-        return np.concatenate(halves, axis=-1, dtype=float).ravel()
+        halves = np.empty((*shape[:-1], 2, shape[-1]))
+        for race, value in enumerate((a, b)):
+            halves[..., race, :] = per_ball(value) if problem.points else value
+        return halves.ravel()
 
     def every(value: Number) -> np.ndarray:
         return both(value, value)

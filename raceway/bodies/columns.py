@@ -90,7 +90,8 @@ class ColumnBearing:
         n, z, (axial, ball_load) = problem.points[0], len(self.basis.row), problem.axial_approach
         basis = attrs.evolve(self.basis, axial=axial, ball_load=largest(ball_load, 1.0))
         reference = np.repeat(np.broadcast_to(basis.ball_load, n), 2 * z)
-        pairs = attrs.evolve(self.pairs.at(np.tile(np.arange(2 * z), n)), reference_load=reference)
+        pairs = self.pairs if n == 1 else self.pairs.at(np.tile(np.arange(2 * z), n))
+        pairs = attrs.evolve(pairs, reference_load=reference)
         params, preloaded = law_params(problem.contact.law, pairs).reshape(n, 2 * z, -1), some(problem.bearing.preload)
         if preloaded and not np.all(params == self.points.params):
             return None
@@ -239,12 +240,14 @@ class ColumnBearing:
 
     def pressures(self, force: np.ndarray) -> np.ndarray:
         """(n, 2 Z) peak pressures [Pa] under contact forces (n, 2 Z) [N]."""
-        halves = np.split(force, 2, axis=1)
+        z = force.shape[1] // 2
+        halves = force[:, :z], force[:, z:]
         return np.concatenate([e.peak_pressure(half) for e, half in zip(self.ellipses, halves, strict=True)], axis=1)
 
     def impossible(self, force: np.ndarray) -> np.ndarray:
         """(n,) whether any contact would be longer than half the ball's circumference."""
-        b, halves = self.basis, np.split(force, 2, axis=1)
+        b, z = self.basis, force.shape[1] // 2
+        halves = force[:, :z], force[:, z:]
         if self.problem.bearing.equal_rows:
             largest_of_race = (e.semi_axes(half.max(axis=1))[0] for e, half in zip((b.inner, b.outer), halves, strict=True))
             return np.asarray(np.maximum(*largest_of_race) >= 0.25 * np.pi * b.geometry.ball_diameter)

@@ -21,6 +21,9 @@ T = TypeVar("T", bound=attrs.AttrsInstance)
 Number = Any
 #: Whether a type is that of tables.
 is_table: Callable[[type], bool] = cache(attrs.has)
+#: Names of the keys of a table's type; types that are no columns and have none.
+_names: Callable[[type], tuple[str, ...]] = cache(lambda kind: tuple(field.name for field in attrs.fields(kind)))
+_PLAIN = {float, int, str, bool, type(None)}
 
 
 def is_column(value: object) -> bool:
@@ -32,7 +35,7 @@ def _either(number: Callable[..., float], column: str) -> Callable[..., Any]:
     """A function of numbers, numpy's of that name where any of them is a column."""
 
     def function(*values: Number) -> Number:
-        if not any(map(is_column, values)):
+        if all(type(value) is float or not is_column(value) for value in values):
             return number(*values)
         import numpy
 
@@ -63,7 +66,7 @@ def elliptic_integrals(m1: Number) -> tuple[Number, Number]:
 
 def _column_values(part: attrs.AttrsInstance) -> dict[str, Any]:
     """What stands in a table, by the names of its keys."""
-    return {field.name: getattr(part, field.name) for field in attrs.fields(type(part))}
+    return {name: getattr(part, name) for name in _names(type(part))}
 
 
 def has_columns(part: attrs.AttrsInstance) -> bool:
@@ -116,9 +119,13 @@ def distinct(part: T) -> tuple[list[T], np.ndarray]:
 
 def length(part: attrs.AttrsInstance) -> int:
     """Points of a table that has columns, or tables with them; 0 of one that has none."""
-    values = _column_values(part).values()
-    sizes = (len(value) if is_column(value) else length(value) if is_table(type(value)) else 0 for value in values)
-    return next((size for size in sizes if size), 0)
+    for name in _names(type(part)):
+        value = getattr(part, name)
+        if type(value) not in _PLAIN and (
+            size := len(value) if is_column(value) else length(value) if is_table(type(value)) else 0
+        ):
+            return size
+    return 0
 
 
 #: Nodes of each variable, tried in turn, and points at which the interpolation is compared with the function.

@@ -1,7 +1,7 @@
 """Duties of plug-ins as the program calls them: faults are put to the plug-in's name, duties that it leaves out have their defaults here."""
 
 from collections.abc import Callable, Mapping
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any, TypeVar
 
 import attrs
@@ -123,10 +123,10 @@ def turn_samples(plugin: Quantities, problem: Problem) -> int:
 def quantities_at(plugin: Quantities, points: SolvedPoints) -> dict[str, np.ndarray]:
     """Numbers (n, ...) of a plug-in by their names, or ``PluginError``."""
     title, n = f"quantity '{plugin.name}'", len(points.load)
-    values = {
-        name: _answer(title, "compute", partial(np.ascontiguousarray, value, dtype=float), np.ndarray)
-        for name, value in _answer(title, "compute", lambda: plugin.compute(points), Mapping).items()
-    }
+    answer = _answer(title, "compute", lambda: plugin.compute(points), Mapping)
+    values = _answer(
+        title, "compute", lambda: {name: np.ascontiguousarray(value, dtype=float) for name, value in answer.items()}, dict
+    )
     names = [number.name for number in plugin.numbers]
     if missing := [name for name in names if name not in values] or [name for name in values if name not in names]:
         raise PluginError(f"{title}: compute() must return exactly its `numbers`: {', '.join(names)}; see '{missing[0]}'")

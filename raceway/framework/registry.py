@@ -292,7 +292,8 @@ class Registry:
 
     def of_kind(self, *kinds: str) -> list[Entry]:
         """Entries of some kinds, shadowed ones too, by kind and name, their classes imported; one that breaks is a fault, and gone."""
-        return [entry for entry in list(self.all()) if entry.kind in kinds and not self._drop_broken(entry)]
+        fitting = [entry for key in sorted(self.entries) if key[0] in kinds for entry in self.entries[key]]
+        return [entry for entry in fitting if not self._drop_broken(entry)]
 
     def _drop_broken(self, entry: Entry) -> bool:
         """Whether the class of an entry cannot be used, which is then remembered as if it had been imported at once."""

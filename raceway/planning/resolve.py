@@ -421,12 +421,12 @@ def _with_hypotheses(problem: Problem) -> Problem:
         choice[key] = now = getattr(problem.kinematics, key)
         if now == "auto":
             choice[key], words = value, ""
-            trial = attrs.evolve(problem, kinematics=with_values(problem.kinematics, **choice))
             if not some(problem.spin_speed):
                 words = "nothing turns"
             elif key == "gyroscopic" and problem.contact.friction > 0.0:
                 words = "contact.friction: contacts that stick along the grooves carry them"
             else:
+                trial = attrs.evolve(problem, kinematics=with_values(problem.kinematics, **choice))
                 faults = trial.body_kind.faults()
                 messages = [fault.message for fault in faults if fault.path == f"kinematics.{key}"]
                 words = next(iter([*(text for _, text in speaking(rules, trial)), *messages]), "")

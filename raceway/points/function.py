@@ -54,7 +54,7 @@ _POINT = Reader("numbers by their keys", lambda v: {TEXT.read(key): float(number
 #: a point.
 _MEMORY, _ASKED = 0.8, 2.0**24
 #: Rows without the reason of a run of their own, which is asked for a few only.
-_REASONS, _REFUSED = 200, "a rule of the scene refuses its numbers"
+_REASONS, _BY_RULE = 200, "a rule of the scene refuses its numbers"
 
 
 class PointStatus(IntEnum):
@@ -71,6 +71,10 @@ class PointStatus(IntEnum):
     RUN = 1  # by a run of its own
     REFUSED = 2  # a rule of the scene
     FAILED = 3  # no equilibrium or no motion, or not tried
+
+
+#: As numbers: looking one up in the class takes a microsecond.
+_COMPUTED, _RUN, _REFUSED, _FAILED = map(int, PointStatus)
 
 
 @attrs.frozen(eq=False, slots=False)
@@ -204,7 +208,7 @@ class Function:
             return self._run_all(flat, np.arange(n), {})
         # Runs of what the loop has left.
         answer = self.with_reasons(flat, self.looped(flat))
-        left = np.flatnonzero(answer["status"] == PointStatus.FAILED)
+        left = np.flatnonzero(answer["status"] == _FAILED)
         left = left[answer["reason"][left] == ""]
         seconds = self._seconds(len(left)) if len(left) and not self.force else 0.0
         if seconds > _LIMIT_S:
@@ -219,22 +223,22 @@ class Function:
         """As ``columns``, of the compiled loop alone: what it leaves has the status FAILED or REFUSED, nan, and no reason."""
         n, size = len(next(iter(flat.values()))), BLOCK[self.moving]
         blocks = [slice(k, k + size) for k in range(0, n, size)]
-        answer: Columns = {"status": np.full(n, PointStatus.FAILED), "reason": np.full(n, "", dtype=object)}
+        answer: Columns = {"status": np.full(n, _FAILED), "reason": np.full(n, "", dtype=object)}
         compile_beside(*_KERNELS[0 if self.moving else 1 :])
         if n > size:
             # Once so large an array was freed, glibc keeps a block's memory for the next one, which it asks for zeroed pages else.
             np.empty(31 << 17)
         with ThreadPool(min(self.threads, len(blocks))) as pool:
             pool.do(len(blocks), lambda number: self._put_block(flat, blocks[number], answer))
-        without = answer["status"] != PointStatus.COMPUTED
+        without = answer["status"] != _COMPUTED
         for name in self.outputs:
             answer.setdefault(name, np.empty(n))[without] = np.nan
         return {name: answer[name] for name in (*self.outputs, "status", "reason")}
 
     def with_reasons(self, flat: Mapping[str, np.ndarray], answer: Columns) -> Columns:
         """What the loop computed, with the reasons of rows that are refused."""
-        refusals = np.flatnonzero(answer["status"] == PointStatus.REFUSED)
-        answer["reason"][refusals] = _REFUSED
+        refusals = np.flatnonzero(answer["status"] == _REFUSED)
+        answer["reason"][refusals] = _BY_RULE
         for row in refusals[:_REASONS]:
             try:
                 make_plan(self._scene_of(flat, int(row)))
@@ -324,7 +328,7 @@ class Function:
         columns = {key: column[block] for key, column in flat.items()}
         status, reason, refusals = answer["status"][block], answer["reason"][block], self._refusals(columns)
         fit = np.flatnonzero(~refusals)
-        status[refusals] = PointStatus.REFUSED
+        status[refusals] = _REFUSED
         # A plan decides alike about rows whose balls turn, and about those whose balls stand.
         turns = np.full(len(fit), self._problem.spin_speed > 0.0)
         for key in ("excitation.speed_rpm", "kinematics.spin_speed_rpm"):
@@ -352,7 +356,7 @@ class Function:
                 continue
             numbers = Computed.of(bearing, self.moving, self.tolerance, self.outputs)
             fine = ~bearing.conspicuous & numbers.fine & (reason[rows] == "")
-            status[rows[fine]] = PointStatus.COMPUTED
+            status[rows[fine]] = _COMPUTED
             oil = self.scene.lubricant
             if self.scene.heat is not None and oil is not None and oil.thins:
                 from raceway.plugins.quantities.heat import beyond_oil
@@ -404,16 +408,16 @@ class Function:
     def _run_all(self, flat: Mapping[str, np.ndarray], rows: np.ndarray, answer: Columns) -> Columns:
         """Runs of some rows, their values put into the answer."""
         n = len(next(iter(flat.values())))
-        answer.setdefault("status", np.full(n, PointStatus.FAILED))
+        answer.setdefault("status", np.full(n, _FAILED))
         answer.setdefault("reason", np.full(n, "", dtype=object))
         for row in rows:
             try:
                 result = run(self._scene_of(flat, row))
             except RacewayError as why:
-                answer["status"][row] = PointStatus.REFUSED if isinstance(why, SceneError) else PointStatus.FAILED
+                answer["status"][row] = _REFUSED if isinstance(why, SceneError) else _FAILED
                 answer["reason"][row] = str(why)
                 continue
-            answer["status"][row] = PointStatus.RUN
+            answer["status"][row] = _RUN
             for name in self.outputs:
                 value = of_result(name, result)
                 if name not in answer:

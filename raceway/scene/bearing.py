@@ -208,7 +208,7 @@ class Bearing:
         row_signs = signs if self.arrangement != "single" else "+" * len(self.row)
         return "".join(row.direction or sign for row, sign in zip(self.row, row_signs, strict=True))
 
-    @property
+    @cached_property
     def rows(self) -> tuple[tuple[float, float], ...]:
         """(side, axial place [m]) of each row: side +1 is seated by a positive axial motion of the inner ring."""
         word = self.arrangement if self.arrangement != "single" or not self.row else self.signs
@@ -311,7 +311,7 @@ class Bearing:
         if self.preload_of == "row" and self.preload_kind == "spring":
             raise ValueError("`preload_of` = 'row' is an offset that was ground: with preload_kind = 'spring' use 'set'")
 
-    @property
+    @cached_property
     def contact_angle(self) -> float:
         """Free contact angle [rad]: given, or from the radial clearance."""
         clearance, angle = self.radial_clearance, self.contact_angle_deg

@@ -7,6 +7,7 @@ import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -200,9 +201,10 @@ def value_at(tables: ReadTables, key: str) -> Any:
     return value
 
 
-def steps_of(path: str) -> list[str | int]:
+@lru_cache(maxsize=256)
+def steps_of(path: str) -> tuple[str | int, ...]:
     """Names and places along a path: "load.radial[0]" is load, radial, 0."""
-    return [name or int(index) for name, index in _STEP.findall(path)]
+    return tuple(name or int(index) for name, index in _STEP.findall(path))
 
 
 def without(tables: ReadTables, key: str) -> Tables:

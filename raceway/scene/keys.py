@@ -1,6 +1,7 @@
 """Numbers of a scene that change continuously, by their keys."""
 
 from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from typing import Any, TypeAlias, TypeVar
 
 import attrs
@@ -18,7 +19,7 @@ _PLUGINS = ("excitation", "bodies", "quantities")
 #: Tables of numerical settings: the answer must not depend on them.
 _SETTINGS = ("integrator", "identifier", "mesh")
 #: Paths into a table, and what is to stand there.
-_Changes: TypeAlias = list[tuple[list[str | int], object]]
+_Changes: TypeAlias = list[tuple[tuple[str | int, ...], object]]
 
 
 @attrs.frozen
@@ -118,12 +119,16 @@ def _leaves(value: object, path: str, unit: str, words: str) -> Iterator[Key]:
             yield from _leaves(element, f"{path}[{k}]", unit, words)
 
 
+#: Fields of a table by their names; none of what is no table.
+_fields: Callable[[type], dict[str, Any]] = cache(lambda kind: attrs.fields_dict(kind) if attrs.has(kind) else {})
+
+
 def _with_parts(part: Any, changes: _Changes, replace: Callable[..., object] = attrs.evolve) -> Any:
     """A table, or an element of one, with values at paths into it."""
     if not all(steps for steps, _ in changes):
         return changes[0][1]
     groups: dict[str | int, _Changes] = {}
-    fields = attrs.fields_dict(type(part)) if attrs.has(type(part)) else {}
+    fields = _fields(type(part))
     for steps, value in changes:
         step, further = steps[0], steps[1:]
         if fields and step not in fields:  # a key of the plug-in that the table names

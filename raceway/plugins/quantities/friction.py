@@ -223,7 +223,10 @@ def ball_contacts(points: SolvedPoints) -> BallContacts:
 
     def of_balls(numbers: list[Number]) -> np.ndarray:
         """(1 or n, 1, Z) of the numbers of the rows."""
-        return np.stack(np.broadcast_arrays(*(np.atleast_1d(number) for number in numbers)), axis=-1)[:, None, points.row]
+        rows = np.empty((max(map(np.size, numbers)), len(numbers)))
+        for k, of_row in enumerate(numbers):
+            rows[:, k] = of_row
+        return rows[:, None, points.row]
 
     diameter = of_balls([b.ball_diameter for b in rows])
     stiff = [2.0 / sum((1.0 - m.poisson**2) / m.young for m in (b.rings, b.balls)) for b in rows]

@@ -47,14 +47,14 @@ class BallPass:
         return ""
 
     def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:
-        cosines, rows = _cosines(points), points.problem.bearing.of_rows
+        cosines, rows = points.once("cosines", lambda: _cosines(points)), points.problem.bearing.of_rows
         each = [ball_pass(b.ball_count, b.ball_diameter, b.pitch_diameter, cosines[:, k]) for k, b in enumerate(rows)]
         return {number.name: np.stack([row[number.name] for row in each], axis=1) for number in self.numbers}
 
     def table(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> Tables:
         """``speed_rpm``, and for each row its contact angle and frequencies, over the shaft's and in Hz where the shaft turns."""
         speed, rows = float(points.speed[0]) / (2.0 * pi), []
-        for k, cosine in enumerate(_cosines(points)[0].tolist()):
+        for k, cosine in enumerate(points.once("cosines", lambda: _cosines(points))[0].tolist()):
             times = {name: float(value[0, k]) for name, value in values.items()}
             hertz = {f"{name}_hz": speed * number if speed else None for name, number in times.items()}
             free = points.problem.bearing.of_rows[k]

@@ -163,7 +163,8 @@ class Life:
             ratio = np.broadcast_to(kappa, points.speed.shape)
             with np.errstate(divide="ignore"):
                 safety = (ratings.of_contacts[1] / most).min(axis=-1)
-                factor = life_factor(ratio, self.contamination * ratings.fatigue_load_limit / equivalent)
+                share = self.contamination * ratings.fatigue_load_limit / equivalent
+                factor = share * ratio if np.isnan(ratio).all() else life_factor(ratio, share)
             rows.append(_Row(ratings, loads, lives, equivalent, safety, ratio, factor))
         return rows
 
