@@ -103,6 +103,19 @@ def identification(
     )
 
 
+#: Rows of a matrix that no BLAS shares among threads, which takes many times as long as to factorise it.
+_ROWS = 360
+
+
+def least_squares(basis: np.ndarray, signal: np.ndarray) -> np.ndarray:
+    """(m, k) coefficients of the columns of a basis (n, m) in a signal (n, k); long ones become triangles, block by block."""
+    both, rows = np.hstack([basis, signal]), max(_ROWS, 4 * (basis.shape[1] + signal.shape[1]))
+    while len(both) > rows:
+        blocks = both[: len(both) // rows * rows].reshape(-1, rows, both.shape[1])
+        both = np.vstack([*np.linalg.qr(blocks, mode="r"), both[blocks.shape[0] * rows :]])
+    return np.asarray(np.linalg.lstsq(both[:, : basis.shape[1]], both[:, basis.shape[1] :], rcond=None)[0])
+
+
 def fit_harmonics(
     time: np.ndarray, signal: np.ndarray, frequency_hz: float, harmonics: int
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -127,7 +140,7 @@ def fit_harmonics(
         span = time - time.mean()
         columns.append((span / np.abs(span).max())[:, None])
     basis = np.hstack(columns)
-    solution, *_ = np.linalg.lstsq(basis, signal, rcond=None)
+    solution = least_squares(basis, signal)
     return solution[:harmonics] - 1j * solution[harmonics : 2 * harmonics], signal - basis @ solution
 
 
@@ -190,7 +203,7 @@ def phasors(time: np.ndarray, signal: np.ndarray, frequencies: list[float]) -> n
     wt = 2.0 * np.pi * time[:, None] * np.asarray(frequencies)
     span = time - time.mean()
     basis = np.hstack([np.ones((len(time), 1)), (span / np.abs(span).max())[:, None], np.cos(wt), np.sin(wt)])
-    solution, *_ = np.linalg.lstsq(basis, signal, rcond=None)
+    solution = least_squares(basis, signal)
     count = len(frequencies)
     return solution[2 : 2 + count] - 1j * solution[2 + count :]
 

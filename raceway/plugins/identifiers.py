@@ -271,6 +271,8 @@ class _Window:
 def _window(model: Model, time: np.ndarray, phase: np.ndarray, signals: np.ndarray) -> _Window:
     import numpy as np
 
+    from raceway.core.signals import least_squares
+
     t = time - time.mean()
     span = t[-1] - t[0]
     u = t / span
@@ -279,7 +281,7 @@ def _window(model: Model, time: np.ndarray, phase: np.ndarray, signals: np.ndarr
     bent = np.column_stack([basis, u * u * c, u * u * s])
     # Hann's weights: a free vibration leaks less into the line by orders of magnitude.
     weight = np.sqrt(1.0 - np.cos(2.0 * np.pi * (np.arange(len(t)) + 0.5) / len(t)))[:, None]
-    solution, curve = (np.linalg.lstsq(weight * columns, weight * signals, rcond=None)[0] for columns in (basis, bent))
+    solution, curve = (least_squares(weight * columns, weight * signals) for columns in (basis, bent))
     # Of the phase: w at the middle, and its rate.
     half_rate, w, _ = np.polyfit(t, phase, 2)
     speeds, system = (w, 2.0 * half_rate), model.system.at_speed(time.mean()) if model.mass_used > 0.0 else None
