@@ -43,7 +43,7 @@ def loop(request, monkeypatch):
     (scene, ranges), calls, rng = SCENES[request.param], [], np.random.default_rng(5)
     monkeypatch.setattr(columns, "equilibria", lambda *args: (calls.append(args), equilibria(*args)))
     scene = {"bearing": {"preset": "B7206C"}, "load": {"axial": 100.0}, "supports": {"tilt": "free"}} | scene
-    rw.function(scene, ranges, ["stiffness"])(*(rng.uniform(*ends, size=97) for ends in ranges.values()))
+    rw.function(scene, ranges, ["stiffness", "damping"])(*(rng.uniform(*ends, size=97) for ends in ranges.values()))
     return request.param, *max(calls, key=lambda args: args[2].table.size)
 
 

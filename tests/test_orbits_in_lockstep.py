@@ -35,7 +35,7 @@ def loop(request, monkeypatch):
     """The arguments of the largest loop over 33 points: eight blocks, and one alone."""
     calls, rng = [], np.random.default_rng(5)
     monkeypatch.setattr(columns, "orbits", lambda *args: (calls.append(args), orbits(*args)))
-    answer = rw.function(SCENE | CHANGES[request.param], RANGES, ["kyy", "largest_multiplier"])
+    answer = rw.function(SCENE | CHANGES[request.param], RANGES, ["min_ball_load", "largest_multiplier"])
     answer(*(rng.uniform(*ends, size=33) for ends in RANGES.values()))
     return max(calls, key=lambda args: args[2].table.size)
 
@@ -61,6 +61,15 @@ def test_lanes_have_the_motions_of_balls_that_are_found_in_each_sample(loop):
         assert np.all(np.abs(a - b).max(axis=axes) <= tolerance * np.abs(a).max(axis=axes)), name
     assert np.abs(together.change - alone.change)[fine].max() < 1e-9
     assert np.all(together.error[fine] <= loop[4].tolerance)
+
+
+def test_a_bound_of_contact_forces_is_above_the_largest(loop):
+    """By Lebesgue's constant, below 5 of as many samples, of the largest one, which no polynomial exceeds as much."""
+    exact, bound = solved(loop), solved((*loop[:-1], loop[-1]._replace(least=loop[-1].least[:, :0])))
+    fine, z = exact.status == 0, exact.peak.shape[1] // 2
+    for race in (slice(0, z), slice(z, 2 * z)):
+        largest, most = exact.peak[fine, race].max(axis=1), bound.peak[fine, race].max(axis=1)
+        assert (most >= largest).all() and (most <= 5.0 * largest).all()
 
 
 def test_a_point_does_not_feel_the_lanes_beside_it(loop):

@@ -80,7 +80,8 @@ def growth_of(running: RunningBearing, row: np.ndarray) -> Growth:
     common = rows[..., 0, :].copy()
     if running.bearing.equal_rows:
         common[..., 0] = rows[..., 0].mean(axis=-1)
-    return Growth(common, (rows - common[..., None, :])[..., row, :])
+    own = rows - common[..., None, :]
+    return Growth(common, own[..., row, :] if own.any() else np.zeros((len(row), own.shape[-1])))
 
 
 def contact_pairs(problem: Problem, basis: Basis) -> ContactPairs:

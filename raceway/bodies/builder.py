@@ -6,6 +6,7 @@ from functools import cached_property
 import attrs
 import numpy as np
 
+from raceway.bodies.basis import contact_pairs
 from raceway.bodies.columns import OF_PRELOAD, ColumnBearing, running_columns
 from raceway.framework.duties import law_params
 from raceway.planning.columns import column_problem
@@ -42,5 +43,5 @@ class Builder:
         """At one point; None where a plug-in has changed what the law makes of its contacts."""
         one = attrs.evolve(self.plan.problem, points=(1,))
         bearing: ColumnBearing = one.body_kind.columns(self.plan)
-        params = law_params(one.contact.law, bearing.pairs)
+        params = law_params(one.contact.law, contact_pairs(one, bearing.basis))
         return bearing if np.array_equal(params.ravel(), bearing.points.params.ravel()) else None

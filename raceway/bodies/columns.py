@@ -14,7 +14,7 @@ import numpy as np
 
 from raceway.bodies.basis import Basis, contact_pairs, first_guess, gyroscopic, make_basis
 from raceway.bodies.contacts import contact_angles
-from raceway.bodies.rigid_bearing import contact_parts
+from raceway.bodies.rigid_bearing import contact_parts, law_of_contacts
 from raceway.bodies.running import ITERATIONS, LOAD_TOLERANCE, running_pairs
 from raceway.core.columns import at_rows, distinct, has_columns, largest, per_ball, some
 from raceway.core.contact.hertz import Ellipse
@@ -30,7 +30,7 @@ from raceway.core.ring.kernels.rigid_inertial import rigid_inertial, rigid_tange
 from raceway.core.ring.states import LOOSE, Kernels, Points, States
 from raceway.core.ring.system import System
 from raceway.core.signatures import FORCE, Linear
-from raceway.framework.contracts import ContactPairs, SolvedPoints
+from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import force_params, is_elementwise_force, law_params, reach_of, renews
 from raceway.framework.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
@@ -80,20 +80,12 @@ class ColumnBearing:
             )
         return np.ascontiguousarray(numbers[0]), 2.0 * np.pi / numbers[1].astype(float)
 
-    @cached_property
-    def pairs(self) -> ContactPairs:
-        """Its contacts, mounted and at standstill."""
-        return contact_pairs(self.problem, self.basis)
-
     def under(self, problem: Problem) -> ColumnBearing | None:
         """Of the bearing at one point that at n points of a problem in which loads alone differ; None where its preload depends on them."""
-        n, z, (axial, ball_load) = problem.points[0], len(self.basis.row), problem.axial_approach
+        n, (axial, ball_load) = problem.points[0], problem.axial_approach
         basis = attrs.evolve(self.basis, axial=axial, ball_load=largest(ball_load, 1.0))
-        reference = np.repeat(np.broadcast_to(basis.ball_load, n), 2 * z)
-        pairs = self.pairs if n == 1 else self.pairs.at(np.tile(np.arange(2 * z), n))
-        pairs = attrs.evolve(pairs, reference_load=reference)
-        params, preloaded = law_params(problem.contact.law, pairs).reshape(n, 2 * z, -1), some(problem.bearing.preload)
-        if preloaded and not np.all(params == self.points.params):
+        params = law_of_contacts(problem, basis)
+        if some(problem.bearing.preload) and not np.all(params == self.points.params):
             return None
         scalars, table = (np.repeat(part, n, axis=0) for part in (self.points.scalars, self.points.table))
         guess = first_guess(problem, basis, table[..., ring.SHIFT].max(axis=-1))
@@ -118,26 +110,28 @@ class ColumnBearing:
             wrong |= (room <= 0.0) | (radial >= room) & (b.contact_angle > 0.0) | (radial <= np.cos(edge) * room)
         return wrong | (len({side for side, _ in b.rows}) < 2) & (np.asarray(b.preload) > 0.0)
 
-    def equilibria(self) -> States:
-        """The static state of each point."""
+    def equilibria(self, damped: bool = False) -> States:
+        """The static state of each point; ``damped`` : with the damping of its contacts."""
         columns = self.kernels.columns + (2 if self.plan.balls == "tangential" else 0)
-        states = _empty_states(len(self.faults), self.points.table.shape[1], columns)
+        states = _empty_states(len(self.faults), self.points.table.shape[1], columns, damped)
         equilibria(self.kernels, self.linear, self.points, states)
         states.status[self.faults != 0] = self.faults[self.faults != 0]
         return states
 
     def orbits(
-        self, states: States, tolerance: float, near: bool = False, disturbed: bool = False, times: int = 0
+        self, states: States, tolerance: float, near: bool = False, disturbed: bool = False, times: int | None = None
     ) -> Orbits:
         """The steady orbit of each point about its equilibrium under a periodic force.
 
         tolerance : of the 1x component, relative;  near : whether all points are neighbours of the first one
-        disturbed : whether ``transfer`` is computed, too;  times : of a turn at which contact forces are
+        disturbed : whether ``transfer`` is computed, too;  times : of a turn at which contact forces are, beside
+        their extremes between samples; None: neither, and ``peak`` is an upper bound
         """
         z, n, inertia = self.points.table.shape[1], len(states.status), self.problem.inertia
         params, speed = self.force
         disturbances = 2 * int(self.linear.free.sum()) * disturbed
-        shapes = [(10,), (10,), (5,), *[()] * 3, (2 * z,), (2 * z,), (times, 2 * z), *[()] * 3, 2 * (disturbances,)]
+        least, turn = (0 if times is None else 2 * z,), (times or 0, 2 * z)
+        shapes = [(10,), (10,), (5,), *[()] * 3, (2 * z,), least, turn, *[()] * 3, 2 * (disturbances,)]
         out = Orbits(*(np.zeros((n, *shape)) for shape in shapes))
         out = out._replace(error=np.full(n, np.nan), samples=np.zeros(n, np.int64), status=np.full(n, -1, np.int64))
         rows, moments = (inertia.mass,) * 3 + (inertia.transverse,) * 2, gyroscopic(self.problem)
@@ -146,11 +140,11 @@ class ColumnBearing:
         force = plugin_kernel(self.problem.excitation, "excitation", FORCE, "FORCE")
         turning = Turning(force, params, speed, moments, mass, 0.0, 2.0 * np.pi, np.arange(z), 8, _MOST_SAMPLES, tolerance)
         across = np.any(self.points.load[:, 1:] * self.linear.free[1:] != 0.0, axis=1)
-        for chosen in (np.flatnonzero(across), np.flatnonzero(~across & (states.status == 0))):
-            if not len(chosen):
+        for these in (np.flatnonzero(across), np.flatnonzero(~across & (states.status == 0))):
+            if not len(these):
                 continue
-            chosen = np.unique(np.append(chosen, 0)) if near else chosen
-            first = chosen[-1]
+            chosen = np.unique(np.append(these, 0)) if near else these if len(these) < n else slice(None)
+            first = these[-1]
             parts = {"mass": np.diag(mass[first]), "damping": moments[first], "force": force, "force_params": params[first]}
             system = attrs.evolve(self._system(first), **parts)
             symmetry = None if across[first] else one_pitch(system, speed[first], states.q[first])
@@ -164,14 +158,6 @@ class ColumnBearing:
                 column[chosen] = part
         return out
 
-    def damping(self, states: States) -> np.ndarray:
-        """(n, 5, 5) of the contacts at each equilibrium, see ``System.damping_at``."""
-        out = np.zeros_like(states.stiffness)
-        for row in np.flatnonzero(self.points.scalars[:, [ring.DAMPING, ring.TIME_CONSTANT]].any(axis=1)).tolist():
-            system = self._system(row)
-            out[row] = system.damping_at(states.q[row], system.evaluate(states.q[row], ball=states.ball[row]))
-        return out
-
     def at(self, points: np.ndarray) -> ColumnBearing:
         """Its numbers at some of the points, by their indices; problem and basis are those of all."""
         return attrs.evolve(self, points=_rows(self.points, points), faults=self.faults[points])
@@ -182,7 +168,8 @@ class ColumnBearing:
         part, basis, before = self.at(points), make_basis(problem), self.basis.growth
         scalars, table = part.points.scalars, part.points.table
         scalars[:, ring.REST_AXIAL : ring.TILT_ARM + 1] += basis.growth.common - before.common[points]
-        table[..., ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.by_ball - before.by_ball[points]
+        by_ball = before.by_ball[points] if before.by_ball.ndim > 2 else before.by_ball
+        table[..., ring.OWN_REST_AXIAL : ring.OWN_TILT_ARM + 1] += basis.growth.by_ball - by_ball
         return running_columns(attrs.evolve(part, problem=problem, basis=basis))
 
     def _system(self, row: int) -> System:
@@ -368,17 +355,17 @@ def solved_columns(bearing: ColumnBearing, states: States, turn: Callable[[int],
     )
 
 
-def _rows(record: R, chosen: np.ndarray) -> R:
+def _rows(record: R, chosen: np.ndarray | slice) -> R:
     """Rows of the columns (n, ...) of a record; what all points share stays."""
     columns: dict[str, Any] = {
         name: np.ascontiguousarray(value[chosen])
         for name, value in record._asdict().items()
-        if isinstance(value, np.ndarray) and name != "order"
+        if isinstance(value, np.ndarray) and name != "order" and len(value)
     }
     return record._replace(**columns)
 
 
-def _empty_states(n: int, z: int, columns: int) -> States:
-    stiffness, damping = np.empty((2, n, 5, 5))
+def _empty_states(n: int, z: int, columns: int, damped: bool = False) -> States:
+    stiffness, damping = np.empty((n, 5, 5)), np.empty((n * damped, 5, 5))
     force, status = np.zeros((n, 2 * z)), np.empty(n, dtype=np.int64)
     return States(np.empty((n, 5)), np.empty((n, z, columns)), stiffness, damping, force, status)

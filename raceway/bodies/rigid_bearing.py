@@ -1,16 +1,20 @@
 """Rigid rings and balls: only the contacts deform."""
 
+from contextlib import suppress
+from typing import Any
+
 import attrs
 import numpy as np
 
 from raceway.bodies.basis import Basis, changing_speed, contact_pairs, excitation, linear_parts, make_basis
 from raceway.bodies.model import BuiltBearing, Equilibrium, Model, Told, against_hertz
 from raceway.bodies.mounting import place_ring
-from raceway.core.columns import Number, per_ball
+from raceway.core.columns import Number, has_columns, per_ball
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
+from raceway.errors import PluginError
 from raceway.framework.duties import law_params
 from raceway.framework.estimate import Estimate
 from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
@@ -72,7 +76,7 @@ def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
     kernel = base  # base: the one whose forces have a potential
     if plan.balls == "tangential":
         from raceway.core.ring.kernels.rigid_inertial import rigid_tangential as kernel
-    params = law_params(problem.contact.law, contact_pairs(problem, basis))
+    params = law_of_contacts(problem, basis)
     geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
     out = np.zeros((*problem.points, ring.SCALARS))
     out[..., ring.REST_AXIAL : ring.TILT_ARM + 1] = _grooves(problem, geometry)
@@ -93,10 +97,21 @@ def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
         "kernel": kernel,
         "base_kernel": base,
         "law": plugin_kernel(problem.contact.law, "contact law", LAW, "LAW"),
-        "law_params": params.reshape(*problem.points, -1, params.shape[1]),
+        "law_params": params,
         "scalars": out,
         "table": _ball_table(problem, plan, basis),
     }
+
+
+def law_of_contacts(problem: Problem, basis: Basis) -> np.ndarray:
+    """(..., 2 Z, k) parameters of the law; those of one point stand for all whose contacts differ in their reference load, unless it reads that."""
+    law, points, unknown = problem.contact.law, problem.points, dict[str, Any](reference_load=None)
+    if points and not has_columns(problem.bearing) and not has_columns(problem.contact):
+        with suppress(PluginError):
+            one = contact_pairs(attrs.evolve(problem, points=(1,)), attrs.evolve(basis, ball_load=1.0))
+            return np.repeat(law_params(law, attrs.evolve(one, **unknown))[None], points[0], axis=0)
+    params = law_params(law, contact_pairs(problem, basis))
+    return params.reshape(*points, -1, params.shape[1])
 
 
 def probe(problem: Problem, basis: Basis, system: System) -> None:

@@ -262,9 +262,9 @@ class Gradients:
             columns, runaway = {**columns, **warmth.columns}, warmth.runaway
         bearing = Builder(self.model.plan).at(columns)
         bearing.points.guess[:] = q
-        states = bearing.equilibria()
+        states = bearing.equilibria(damped=True)
         values = {"displacement": states.q, "stiffness": states.stiffness, "contact_force": states.force}
-        values["damping"], fine = bearing.damping(states), (states.status == 0) & ~runaway
+        values["damping"], fine = states.damping, (states.status == 0) & ~runaway
         values["stated"] = self._stated(solved_columns(bearing, states), len(fine))
         if self.orbit is not None:
             orbits = bearing.orbits(states, _TOLERANCE, near=True)

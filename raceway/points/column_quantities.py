@@ -46,15 +46,17 @@ class Computed:
     @classmethod
     def of(cls, bearing: ColumnBearing, moving: bool, tolerance: float, outputs: Iterable[str]) -> "Computed":
         """Solve for what the outputs need."""
-        states = bearing.equilibria()
+        states = bearing.equilibria("damping" in outputs)
         if not moving:
             return cls(bearing, states, None)
         example, of_plugins = bearing.plan.problem, plugin_quantities(default_registry())
         plugins = {of_plugins[name][0] for name in outputs if name in of_plugins}
         samples = [turn_samples(getattr(example.quantities, name), example) for name in plugins]
         times = math.lcm(*(count for count in samples if count)) if any(samples) else 0
-        with_disturbances = _MULTIPLIER in outputs
-        motion = bearing.orbits(states, tolerance, disturbed=with_disturbances, times=times)
+        with_disturbances, asked = _MULTIPLIER in outputs, times if times or not EXTREMES.isdisjoint(outputs) else None
+        motion = bearing.orbits(states, tolerance, disturbed=with_disturbances, times=asked)
+        if asked is None and bearing.impossible(motion.peak).any():
+            motion = bearing.orbits(states, tolerance, disturbed=with_disturbances, times=0)
         return cls(bearing, states, motion)
 
     @property

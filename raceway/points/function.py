@@ -223,7 +223,10 @@ class Function:
         """As ``columns``, of the compiled loop alone: what it leaves has the status FAILED or REFUSED, nan, and no reason."""
         n, size = len(next(iter(flat.values()))), BLOCK[self.moving]
         blocks = [slice(k, k + size) for k in range(0, n, size)]
-        answer: Columns = {"status": np.full(n, _FAILED), "reason": np.full(n, "", dtype=object)}
+        answer: Columns = {
+            "status": np.where(self._refusals(flat), _REFUSED, _FAILED),
+            "reason": np.full(n, "", dtype=object),
+        }
         compile_beside(*_KERNELS[0 if self.moving else 1 :])
         if n > size:
             # Once so large an array was freed, glibc keeps a block's memory for the next one, which it asks for zeroed pages else.
@@ -326,9 +329,8 @@ class Function:
     def _put_block(self, flat: Mapping[str, np.ndarray], block: slice, answer: Columns) -> None:
         """Compute one block of points in the compiled loop; rows that it cannot do keep the status FAILED and get no values."""
         columns = {key: column[block] for key, column in flat.items()}
-        status, reason, refusals = answer["status"][block], answer["reason"][block], self._refusals(columns)
-        fit = np.flatnonzero(~refusals)
-        status[refusals] = _REFUSED
+        status, reason = answer["status"][block], answer["reason"][block]
+        fit = np.flatnonzero(status != _REFUSED)
         # A plan decides alike about rows whose balls turn, and about those whose balls stand.
         turns = np.full(len(fit), self._problem.spin_speed > 0.0)
         for key in ("excitation.speed_rpm", "kinematics.spin_speed_rpm"):

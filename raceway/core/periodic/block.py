@@ -8,6 +8,7 @@ from numba import boolean, float64, int64, void
 from raceway.core.jit import jit
 from raceway.core.lanes import WIDTH, live_of, put, spread, take
 from raceway.core.ring.elimination import copy_matrix
+from raceway.core.ring.kernels import GAP_RATE
 from raceway.core.ring.kernels.tensors import pair_of, put_pair, tensors_of
 from raceway.core.ring.lockstep import BY_CENTRE, DIRECTION, DQ, PLACE, SHAFT, STEP, TANGENT, Q, centre, seats
 from raceway.core.signatures import CUBE, MATRIX, record
@@ -40,10 +41,14 @@ class Block(NamedTuple):
 BLOCK = record(Block, MATRIX, MATRIX, CUBE, CUBE, CUBE, MATRIX, MATRIX)
 
 
-@jit(void(float64, MATRIX, MATRIX), inline=True)
-def turn_directions(angle, before, after):
-    """The balls' azimuths seen from a frame that has turned by an angle."""
+@jit(void(float64, MATRIX, MATRIX))
+def copy_balls(angle, before, after):
+    """What an iteration begins with, seen from a frame that has turned by an angle."""
     c, s, live = np.cos(angle), np.sin(angle), live_of(0, WIDTH)
+    for k in range(0, before.shape[1], WIDTH):
+        put(after, GAP_RATE, k, live, take(before, GAP_RATE, k, live))
+        for row in range(DIRECTION + 1, BY_CENTRE + 2):
+            put(after, row, k, live, take(before, row, k, live))
     for k in range(0, before.shape[1] // 2, WIDTH):
         cosine, sine = pair_of(before, DIRECTION, k, live)
         put_pair(after, DIRECTION, k, live, cosine * c + sine * s, sine * c - cosine * s)
@@ -90,8 +95,7 @@ def double(n, alone, sense, span, block):
             put(rows[between], DQ + i, 0, live, spread(0.0))
         if alone:
             continue
-        copy_matrix(work[at], work[between])
-        turn_directions(sense * span * 0.5 / n, work[at], work[between])
+        copy_balls(sense * span * 0.5 / n, work[at], work[between])
         for k in range(0, work.shape[2] // 2, WIDTH):
             ea, er = centre(seats(k, live, work[at]), rows[at], Q, live)
             fa, fr = centre(seats(k, live, work[between]), rows[between], Q, live)

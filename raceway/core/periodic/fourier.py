@@ -59,23 +59,21 @@ def circulants(n, span, first, second):
         second[m] = -0.5 * wave * wave * sign / np.sin(half) ** 2
 
 
-@jit(void(float64, VECTOR, VECTOR))
-def turn_vector(angle, vector, out):
-    """out (5,) = R(angle) vector (5,)."""
-    c, s = np.cos(angle), np.sin(angle)
+@jit(void(float64, float64, VECTOR, VECTOR))
+def turn_vector(c, s, vector, out):
+    """out (5,) = R vector (5,), of the angle with the cosine c and the sine s."""
     out[0] = vector[0]
     out[1], out[2] = c * vector[1] - s * vector[2], s * vector[1] + c * vector[2]
     out[3], out[4] = c * vector[3] - s * vector[4], s * vector[3] + c * vector[4]
 
 
-@jit(void(float64, MATRIX, MATRIX, MATRIX))
-def turn_matrix(angle, matrix, half, out):
-    """out (5, 5) = R(angle)^T matrix R(angle); ``half`` is scratch."""
+@jit(void(float64, float64, MATRIX, MATRIX, MATRIX))
+def turn_matrix(cosine, sine, matrix, half, out):
+    """out (5, 5) = R^T matrix R; ``half`` is scratch."""
     for i in range(5):
-        turn_vector(-angle, matrix[i], half[i])  # rows: (R^T m_i) = m_i R
+        turn_vector(cosine, -sine, matrix[i], half[i])  # rows: (R^T m_i) = m_i R
     for j in range(5):
         a, b, c, d, e = half[0, j], half[1, j], half[2, j], half[3, j], half[4, j]
-        cosine, sine = np.cos(angle), np.sin(angle)
         out[0, j] = a
         out[1, j], out[2, j] = cosine * b + sine * c, cosine * c - sine * b
         out[3, j], out[4, j] = cosine * d + sine * e, cosine * e - sine * d
@@ -109,10 +107,11 @@ def force_line(turning, p, push):
         push[i] = 0.0
     for k in range(16):
         angle = 2.0 * np.pi * k / 16.0
+        cosine, sine = np.cos(angle) / 8.0, np.sin(angle) / 8.0
         turning.force(angle / turning.speed[p], turning.params[p], force)
         for i in range(5):
-            push[i] += force[i] * np.cos(angle) / 8.0
-            push[5 + i] -= force[i] * np.sin(angle) / 8.0
+            push[i] += force[i] * cosine
+            push[5 + i] -= force[i] * sine
 
 
 @jit(void(MATRIX, float64, VECTOR, VECTOR))
@@ -121,12 +120,15 @@ def harmonic_lines(u, sense, mean, line):
     n = u.shape[0]
     for i in range(5):
         mean[i], line[i], line[5 + i] = 0.0, 0.0, 0.0
-        for j in range(n):
-            angle = 2.0 * np.pi * j / n
+    for j in range(n):
+        cosine, sine = 0.0, 0.0
+        if sense == 0.0:
+            cosine, sine = 2.0 * np.cos(2.0 * np.pi * j / n) / n, 2.0 * np.sin(2.0 * np.pi * j / n) / n
+        for i in range(5):
             if sense == 0.0:
                 mean[i] += u[j, i] / n
-                line[i] += 2.0 * u[j, i] * np.cos(angle) / n
-                line[5 + i] -= 2.0 * u[j, i] * np.sin(angle) / n
+                line[i] += u[j, i] * cosine
+                line[5 + i] -= u[j, i] * sine
             elif i == 0:
                 mean[i] += u[j, i] / n
             else:  # what stands in the frame is the 1x part
@@ -155,6 +157,7 @@ def linear_response(linear, points, states, turning, p, push, u):
     solve(A)
     for j in range(u.shape[0]):
         angle = turning.span * j / u.shape[0]
+        cosine, sine = np.cos(angle), np.sin(angle)
         for i in range(5):
-            q[i] = states.q[p, i] + A[i, 10] * np.cos(angle) - A[5 + i, 10] * np.sin(angle)
-        turn_vector(-turning.sense * angle, q, u[j])
+            q[i] = states.q[p, i] + A[i, 10] * cosine - A[5 + i, 10] * sine
+        turn_vector(cosine if turning.sense != 0.0 else 1.0, -turning.sense * sine, q, u[j])

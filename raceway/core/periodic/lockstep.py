@@ -21,36 +21,13 @@ from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
 from raceway.core.lanes import LANES, MASK, WIDTH, any_of, larger, live_of, put, smaller, spread, take, where
+from raceway.core.periodic import block as at
 from raceway.core.periodic import fourier
-from raceway.core.periodic.block import (
-    BEND,
-    BLOCK,
-    CENTRE,
-    DAMPED,
-    DASHPOT,
-    FIXED,
-    IMBALANCE,
-    MASS,
-    MEAN,
-    RATE,
-    SPEED,
-    TIME,
-    VISCOUS,
-    WANTED,
-)
 from raceway.core.periodic.steps import invert, newton_steps
 from raceway.core.ring import kernels as ring_rows
 from raceway.core.ring.elimination import copy_matrix
+from raceway.core.ring.kernels import rolling as roll
 from raceway.core.ring.kernels.layout import DAMPING, TIME_CONSTANT, keep_slips, no_tangent, rows_of_tangent, with_tangent
-from raceway.core.ring.kernels.rolling import (
-    ROLLING,
-    couple_slopes,
-    linear_balance,
-    no_tangential,
-    plain_balance,
-    regular,
-    with_gyroscopic,
-)
 from raceway.core.ring.kernels.tensors import (
     Pair,
     Tensor,
@@ -97,13 +74,13 @@ def pair_at(rows, row, live):
     return take(rows, row, 0, live), take(rows, row + 1, 0, live)
 
 
-@jit(void(int64, int64[::1], VECTOR, BLOCK))
+@jit(void(int64, int64[::1], VECTOR, at.BLOCK))
 def _move_with_rates(n, order, derivative, block):
     """Move the balls of all samples; rates of their places, ``fourier.ball_rates`` in lanes."""
-    live, w, stride = live_of(0, WIDTH), take(block.shared, SPEED, 0, live_of(0, WIDTH)), block.rows.shape[0] // n
+    live, w, stride = live_of(0, WIDTH), take(block.shared, at.SPEED, 0, live_of(0, WIDTH)), block.rows.shape[0] // n
     total = derivative.size // 2
     for j in range(n):
-        move_balls(block.rows[j * stride], block.work[j * stride])
+        move_balls(False, block.rows[j * stride], block.work[j * stride])
     for k in range(block.work.shape[2] // (2 * WIDTH)):
         for j in range(n):
             axial, radial, follower = spread(0.0), spread(0.0), k
@@ -116,14 +93,14 @@ def _move_with_rates(n, order, derivative, block):
             put_pair(block.work[j * stride], PLACE_RATE, WIDTH * k, live, w * axial, w * radial)
 
 
-@jit(void(LAW_POINTER, MATRIX, BLOCK, MATRIX))
+@jit(void(LAW_POINTER, MATRIX, at.BLOCK, MATRIX))
 def _damped_forces(law, of_points, block, work):
     """Forces of contacts with dashpots or time constants and their derivatives, see ``layout.normal_forces``, of balls with known rates."""
     live, shared, memory = live_of(0, WIDTH), block.shared, block.memory
-    c, tau, w = take(shared, DASHPOT, 0, live), take(shared, TIME, 0, live), take(shared, SPEED, 0, live)
+    c, tau, w = take(shared, at.DASHPOT, 0, live), take(shared, at.TIME, 0, live), take(shared, at.SPEED, 0, live)
     for k in range(0, work.shape[1] // 2, WIDTH):
         (ia, ir), (oa, orr) = pair_of(work, INNER, k, live), pair_of(work, OUTER, k, live)
-        (ea, er), (pa, pr) = centre(seats(k, live, work), of_points, RATE, live), pair_of(work, PLACE_RATE, k, live)
+        (ea, er), (pa, pr) = centre(seats(k, live, work), of_points, at.RATE, live), pair_of(work, PLACE_RATE, k, live)
         rate_i, rate_o = -(ia * (w * ea - pa) + ir * (w * er - pr)), -(oa * pa + orr * pr)
         put_pair(work, ring_rows.GAP_RATE, k, live, rate_i, rate_o)
         gap_i, gap_o = pair_of(work, ring_rows.GAP, k, live)
@@ -149,37 +126,38 @@ def _damped_forces(law, of_points, block, work):
         put(work, ring_rows.FORCE_BY_RATE, k, live, where(pulls, 0.0, where(pushes, by_rate - c, by_rate)))
 
 
-@jit(void(boolean, ROLLING, float64, LANES, MATRIX, MATRIX))
+@jit(void(boolean, roll.ROLLING, float64, LANES, MATRIX, MATRIX))
 def _put_damping(rolls, rolling, sense, w, r, work):
     """The tangent by the velocity, w C, each ball's place eliminated, and what it adds to that by u in a frame that turns, w C G."""
     live, none, damping = live_of(0, WIDTH), spread(0.0), no_tangent()
     nothing = Pair(none, none)
     for k in range(0, work.shape[1] // 2, WIDTH):
         contacts, by_velocity = contacts_of(k, live, work), nothing
-        (by_rate, _), elastic, h = pair_of(work, ring_rows.FORCE_BY_RATE, k, live), contacts[0].stiffness, no_tangential()
-        b = plain_balance(contacts, elastic, -by_rate)
+        (by_rate, _), elastic = pair_of(work, ring_rows.FORCE_BY_RATE, k, live), contacts[0].stiffness
+        h = roll.no_tangential()
+        b = roll.plain_balance(contacts, elastic, -by_rate)
         if rolls:
-            h = with_gyroscopic(k, live, contacts, h, rolling, work)
-            b = linear_balance(contacts, elastic, -by_rate, h)
-        j = regular(b.j)
+            h = roll.with_gyroscopic(k, live, contacts, h, rolling, work)
+            b = roll.linear_balance(contacts, elastic, -by_rate, h)
+        j = roll.regular(b.j)
         inverse = 1.0 / (j.aa * j.rr - j.ar * j.ra)
         t = times_adjugate(b.p, j)
         t = Tensor(t.aa * inverse, t.ar * inverse, t.ra * inverse, t.rr * inverse)
         if rolls:
-            u = row_times_adjugate(couple_slopes(contacts, h)[1], j)
+            u = row_times_adjugate(roll.couple_slopes(contacts, h)[1], j)
             by_velocity = less_row(nothing, Pair(u.axial * inverse, u.radial * inverse), b.m)
         damping = with_tangent(damping, seats(k, live, work), less(b.m, t, b.m), nothing, by_velocity, none)
     for i, entries in enumerate(rows_of_tangent(damping)):
         for m, entry in enumerate(entries):
-            put(r, VISCOUS + 5 * i + m, 0, live, w * entry)
+            put(r, at.VISCOUS + 5 * i + m, 0, live, w * entry)
         for m in (1, 3):
-            y, z = pair_at(r, VISCOUS + 5 * i + m, live)
-            at = TANGENT + 5 * i + m
-            put(r, at, 0, live, take(r, at, 0, live) + sense * z)
-            put(r, at + 1, 0, live, take(r, at + 1, 0, live) - sense * y)
+            y, z = pair_at(r, at.VISCOUS + 5 * i + m, live)
+            entry = TANGENT + 5 * i + m
+            put(r, entry, 0, live, take(r, entry, 0, live) + sense * z)
+            put(r, entry + 1, 0, live, take(r, entry + 1, 0, live) - sense * y)
 
 
-@jit(MASK(LAW_POINTER, boolean, float64, int64, BLOCK))
+@jit(MASK(LAW_POINTER, boolean, float64, int64, at.BLOCK))
 def forces(law, damped, sense, n, block):
     """Move the balls; forces of the contacts into the imbalances, and their tangents; which points' balls still move."""
     rows, live, none, memory = block.rows, live_of(0, WIDTH), spread(0.0), block.memory
@@ -190,24 +168,24 @@ def forces(law, damped, sense, n, block):
         if damped:  # the balls are where their rates are known
             _damped_forces(law, r, block, work)
         else:
-            move_balls(r, work)
+            move_balls(False, r, work)
             law(
                 work[ring_rows.GAP], work[ring_rows.GAP_RATE], block.params, memory, memory, 0.0,
                 work[ring_rows.CONTACT_FORCE], work[ring_rows.FORCE_BY_GAP], work[ring_rows.FORCE_BY_RATE],
             )  # fmt: skip
-        force, tangent, _, moving = ring_forces(rolls, rolling, none, work)
+        force, tangent, _, moving = ring_forces(False, rolls, rolling, none, work)
         moves = moves | moving
         for i, part in enumerate(force):
-            put(r, IMBALANCE + i, 0, live, part)
+            put(r, at.IMBALANCE + i, 0, live, part)
         for i, entries in enumerate(rows_of_tangent(tangent)):
             for m, entry in enumerate(entries):
                 put(r, TANGENT + 5 * i + m, 0, live, entry)
         if damped:
-            _put_damping(rolls, rolling, sense, take(block.shared, SPEED, 0, live), r, work)
+            _put_damping(rolls, rolling, sense, take(block.shared, at.SPEED, 0, live), r, work)
     return moves
 
 
-@jit(void(KERNELS, int64, int64, POINTS, fourier.TURNING, VECTOR, CUBE, CUBE, BLOCK), allocates=True)
+@jit(void(KERNELS, int64, int64, POINTS, fourier.TURNING, VECTOR, CUBE, CUBE, at.BLOCK), allocates=True)
 def forces_alone(kernels, n, first, points, turning, derivative, places, rates, block):
     """The same of the lanes that are asked for, by a kernel that finds the balls' ``places`` (W n, Z, b) in each sample; NaN where it does not.
 
@@ -217,43 +195,43 @@ def forces_alone(kernels, n, first, points, turning, derivative, places, rates, 
     q, v, state, sense = np.empty(5), np.empty(5), np.empty(5), turning.sense
     response, history, stride = Response(f, K, C, block.own), np.zeros(places.shape[1:]), block.rows.shape[0] // n
     for lane in range(WIDTH):
-        if block.shared[WANTED, lane] == 0.0:
+        if block.shared[at.WANTED, lane] == 0.0:
             continue
         p, columns = first + lane, places.shape[2]
         w, constants, damped = turning.speed[p], Constants(points.scalars[p], points.table[p]), dampers(points, p)
         memory = np.zeros((points.params.shape[1], 0))
         contacts = Contacts(kernels.law, points.params[p], memory, memory, 0.0)
         for j in range(n):
-            at, angle, ball = lane * n + j, turning.span * j / n, places[lane * n + j]
-            r = block.rows[j * stride]
+            angle, ball = turning.span * j / n, places[lane * n + j]
+            r, cosine, sine = block.rows[j * stride], np.cos(sense * angle), np.sin(sense * angle)
             for i in range(5):
                 state[i] = r[Q + i, lane]
-            fourier.turn_vector(sense * angle, state, q)
+            fourier.turn_vector(cosine, sine, state, q)
             for i in range(5):
-                state[i] = w * r[RATE + i, lane]
-            fourier.turn_vector(sense * angle, state, v)
+                state[i] = w * r[at.RATE + i, lane]
+            fourier.turn_vector(cosine, sine, state, v)
             keep_slips(constants.scalars, ball, history)
             if damped:
                 for k in range(history.shape[0]):
                     for c in range(columns):
                         if columns == kernels.columns or c < 2 or c > 3:  # slips have no rates
-                            history[k, c] = rates[at, k, c]
+                            history[k, c] = rates[lane * n + j, k, c]
             if kernels.system(angle / w, q, v, Balls(ball, 0.0, history), contacts, constants, response) != 0:
                 f[0] = f[1] = np.nan
-            fourier.turn_vector(-sense * angle, f, state)
+            fourier.turn_vector(cosine, -sine, f, state)
             for i in range(5):
-                r[IMBALANCE + i, lane] = state[i]
-            fourier.turn_matrix(sense * angle, C, half, turned)
+                r[at.IMBALANCE + i, lane] = state[i]
+            fourier.turn_matrix(cosine, sine, C, half, turned)
             for i in range(5):
                 for m in range(5):
-                    r[VISCOUS + 5 * i + m, lane] = w * turned[i, m]
-            fourier.turn_matrix(sense * angle, K, half, turned)
+                    r[at.VISCOUS + 5 * i + m, lane] = w * turned[i, m]
+            fourier.turn_matrix(cosine, sine, K, half, turned)
             for i in range(5):
                 for m in range(5):
                     r[TANGENT + 5 * i + m, lane] = turned[i, m]
                 for m in (1, 3):  # w C G
-                    r[TANGENT + 5 * i + m, lane] += sense * r[VISCOUS + 5 * i + m + 1, lane]
-                    r[TANGENT + 5 * i + m + 1, lane] -= sense * r[VISCOUS + 5 * i + m, lane]
+                    r[TANGENT + 5 * i + m, lane] += sense * r[at.VISCOUS + 5 * i + m + 1, lane]
+                    r[TANGENT + 5 * i + m + 1, lane] -= sense * r[at.VISCOUS + 5 * i + m, lane]
             for k in range(block.own.shape[1]):
                 block.work[j * stride, ring_rows.CONTACT_FORCE, k * WIDTH + lane] = block.own[ring_rows.CONTACT_FORCE, k]
         if damped:
@@ -279,15 +257,15 @@ def _derivatives(n, sense, d1, d2, rows):
             for m in range(n):
                 u = take(rows[m * stride], Q + i, 0, live)
                 rate, bend = rate + d1[(j - m) & (n - 1)] * u, bend + d2[(j - m) & (n - 1)] * u
-            put(r, RATE + i, 0, live, rate)
-            put(r, BEND + i, 0, live, bend)
+            put(r, at.RATE + i, 0, live, rate)
+            put(r, at.BEND + i, 0, live, bend)
         for i in (1, 3):
-            (y, z), (y1, z1) = pair_at(r, Q + i, live), pair_at(r, RATE + i, live)
-            y2, z2 = pair_at(r, BEND + i, live)
-            put(r, BEND + i, 0, live, y2 - sense * (2.0 * z1 + sense * y))
-            put(r, BEND + i + 1, 0, live, z2 + sense * (2.0 * y1 - sense * z))
-            put(r, RATE + i, 0, live, y1 - sense * z)
-            put(r, RATE + i + 1, 0, live, z1 + sense * y)
+            (y, z), (y1, z1) = pair_at(r, Q + i, live), pair_at(r, at.RATE + i, live)
+            y2, z2 = pair_at(r, at.BEND + i, live)
+            put(r, at.BEND + i, 0, live, y2 - sense * (2.0 * z1 + sense * y))
+            put(r, at.BEND + i + 1, 0, live, z2 + sense * (2.0 * y1 - sense * z))
+            put(r, at.RATE + i, 0, live, y1 - sense * z)
+            put(r, at.RATE + i + 1, 0, live, z1 + sense * y)
 
 
 @jit(LANES(int64, CUBE, MATRIX))
@@ -301,26 +279,26 @@ def _imbalances(n, rows, shared):
             entry = take(rows[j * stride], TANGENT + i, 0, live)
             mean = mean + (1.0 / n) * entry
             if i == 6 or i == 12:
-                entry = entry + take(shared, FIXED + i, 0, live)
+                entry = entry + take(shared, at.FIXED + i, 0, live)
                 low, high, size = smaller(entry, low), larger(entry, high), size + (0.5 / n) * larger(entry, -entry)
-        put(shared, MEAN + i, 0, live, mean)
+        put(shared, at.MEAN + i, 0, live, mean)
     for j in range(n):
         r = rows[j * stride]
         shaft = take(r, SHAFT, 0, live)
         for i in range(5):
-            left = take(r, IMBALANCE + i, 0, live) - take(r, LOAD + i, 0, live)
-            left = left + take(shared, MASS + i, 0, live) * take(r, BEND + i, 0, live)
+            left = take(r, at.IMBALANCE + i, 0, live) - take(r, LOAD + i, 0, live)
+            left = left + take(shared, at.MASS + i, 0, live) * take(r, at.BEND + i, 0, live)
             if i > 2:
                 left = left + shaft * take(r, Q + i, 0, live)
             for m in range(5):
-                left = left + take(shared, DAMPED + 5 * i + m, 0, live) * take(r, RATE + m, 0, live)
-            put(r, IMBALANCE + i, 0, live, left)
+                left = left + take(shared, at.DAMPED + 5 * i + m, 0, live) * take(r, at.RATE + m, 0, live)
+            put(r, at.IMBALANCE + i, 0, live, left)
     return (high - low) / size
 
 
 @jit(
     types.Tuple((MASK, LANES, LANES))(
-        KERNELS, boolean, int64, int64, POINTS, STATES, fourier.TURNING, int64[::1], float64, BLOCK
+        KERNELS, boolean, int64, int64, POINTS, STATES, fourier.TURNING, int64[::1], float64, at.BLOCK
     ),
     allocates=True,
 )
@@ -345,7 +323,8 @@ def solve_level(kernels, alone, n, first, points, states, turning, dofs, closene
         for j in range(total):
             derivative[total + j] = derivative[j]
     before, error, change = spread(np.inf), spread(np.inf), spread(0.0)
-    done, lost, moves = ~(take(shared, WANTED, 0, live) > 0.0), ~live, ~live
+    done, lost, moves = ~(take(shared, at.WANTED, 0, live) > 0.0), ~live, ~live
+    loose = live if closeness > _ROUNDED else ~live  # balls settle among more samples
     for count in range(_NESTED if alone or damped else _ITERATIONS):
         _derivatives(n, turning.sense, d1, d2, rows)
         if alone:
@@ -367,7 +346,7 @@ def solve_level(kernels, alone, n, first, points, states, turning, dofs, closene
                 u = take(r, Q + i, 0, live) + dq
                 put(r, DQ + i, 0, live, dq)
                 put(r, Q + i, 0, live, u)
-                dq, away = dq * weight, (u - take(r, CENTRE + i, 0, live)) * weight
+                dq, away = dq * weight, (u - take(r, at.CENTRE + i, 0, live)) * weight
                 step = larger(larger(dq, -dq), step) + (dq - dq)  # what is no number stays none
                 if i > 0:
                     size = larger(larger(away, -away), size)
@@ -378,9 +357,9 @@ def solve_level(kernels, alone, n, first, points, states, turning, dofs, closene
         ):  # a ball follows its rates by as much as its dampers bear: a kernel is quicker
             lost = lost | ((step > _SLOW * before) & (step > _ROUNDED * size) & ~done)
         error, before = where(done, error, step / size), step
-        if count > 2 or not damped:
-            done = done | (~moves & fine)
-        put(shared, WANTED, 0, live, where(done | lost, 0.0, 1.0))
+        if count > (2 if alone else 0) or not damped:  # a kernel knows the rates that its last step left
+            done = done | (fine & (loose | ~moves))
+        put(shared, at.WANTED, 0, live, where(done | lost, 0.0, 1.0))
         if not any_of(~(done | lost)):
             break
     return done & ~lost, error, change

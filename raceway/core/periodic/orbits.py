@@ -11,27 +11,8 @@ from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
 from raceway.core.lanes import WIDTH, live_of, put, where
+from raceway.core.periodic import block as at
 from raceway.core.periodic import fourier, lockstep
-from raceway.core.periodic.block import (
-    ANSWER,
-    BLOCK,
-    BY_RATE,
-    CENTRE,
-    DAMPED,
-    DASHPOT,
-    FIXED,
-    MASS,
-    ROWS,
-    SHARED_ROWS,
-    SPEED,
-    TIME,
-    VISCOUS,
-    WANTED,
-    Block,
-    double,
-    put_fixed,
-    turn_directions,
-)
 from raceway.core.periodic.extremes import force_extremes
 from raceway.core.periodic.monodromy import span_transfer
 from raceway.core.periodic.steps import COLUMNS
@@ -45,13 +26,13 @@ from raceway.core.signatures import CUBE, LINEAR, MATRIX, VECTOR, record
 #: Change of the stiffness along a motion, over its mean, beyond which no more samples are tried: balls leave their races.
 _WILD = 1.0
 #: Last step over the motion: of points, of neighbours whose differences are derivatives, and of samples that are doubled anyway.
-_CLOSE, _CLOSER, _NEAR = 1e-11, 1e-13, 1e-9
+_CLOSE, _CLOSER, _NEAR = 1e-11, 1e-13, 1e-6
 
 
 class Orbits(NamedTuple):
     """What is computed: 1x components of displacement and force (n, 5), real and imaginary parts (n, 10), mean displacement (n, 5), ``error``: change
     of the radial 1x component by the last doubling, over the component (n,), largest change of the stiffness along the motion over its mean (n,), rms of what is not 1x over that of 1x in the radial plane (n,), largest and
-    least contact forces (n, 2 Z), and those at T equidistant times of a turn (n, T, 2 Z), samples and span [rad] (n,), status (n,); where it is asked for, what becomes of a disturbance of the
+    least contact forces (n, 2 Z), of the former an upper bound where the latter are (n, 0), and those at T equidistant times of a turn (n, T, 2 Z), samples and span [rad] (n,), status (n,); where it is asked for, what becomes of a disturbance of the
     unknowns and their derivatives by the angle over a span, in the frame (n, 2 d, 2 d), else (n, 0, 0)."""
 
     line: np.ndarray
@@ -91,29 +72,37 @@ def _report(turning, u, force, status, error, p, out):
             synchronous = line[i] if turning.sense != 0.0 else line[i] * np.cos(angle) - line[5 + i] * np.sin(angle)
             square += (u[j, i] - mean[i] - synchronous) ** 2 / n
     out.residual[p] = np.sqrt(square / max(size, 1e-300))
-    force_extremes(force, turning.order, int(np.round(2.0 * np.pi / turning.span)), out.peak[p], out.least[p], out.turn[p])
+    spans = int(np.round(2.0 * np.pi / turning.span))
+    if out.least.shape[1] > 0:
+        force_extremes(force, turning.order, spans, out.peak[p], out.least[p], out.turn[p])
+        return
+    # Between equidistant samples a polynomial is at most Lebesgue's constant times as large.
+    z, over = turning.order.size, 1.0 + 2.0 / np.pi * np.log(float(n * spans))
+    for race in (0, z):
+        out.peak[p, race : race + z] = over * force[:, race : race + z].max()
 
 
-@jit(void(int64, int64, POINTS, STATES, fourier.TURNING, BLOCK), allocates=True)
+@jit(void(int64, int64, POINTS, STATES, fourier.TURNING, at.BLOCK), allocates=True)
 def _put_loads(n, first, points, states, turning, block):
     """Loads and equilibria of a block's points, seen from the frame, at n samples."""
     force, answer, stride = np.empty(5), np.empty(5), block.rows.shape[0] // n
-    for lane in range(WIDTH):
-        p = min(first + lane, states.status.size - 1)
-        for j in range(n):
-            angle, row = turning.span * j / n, block.rows[j * stride]
+    for j in range(n):
+        angle, row = turning.span * j / n, block.rows[j * stride]
+        cosine, sine = np.cos(turning.sense * angle), np.sin(turning.sense * angle)
+        for lane in range(WIDTH):
+            p = min(first + lane, states.status.size - 1)
             turning.force(angle / turning.speed[p], turning.params[p], force)
             for i in range(5):
                 force[i] += points.load[p, i]
-            fourier.turn_vector(-turning.sense * angle, force, answer)
+            fourier.turn_vector(cosine, -sine, force, answer)
             for i in range(5):
                 row[LOAD + i, lane] = answer[i]
-            fourier.turn_vector(-turning.sense * angle, states.q[p], answer)
+            fourier.turn_vector(cosine, -sine, states.q[p], answer)
             for i in range(5):
-                row[CENTRE + i, lane] = answer[i]
+                row[at.CENTRE + i, lane] = answer[i]
 
 
-@jit(boolean(KERNELS, boolean, LINEAR, int64, POINTS, STATES, fourier.TURNING, MATRIX, MATRIX, BLOCK), allocates=True)
+@jit(boolean(KERNELS, boolean, LINEAR, int64, POINTS, STATES, fourier.TURNING, MATRIX, MATRIX, at.BLOCK), allocates=True)
 def _begin(kernels, alone, linear, first, points, states, turning, push, like, block):
     """The least samples of a block's points, to which balls follow from the equilibrium; whether the law lets them, which has no rates.
 
@@ -142,8 +131,7 @@ def _begin(kernels, alone, linear, first, points, states, turning, push, like, b
     for j in range(1, n):
         copy_matrix(rows[0], rows[j * stride])
         if not alone:
-            copy_matrix(work[0], work[j * stride])
-            turn_directions(sense * turning.span * j / n, work[0], work[j * stride])
+            at.copy_balls(sense * turning.span * j / n, work[0], work[j * stride])
     _put_loads(n, first, points, states, turning, block)
     for lane in range(WIDTH):
         p = min(first + lane, states.status.size - 1)
@@ -154,23 +142,24 @@ def _begin(kernels, alone, linear, first, points, states, turning, push, like, b
             if len(like) > 0:
                 for i in range(5):
                     line[i] = states.q[p, i] - states.q[0, i]
-                fourier.turn_vector(-sense * turning.span * j / n, line, moved)
+                angle = sense * turning.span * j / n
+                fourier.turn_vector(np.cos(angle), -np.sin(angle), line, moved)
                 for i in range(5):
                     u[j, i] = like[j, i] + moved[i]
             for i in range(5):
                 rows[j * stride, Q + i, lane] = u[j, i]
-                rows[j * stride, DQ + i, lane] = u[j, i] - rows[j * stride, CENTRE + i, lane]
-        shared[DASHPOT, lane], shared[TIME, lane] = points.scalars[p, DAMPING], points.scalars[p, TIME_CONSTANT]
-        shared[SPEED, lane] = w
+                rows[j * stride, DQ + i, lane] = u[j, i] - rows[j * stride, at.CENTRE + i, lane]
+        shared[at.DASHPOT, lane], shared[at.TIME, lane] = points.scalars[p, DAMPING], points.scalars[p, TIME_CONSTANT]
+        shared[at.SPEED, lane] = w
         for i in range(5):
-            shared[MASS + i, lane] = w * w * turning.mass[p, i]
+            shared[at.MASS + i, lane] = w * w * turning.mass[p, i]
             for m in range(5):
-                shared[DAMPED + 5 * i + m, lane] = w * turning.damping[p, i, m]
-    put_fixed(sense, rows[0], shared)
+                shared[at.DAMPED + 5 * i + m, lane] = w * turning.damping[p, i, m]
+    at.put_fixed(sense, rows[0], shared)
     return True
 
 
-@jit(void(KERNELS, boolean, LINEAR, int64, int64, POINTS, STATES, fourier.TURNING, MATRIX, BLOCK, ORBITS), allocates=True)
+@jit(void(KERNELS, boolean, LINEAR, int64, int64, POINTS, STATES, fourier.TURNING, MATRIX, at.BLOCK, ORBITS), allocates=True)
 def _solve_block(kernels, alone, linear, first, end, points, states, turning, like, block, out):
     """The orbits of those of ``WIDTH`` points from ``first`` on, before ``end``, that are not solved; alone: see ``lockstep.forces_alone``."""
     n, live, dofs, shared = turning.least, live_of(0, WIDTH), np.flatnonzero(linear.free > 0.0), block.shared
@@ -184,17 +173,17 @@ def _solve_block(kernels, alone, linear, first, end, points, states, turning, li
         return
     while True:
         for lane in range(WIDTH):
-            shared[WANTED, lane] = pending[lane]
+            shared[at.WANTED, lane] = pending[lane]
         # The first level is never the last one: its motion is compared with the next one's.
         enough = _NEAR if n == turning.least and 2 * n <= turning.most and len(like) == 0 else closeness
         done, steps, change = lockstep.solve_level(kernels, alone, n, first, points, states, turning, dofs, enough, block)
-        put(shared, ANSWER, 0, live, where(done, steps, np.inf))
-        put(shared, ANSWER + 1, 0, live, change)
+        put(shared, at.ANSWER, 0, live, where(done, steps, np.inf))
+        put(shared, at.ANSWER + 1, 0, live, change)
         u, stride = np.empty((n, 5)), block.rows.shape[0] // n
         for lane in range(WIDTH):
             if pending[lane] == 0.0:
                 continue
-            p, error = first + lane, shared[ANSWER, lane]
+            p, error = first + lane, shared[at.ANSWER, lane]
             for j in range(n):
                 for i in range(5):
                     u[j, i] = block.rows[j * stride, Q + i, lane]
@@ -207,7 +196,7 @@ def _solve_block(kernels, alone, linear, first, end, points, states, turning, li
                         square, size = square + (line[i] - before[lane, i]) ** 2, size + line[i] ** 2
                     before[lane, i] = line[i]
                 error = max(np.sqrt(square / size), error)
-            out.change[p] = shared[ANSWER + 1, lane]
+            out.change[p] = shared[at.ANSWER + 1, lane]
             if solved and error > turning.tolerance and 2 * n <= turning.most and out.change[p] <= _WILD:
                 continue
             pending[lane] = 0.0
@@ -221,14 +210,14 @@ def _solve_block(kernels, alone, linear, first, end, points, states, turning, li
                 A0, A1, mass = np.empty((n, 5, 5)), np.empty((n, 5, 5)), turning.speed[p] ** 2 * turning.mass[p]
                 for j in range(n):
                     row = block.rows[j * stride]
-                    for at in range(25):
-                        A0[j, at // 5, at % 5] = row[TANGENT + at, lane] + shared[FIXED + at, lane]
-                        A1[j, at // 5, at % 5] = row[VISCOUS + at, lane] + shared[BY_RATE + at, lane]
+                    for m in range(25):
+                        A0[j, m // 5, m % 5] = row[TANGENT + m, lane] + shared[at.FIXED + m, lane]
+                        A1[j, m // 5, m % 5] = row[at.VISCOUS + m, lane] + shared[at.BY_RATE + m, lane]
                 if not span_transfer(A0, A1, mass, dofs, turning.span, out.transfer[p]):
                     out.status[p] = fourier.NOT_SOLVED
         if pending.max() == 0.0:
             break
-        double(n, alone, turning.sense, turning.span, block)
+        at.double(n, alone, turning.sense, turning.span, block)
         n *= 2
         _put_loads(n, first, points, states, turning, block)
 
@@ -243,10 +232,10 @@ def orbits(kernels, linear, points, states, turning, near, out):
     for p in range(count):
         out.status[p] = states.status[p] if states.status[p] != 0 else fourier.NOT_SOLVED
     z, like, own = points.table.shape[1], np.empty((0, 5)), turning
-    block = Block(
+    block = at.Block(
         np.empty((2 * z * WIDTH, points.params.shape[2])), np.zeros((2 * z * WIDTH, 0)), np.zeros((most, WORK_ROWS, 2 * z * WIDTH)),
-        np.zeros((most, ROWS, WIDTH)), np.zeros((2 * COLUMNS + 3, 5 * most, WIDTH)),
-        np.zeros((SHARED_ROWS, WIDTH)), np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z)),
+        np.zeros((most, at.ROWS, WIDTH)), np.zeros((2 * COLUMNS + 3, 5 * most, WIDTH)),
+        np.zeros((at.SHARED_ROWS, WIDTH)), np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z)),
     )  # fmt: skip
     # One loop for the first point and its neighbours: each call of ``_solve_block`` is compiled anew, in seconds.
     first, end = 0, 1 if near else count

@@ -17,7 +17,7 @@ from raceway.core.ring.lockstep import ARM, DQ, TANGENT
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 #: Columns of a step, and what they may leave of the imbalance.
-COLUMNS, _LEFT = 12, 1e-3
+COLUMNS, _LEFT = 12, 1e-5
 
 
 @jit(void(int64, float64, int64[::1], MATRIX, MATRIX))

@@ -78,7 +78,7 @@ def _slow_damping(kernels, contacts, constants, q, places, response, history):
 @jit(void(KERNELS, LINEAR, POINTS, STATES), allocates=True, releases=True)
 def equilibria(kernels, linear, points, states):
     """The equilibrium of every point; ``linear`` has what all of them share.  States of points whose status is not 0 are undefined."""
-    n, z = points.table.shape[0], points.table.shape[1]
+    n, z, damped = points.table.shape[0], points.table.shape[1], len(states.damping) > 0
     memory, columns = np.zeros((2 * z, 0)), states.ball.shape[2]
     still, report, f, factor, scale = np.zeros(5), np.zeros(2), np.empty(5), np.empty((5, 5)), np.empty(5)
     stiffness = linear.stiffness.copy()
@@ -87,19 +87,24 @@ def equilibria(kernels, linear, points, states):
     width = WIDTH if kernels.lanes else 0
     lanes, of_points = np.zeros((LANES_ROWS, 2 * z * width)), np.zeros((POINT_ROWS, width))
     params_of_lanes, none = np.empty((2 * z * width, points.params.shape[2])), np.zeros((2 * z * width, 0))
-    rates = True
+    rates, C = True, np.empty((5, 5))
     for p in range(n):
         if width > 0 and p % width == 0:
             rates = lockstep(kernels.law, linear, p, points, states, params_of_lanes, none, lanes, of_points)
         in_lanes = width > 0 and states.status[p] == CONVERGED
-        if in_lanes and not rates and points.scalars[p, DAMPING] == 0.0 and points.scalars[p, TIME_CONSTANT] == 0.0:
+        dampers = points.scalars[p, DAMPING] != 0.0 or points.scalars[p, TIME_CONSTANT] != 0.0
+        if in_lanes and not (damped and (rates or dampers)):
+            if damped:
+                states.damping[p] = 0.0
             continue
+        if damped:
+            C = states.damping[p]
         constants = Constants(points.scalars[p], points.table[p])
         params, K, q = points.params[p], states.stiffness[p], states.q[p]
         stiffness[3, 3] = points.shaft[p]
         stiffness[4, 4] = points.shaft[p]
         own = Linear(linear.mass, linear.damping, stiffness, linear.free, points.load[p])
-        response, ball, status = Response(f, K, states.damping[p], work), states.ball[p], states.status[p]
+        response, ball, status = Response(f, K, C, work), states.ball[p], states.status[p]
         if not in_lanes:
             for i in range(5):
                 q[i] = points.guess[p, i]
@@ -120,7 +125,8 @@ def equilibria(kernels, linear, points, states):
                 status = LOOSE
             for i in range(2 * z):
                 states.force[p, i] = work[CONTACT_FORCE, i]
-            _slow_damping(kernels, contacts, constants, q, ball, response, history)
+            if damped:
+                _slow_damping(kernels, contacts, constants, q, ball, response, history)
         states.status[p] = status
 
 

@@ -2,7 +2,8 @@
 
 A ball's place p is eliminated from each step: with R its imbalance and F its force on the ring, p follows e by -J^-1 (R + X de), and the ring
 sees F - P J^-1 R and the tangent E - P J^-1 X (``raceway.core.ring.kernels.rolling.Balance``).  Without gyroscopic moments the potential is
-convex in all unknowns together, so that what balances is the one equilibrium; moments are put on where that is nearly found.
+convex in all unknowns together, so that what balances is the one equilibrium; moments are put on where that is nearly found: from the
+first guess on, or from where a point comes near.
 There is no safeguard: a point that does not balance within some steps, or is held loosely, is left to the trust region.
 """
 
@@ -33,18 +34,21 @@ from raceway.core.ring.states import LEAST, POINTS, STATES, TOLERANCE
 from raceway.core.signatures import LAW_POINTER, LINEAR, MATRIX, VECTOR
 
 #: Rows of ``work`` behind the law's, halves of 4 Z: azimuth; side and lever [m]; reach of the tilts [m] and centrifugal force [N]; e at
-#: rest [m]; offsets [m]; place p [m]; its step by R [m]; its derivatives by e; directions and distances of its contacts.
-DIRECTION, SEAT, REACH, REST, OFFSET, PLACE, STEP, BY_CENTRE, INNER, OUTER, LENGTH = (*range(5, 12), 12, 14, 15, 16)
+#: rest [m]; offsets [m]; place p [m]; its step by R [m]; its derivatives by e; directions of its contacts and 1 over
+#: their lengths [1/m].
+DIRECTION, SEAT, REACH, REST, OFFSET, PLACE, STEP, BY_CENTRE, INNER, OUTER, BY_LENGTH = (*range(5, 12), 12, 14, 15, 16)
 #: Of damped motions: rate of the place [m/s]; gap that a contact with a time constant answers to [m].
 PLACE_RATE, AHEAD = 17, 18
+#: At the first guess of equilibria 1 where a ball differs in its azimuth alone from the one before.
+LIKE = AHEAD
 WORK_ROWS = 19
 #: Rows of ``of_points``, one number of each point: q, its step, load, shaft against tilts, reach of the tilts; numbers of rolling; the tangent
 #: and its right side.
 Q, DQ, LOAD, SHAFT, ARM, ROLLS, TANGENT = 0, 5, 10, 15, 16, 17, 24
 POINT_ROWS = TANGENT + 30
 _ITERATIONS = 25
-#: Relative imbalance from which on moments act; steps of balls over their contacts' approach that end the iteration.
-_NEAR, _SETTLED = 5e-2, 1e-11
+#: Relative imbalance from which on a point's moments act; steps of balls over their contacts' approach that end the iteration.
+_NEAR, _SETTLED = 0.1, 1e-11
 #: Longest step of the ring over the groove centres' distance.
 _LONGEST = 0.1
 
@@ -73,7 +77,17 @@ def gather(first, points, params, work, of_points):
             work[DIRECTION, c], work[DIRECTION, o], work[SEAT, c], work[SEAT, o] = cosine, sine, side, lever
             work[REACH, c], work[REACH, o], work[REST, c], work[REST, o] = reach, table[k, ring.CENTRIFUGAL], rest_a, rest_r
             work[OFFSET, c], work[OFFSET, o] = ring.offsets_of(k, scalars, table)
-            work[PLACE, c], work[PLACE, o] = ring.first_place(k, middle.axial, middle.radial, scalars, table)
+            alike = k > 0 and q[1] == q[2] == q[3] == q[4] == 0.0
+            for i in range(ring.CENTRIFUGAL if alike else ring.COLUMNS, ring.COLUMNS):
+                alike &= table[k, i] == table[k - 1, i]
+            for i in range(params.shape[1] if alike else 0):
+                alike &= points.params[p, k, i] == points.params[p, k - 1, i]
+                alike &= points.params[p, z + k, i] == points.params[p, z + k - 1, i]
+            work[LIKE, c] = alike
+            if alike:
+                work[PLACE, c], work[PLACE, o] = work[PLACE, c - WIDTH], work[PLACE, o - WIDTH]
+            else:
+                work[PLACE, c], work[PLACE, o] = ring.first_place(k, middle.axial, middle.radial, scalars, table)
             work[rows.GAP_RATE, c] = work[rows.GAP_RATE, o] = 0.0
             for row in range(STEP, BY_CENTRE + 2):
                 work[row, c] = work[row, o] = 0.0
@@ -106,15 +120,17 @@ def _follow(k, live, of_points, work):
     (sa, sr), t, (pa, pr) = pair_of(work, STEP, k, live), tensors_of(work, BY_CENTRE, k, live), pair_of(work, PLACE, k, live)
     sa, sr = sa + t.aa * da + t.ar * dr, sr + t.ra * da + t.rr * dr
     size, most = larger(sa, -sa) + larger(sr, -sr), 0.2 * lo
-    scale = where(size > most, most / size, 1.0)
-    pa, pr = pa + scale * sa, pr + scale * sr
+    if any_of(size > most):
+        scale = where(size > most, most / size, 1.0)
+        sa, sr = scale * sa, scale * sr
+    pa, pr = pa + sa, pr + sr
     xa, xr = ra + ea - pa, rr + er - pr
     so, si = root(pa * pa + pr * pr), root(xa * xa + xr * xr)
     by_so, by_si = 1.0 / so, 1.0 / si
     put_pair(work, PLACE, k, live, pa, pr)
     put_pair(work, INNER, k, live, xa * by_si, xr * by_si)
     put_pair(work, OUTER, k, live, pa * by_so, pr * by_so)
-    put_pair(work, LENGTH, k, live, si, so)
+    put_pair(work, BY_LENGTH, k, live, by_si, by_so)
     put_pair(work, rows.GAP, k, live, li - si, lo - so)
 
 
@@ -142,9 +158,9 @@ def _eliminate(of_points, live):
 def contacts_of(k, live, work):
     """Both contacts of a ball."""
     (ia, ir), (oa, orr) = pair_of(work, INNER, k, live), pair_of(work, OUTER, k, live)
-    (si, so), (fi, fo) = pair_of(work, LENGTH, k, live), pair_of(work, rows.CONTACT_FORCE, k, live)
+    (by_si, by_so), (fi, fo) = pair_of(work, BY_LENGTH, k, live), pair_of(work, rows.CONTACT_FORCE, k, live)
     by_gap_i, by_gap_o = pair_of(work, rows.FORCE_BY_GAP, k, live)
-    return BallContact(ia, ir, si, fi, -by_gap_i), BallContact(oa, orr, so, fo, -by_gap_o)
+    return BallContact(ia, ir, by_si, fi, -by_gap_i), BallContact(oa, orr, by_so, fo, -by_gap_o)
 
 
 @jit(
@@ -158,10 +174,11 @@ def _eliminated(k, live, rolls, rolling, work):
     """
     z, contacts, h = work.shape[1] // 2, contacts_of(k, live, work), at.no_tangential()
     (ia, ir, _, fi, ki), (oa, orr, _, fo, _) = contacts
-    balance = at.plain_balance(contacts, ki, spread(0.0))
     if rolls:
         h = at.with_gyroscopic(k, live, contacts, h, rolling, work)
         balance = at.linear_balance(contacts, ki, spread(0.0), h)
+    else:
+        balance = at.plain_balance(contacts, ki, spread(0.0))
     force_a, force_r = fi * ia + h.inner * ir, fi * ir - h.inner * ia
     ra = force_a - fo * oa - h.outer * orr
     rr = force_r - fo * orr + h.outer * oa + take(work, REACH, z + k, live)
@@ -175,9 +192,8 @@ def _eliminated(k, live, rolls, rolling, work):
     put_pair(work, STEP, k, live, step.axial, step.radial)
     put_tensors(work, BY_CENTRE, k, live, follows)
     (gap_i, gap_o), lo = pair_of(work, rows.GAP, k, live), take(work, OFFSET, z + k, live)
-    moves = root(step.axial * step.axial + step.radial * step.radial) > larger(
-        _SETTLED * at.shallower(gap_i, gap_o), 1e-14 * lo
-    )
+    least = larger(_SETTLED * at.shallower(gap_i, gap_o), 1e-14 * lo)
+    moves = step.axial * step.axial + step.radial * step.radial > least * least
     couple, by_centre = none.axial, none
     if rolls:
         by_e, by_p = at.couple_slopes(contacts, h)
@@ -236,7 +252,7 @@ def _scatter(first, work, of_points, states):
         for i in range(5):
             states.q[p, i] = of_points[Q + i, lane]
             for j in range(5):
-                states.stiffness[p, i, j], states.damping[p, i, j] = of_points[TANGENT + 5 * i + j, lane], 0.0
+                states.stiffness[p, i, j] = of_points[TANGENT + 5 * i + j, lane]
         for k in range(z):
             c, o = WIDTH * k + lane, WIDTH * (z + k) + lane
             for i in range(2, states.ball.shape[2]):
@@ -255,22 +271,36 @@ def rolling_of(of_points, live):
     )  # fmt: skip
 
 
-@jit(void(MATRIX, MATRIX), inline=True)
-def move_balls(of_points, work):
-    """Move the balls with the ring's step and by their own; gaps of their contacts."""
+@jit(boolean(boolean, int64, MATRIX, int64, int64), inline=True)
+def _like_before(alike, k, work, first, end):
+    """Whether ball k / WIDTH of each point is like the one before, whose gaps and rows ``first`` to ``end`` it then gets."""
+    live, z = live_of(0, WIDTH), work.shape[1] // 2
+    if not alike or any_of(take(work, LIKE, k, live) == 0.0):
+        return False
+    for i in range(first - 1, end):
+        row = i if i >= first else rows.GAP
+        put_pair(work, row, k, live, take(work, row, k - WIDTH, live), take(work, row, z + k - WIDTH, live))
+    return True
+
+
+@jit(void(boolean, MATRIX, MATRIX), inline=True)
+def move_balls(alike, of_points, work):
+    """Move the balls with the ring's step and by their own; gaps of their contacts.  ``alike`` : balls of a row at the first guess are."""
     live = live_of(0, WIDTH)
     for k in range(0, work.shape[1] // 2, WIDTH):
-        _follow(k, live, of_points, work)
+        if not _like_before(alike, k, work, INNER, BY_LENGTH + 1):
+            _follow(k, live, of_points, work)
 
 
-@jit(types.Tuple((ring.FORCES, ring.TANGENTS, LANES, MASK))(boolean, at.ROLLING, LANES, MATRIX), inline=True)
-def ring_forces(rolls, rolling, loads, work):
+@jit(types.Tuple((ring.FORCES, ring.TANGENTS, LANES, MASK))(boolean, boolean, at.ROLLING, LANES, MATRIX), inline=True)
+def ring_forces(alike, rolls, rolling, loads, work):
     """Forces of the balls on the ring and the tangent, the size of contact forces on top of the loads', whether balls still move."""
     live, none = live_of(0, WIDTH), spread(0.0)
     force, tangent, size, moves = no_force(), no_tangent(), loads, ~live
     for k in range(0, work.shape[1] // 2, WIDTH):
         seat = seats(k, live, work)
-        own, stiffness, couple, by_centre, forces, moving = _eliminated(k, live, rolls, rolling, work)
+        if not _like_before(alike, k, work, STEP, BY_CENTRE + 2):
+            own, stiffness, couple, by_centre, forces, moving = _eliminated(k, live, rolls, rolling, work)
         force = with_force(force, seat, own.axial, own.radial, couple)
         tangent = with_tangent(tangent, seat, stiffness, Pair(none, none), by_centre, none)
         size, moves = size + forces, moves | moving
@@ -296,25 +326,28 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
     live, end, free = live_of(0, WIDTH), WIDTH * points.table.shape[1], linear.free
     gather(first, points, params, work, of_points)
     rolling = rolling_of(of_points, live)
-    turn, rolls, none = any_of(~(rolling.scale == 0.0)), False, spread(0.0)
+    moments, near, acts, none = rolling.scale, ~live, live, spread(0.0)
+    rolls = any_of(~(moments == 0.0))
     arm, loads = take(of_points, ARM, 0, live), spread(0.0)
     for i in range(5):
         load = take(of_points, LOAD + i, 0, live)
         loads = loads + (larger(load, -load) if i < 3 else larger(load, -load) / arm)
     tangent, done, (rest_a, rest_r) = no_tangent(), ~live, pair_of(work, REST, 0, live)
     most = _LONGEST * (larger(rest_a, -rest_a) + larger(rest_r, -rest_r))
-    for _ in range(_ITERATIONS):
-        move_balls(of_points, work)
+    for count in range(_ITERATIONS):
+        put(of_points, ROLLS + 2, 0, live, where(acts, moments, 0.0))
+        rolling = rolling_of(of_points, live)
+        move_balls(count == 0, of_points, work)
         law(
             work[rows.GAP], work[rows.GAP_RATE], params, memory, memory, 0.0,
             work[rows.CONTACT_FORCE], work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE],
         )  # fmt: skip
-        force, tangent, size, moves = ring_forces(rolls, rolling, loads, work)
+        force, tangent, size, moves = ring_forces(count == 0, rolls, rolling, loads, work)
         norm = _imbalance(force, free, of_points, live)
-        done = ~moves & (norm <= TOLERANCE * size)
-        if rolls == turn and not any_of(~done):
+        done = acts & ~moves & (norm <= TOLERANCE * size)
+        if not any_of(~done):
             break
-        rolls = turn and (rolls or not any_of(~(norm <= _NEAR * size)))
+        acts = near = near | (norm <= _NEAR * size)
         # Where nothing holds the ring it moves along what is left of the loads.
         _put_tangent(tangent, 1e-6 * norm / most, False, free, of_points, live)
         _eliminate(of_points, live)
@@ -327,8 +360,6 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
             step = take(of_points, DQ + i, 0, live) * (scale if i < 3 else scale / arm)
             put(of_points, DQ + i, 0, live, step)
             put(of_points, Q + i, 0, live, take(of_points, Q + i, 0, live) + step)
-    if rolls != turn:
-        done = ~live
     largest = _put_tangent(tangent, none, True, free, of_points, live)
     done = done & (_eliminate(of_points, live) > LEAST * largest)
     for k in range(0, end, WIDTH):

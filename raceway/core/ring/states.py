@@ -27,7 +27,7 @@ class Points(NamedTuple):
 
 class States(NamedTuple):
     """What is computed of n points: displacement (n, 5), positions of balls (n, Z, b), tangent of the contacts and their
-    damping (n, 5, 5), contact forces (n, 2 Z), status (n,)."""
+    damping (n, 5, 5), or (0, 5, 5) where that is not asked for, contact forces (n, 2 Z), status (n,)."""
 
     q: np.ndarray
     ball: np.ndarray

@@ -216,25 +216,25 @@ def ring_tangent(table, arm, work, direction, row, K):
 
 
 #: Rows of the solvers of balls with two unknowns, see there: groove centre e [m] and its velocity [m/s], directions of a ball's contacts
-#: and its distances from both groove centres [m].
-BALL_CENTRE, BALL_VELOCITY, INNER, OUTER, LENGTH = 5, 6, 9, 10, 11
+#: and 1 over its distances from both groove centres [1/m].
+BALL_CENTRE, BALL_VELOCITY, INNER, OUTER, BY_LENGTH = 5, 6, 9, 10, 11
 
 
 @jit(void(int64, MASK, float64, MATRIX), inline=True)
 def approach(k, live, ball_gain, work):
-    """Directions, lengths, gaps and gap rates of both contacts of balls from k on."""
+    """Directions, 1 over lengths, gaps and gap rates of both contacts of balls from k on."""
     (pa, pr), (ea, er) = pair_of(work, rows.PLACE, k, live), pair_of(work, BALL_CENTRE, k, live)
     xa, xr = ea - pa, er - pr
     so, si = root(pa * pa + pr * pr), root(xa * xa + xr * xr)
     by_so, apart = 1.0 / so, si > 0.0
-    by_si = 1.0 / where(apart, si, 1.0)
+    by_si = where(apart, 1.0 / si, 0.0)
     oa, orr = pa * by_so, pr * by_so
     ia, ir = where(apart, xa * by_si, oa), where(apart, xr * by_si, orr)
     (va, vr), (known_a, known_r) = pair_of(work, BALL_VELOCITY, k, live), pair_of(work, rows.HISTORY, k, live)
     own_a, own_r = ball_gain * pa + known_a, ball_gain * pr + known_r
     (li, lo), (shift_i, shift_o) = pair_of(work, rows.OFFSET, k, live), pair_of(work, rows.SHIFT, k, live)
     rate_i, rate_o = pair_of(work, rows.SHIFT_RATE, k, live)
-    put_pair(work, LENGTH, k, live, si, so)
+    put_pair(work, BY_LENGTH, k, live, by_si, by_so)
     put_pair(work, OUTER, k, live, oa, orr)
     put_pair(work, INNER, k, live, ia, ir)
     put_pair(work, rows.GAP, k, live, li - si + shift_i, lo - so + shift_o)

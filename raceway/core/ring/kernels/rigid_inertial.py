@@ -68,9 +68,9 @@ def _forget(k, z, work):
 def _contacts_of(k, live, force, by_gap, by_rate, ball_gain, work):
     """Both contacts of the balls from k on, of forces and their derivatives of the inner and the outer one."""
     (ia, ir), (oa, orr) = pair_of(work, ring.INNER, k, live), pair_of(work, ring.OUTER, k, live)
-    si, so = pair_of(work, ring.LENGTH, k, live)
+    by_si, by_so = pair_of(work, ring.BY_LENGTH, k, live)
     inner, outer = -by_gap.axial - ball_gain * by_rate.axial, -by_gap.radial - ball_gain * by_rate.radial
-    return BallContact(ia, ir, si, force.axial, inner), BallContact(oa, orr, so, force.radial, outer)
+    return BallContact(ia, ir, by_si, force.axial, inner), BallContact(oa, orr, by_so, force.radial, outer)
 
 
 @jit(MASK(int64, MASK, boolean, int64, float64, VECTOR, MATRIX), inline=True)

@@ -28,11 +28,11 @@ TANGENTIAL = 33
 
 
 class BallContact(NamedTuple):
-    """Direction n of a contact, distance of ball and groove centre [m], normal force [N] and its derivative by that [N/m]."""
+    """Direction n of a contact, 1/s of ball and groove centre, 0 for s = 0 [1/m], normal force [N] and its derivative by s [N/m]."""
 
     axial: float
     radial: float
-    length: float
+    by_length: float
     force: float
     stiffness: float
 
@@ -91,7 +91,7 @@ def gyroscopic_moment(inner, outer, ratio, scale):
     """
     si, ci, so, co = inner.axial, inner.radial, outer.axial, outer.radial
     inverse = 1.0 / (1.0 + ci * co + si * so)
-    part, rest, sine = scale * inverse / ratio, 1.0 - ratio * ci, (si * co - ci * so) * inverse
+    part, rest, sine = scale / ratio * inverse, 1.0 - ratio * ci, (si * co - ci * so) * inverse
     return Moment(part * so * rest, part * so * (ratio * si + rest * sine), part * rest * (co - so * sine))
 
 
@@ -255,7 +255,7 @@ def rub(k, live, contacts, scalars, work):
     slip_i, slip_o = pair_of(work, COMMITTED, k, live)
     at_i = reach * angle_of(inner.axial, inner.radial) - take(work, TURNED, z + k, live)
     at_o = lo * angle_of(outer.axial, outer.radial)
-    lever, lever_o = where(inner.length > 0.0, reach / inner.length, 1.0), where(outer.length > 0.0, lo / outer.length, 1.0)
+    lever, lever_o = where(inner.by_length > 0.0, reach * inner.by_length, 1.0), lo * outer.by_length
     gi, go = _grip(inner, lever, reach, at_i - slip_i, mu, stick), _grip(outer, lever_o, lo, at_o - slip_o, mu, stick)
     sticks = ~(gi.by_angle == 0.0)
     forces = Tangential(
@@ -290,8 +290,8 @@ BALANCE = types.NamedTuple((*(LANES_TENSOR,) * 5, LANES_PAIR), Balance)
 @jit(BALANCE(CONTACTS, LANES, LANES), inline=True)
 def plain_balance(contacts, elastic, viscous):
     """``linear_balance`` of balls without tangential forces."""
-    (na, nr, si, fi, ki), (oa, orr, so, fo, ko) = contacts
-    none, wi, wo = spread(0.0), where(si > 0.0, fi / si, 0.0), fo / so
+    (na, nr, by_si, fi, ki), (oa, orr, by_so, fo, ko) = contacts
+    none, wi, wo = spread(0.0), fi * by_si, fo * by_so
     x, y, far = elastic - wi, ki - wi, ko - wo
     e = Tensor(x * na * na + wi, x * na * nr, x * na * nr, x * nr * nr + wi)
     p = Tensor(-y * na * na - wi, -y * na * nr, -y * na * nr, -y * nr * nr - wi)
@@ -305,11 +305,11 @@ def linear_balance(contacts, elastic, viscous, h):
     """Balls at their balance; elastic, viscous : stiffness and damping of their inner contacts."""
     inner, outer = contacts
     na, nr, to_a, to_r = inner.axial, inner.radial, outer.radial, -outer.axial
-    wi, wo = where(inner.length > 0.0, 1.0 / inner.length, 0.0), 1.0 / outer.length
+    wi, wo = inner.by_length, outer.by_length
     # Inner and outer tangential force by the angle, the outer one also by the length, of the other contact.
     ii_a, ii_r = h.inner_by_other * nr, -h.inner_by_other * na
     oi_a, oi_r = h.outer_by_other * nr * wi + h.grows * na, -h.outer_by_other * na * wi + h.grows * nr
-    e = contact_matrix(BallContact(na, nr, inner.length, inner.force, elastic), h.inner, h.inner_by_length, h.inner_by_angle)
+    e = contact_matrix(BallContact(na, nr, wi, inner.force, elastic), h.inner, h.inner_by_length, h.inner_by_angle)
     g = contact_matrix(inner, h.inner, h.inner_by_length, h.inner_by_angle)
     o = contact_matrix(outer, h.outer, h.outer_by_length, h.outer_by_angle)
     p = Tensor(ii_a * to_a * wo - g.aa, ii_a * to_r * wo - g.ar, ii_r * to_a * wo - g.ra, ii_r * to_r * wo - g.rr)
@@ -341,23 +341,18 @@ def shallower(inner, outer):
 def couple_slopes(contacts, h):
     """Derivatives of the couple on the ring's section by e, and by the ball's place [N]."""
     inner, outer = contacts
-    stretch, angle = h.couple_by_length, h.couple_by_inner / where(inner.length > 0.0, inner.length, 1.0)
+    stretch, angle = h.couple_by_length, h.couple_by_inner * inner.by_length
     by_e = Pair(stretch * inner.axial + angle * inner.radial, stretch * inner.radial - angle * inner.axial)
-    angle = h.couple_by_outer / outer.length
+    angle = h.couple_by_outer * outer.by_length
     return by_e, Pair(angle * outer.radial - by_e.axial, -angle * outer.axial - by_e.radial)
 
 
 @jit(LANES_TENSOR(CONTACT, LANES, LANES, LANES), inline=True)
 def contact_matrix(contact, h, h_s, h_a):
     """d(f n + h t)/dx of a contact for x = s n; h by the length and by the angle."""
-    k, f = contact.stiffness, contact.force
-    w = where(contact.length > 0.0, 1.0 / contact.length, 0.0)
-    na, nr = contact.axial, contact.radial
-    ta, tr = nr, -na
+    na, nr, w, f, k = contact
     tt, nt = (f + h_a) * w, -h * w
-    return Tensor(
-        k * na * na + nt * na * ta + h_s * ta * na + tt * ta * ta,
-        k * na * nr + nt * na * tr + h_s * ta * nr + tt * ta * tr,
-        k * nr * na + nt * nr * ta + h_s * tr * na + tt * tr * ta,
-        k * nr * nr + nt * nr * tr + h_s * tr * nr + tt * tr * tr,
-    )
+    # Along n and along t = (nr, -na), by x.
+    along_a, along_r, across_a, across_r = k * na + nt * nr, k * nr - nt * na, h_s * na + tt * nr, h_s * nr - tt * na
+    first = na * along_a + nr * across_a, na * along_r + nr * across_r
+    return Tensor(*first, nr * along_a - na * across_a, nr * along_r - na * across_r)
