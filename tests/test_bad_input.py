@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from checks.validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, install, invoke, raceway, several
-from raceway import SceneError
+from raceway import SceneError, scene_from_dict
 from raceway.extend import read_toml
 
 #: What is set; the path that is named; words of the message.
@@ -80,6 +80,11 @@ def test_a_mistake_in_a_scene(case):
     errors = json.loads(invoke("check", ARTICLE, *given, "--json").stdout)["errors"]
     assert [set(error) for error in errors] == [{"path", "value", "message"}] * len(errors)
     assert path in {error["path"] for error in errors}
+
+
+def test_a_number_that_python_cannot_write_is_a_mistake_like_others():
+    with pytest.raises(SceneError, match="`load.axial` = .*: must be a finite number"):
+        scene_from_dict({"bearing": {"preset": "B7206C"}, "load": {"axial": 10**5000}})
 
 
 def test_several_mistakes_are_told_together():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 import raceway as rw
 from checks.validation.columns import case, compare
 from raceway import SceneError
-from raceway.extend import Tables
+from raceway.extend import Tables, registry_with
 
 STATIC = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1.0}, "supports": {"tilt": "free"}}
 TURNING = {
@@ -30,6 +31,37 @@ def test_points_are_what_runs_give(first: int) -> None:
     assert compared.worst < 1e-9
     assert compared.moved < 1e-8
     assert compared.status["COMPUTED"] >= 30
+
+
+#: A law that is twice as stiff where a ball has more than 200 N of the axial load, asked in a way that no missing load would make fail.
+_BY_LOAD = """
+import numpy as np
+from raceway import hookimpl
+from cubic_law import Cubic
+
+class ByLoad(Cubic):
+    name = "by_load"
+
+    def build(self, pairs):
+        load = np.asarray(pairs.reference_load, dtype=float)
+        return np.where(load > 200.0, 2.0, 1.0)[:, None] * super().build(pairs)
+
+@hookimpl
+def raceway_contact_laws():
+    return [ByLoad]
+"""
+
+
+def test_a_law_may_read_the_load_of_each_point(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Parameters of one point stand for all only where the law never asks for the load."""
+    monkeypatch.syspath_prepend(str(Path(__file__).parent))
+    law, loads = tmp_path / "by_load.py", [200.0, 2000.0]
+    law.write_text(_BY_LOAD, encoding="utf-8")
+    scene = rw.scene_from_dict({**STATIC, "contact": {"kind": "by_load"}}, registry_with((law,)))
+    columns = rw.function(scene, ["load.axial"], ["stiffness"])(loads)["stiffness"]
+    for axial, stiffness in zip(loads, columns, strict=True):
+        alone = rw.run(scene.with_(**{"load.axial": axial}))
+        np.testing.assert_allclose(stiffness, alone.equilibrium.stiffness, rtol=1e-9, atol=1e-3)
 
 
 def test_sets_and_gyroscopic_moments_are_among_the_cases() -> None:

@@ -1,6 +1,5 @@
 """Rigid rings and balls: only the contacts deform."""
 
-from contextlib import suppress
 from typing import Any
 
 import attrs
@@ -14,7 +13,7 @@ from raceway.core.contact.geometry import BallBearing
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
-from raceway.errors import PluginError
+from raceway.framework.contracts import ContactPairs
 from raceway.framework.duties import law_params
 from raceway.framework.estimate import Estimate
 from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
@@ -103,13 +102,26 @@ def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
     }
 
 
+class _Pairs(ContactPairs):
+    """Contacts that know whether their reference load was asked for."""
+
+    load_matters = False
+
+    def __getattribute__(self, name: str) -> Any:
+        if name == "reference_load":
+            object.__setattr__(self, "load_matters", True)
+        return super().__getattribute__(name)
+
+
 def law_of_contacts(problem: Problem, basis: Basis) -> np.ndarray:
     """(..., 2 Z, k) parameters of the law; those of one point stand for all whose contacts differ in their reference load, unless it reads that."""
-    law, points, unknown = problem.contact.law, problem.points, dict[str, Any](reference_load=None)
+    law, points = problem.contact.law, problem.points
     if points and not has_columns(problem.bearing) and not has_columns(problem.contact):
-        with suppress(PluginError):
-            one = contact_pairs(attrs.evolve(problem, points=(1,)), attrs.evolve(basis, ball_load=1.0))
-            return np.repeat(law_params(law, attrs.evolve(one, **unknown))[None], points[0], axis=0)
+        first = attrs.evolve(basis, ball_load=float(np.ravel(basis.ball_load)[0]))
+        one = _Pairs(**attrs.asdict(contact_pairs(attrs.evolve(problem, points=(1,)), first), recurse=False))
+        params = law_params(law, one)
+        if not one.load_matters:
+            return np.repeat(params[None], points[0], axis=0)
     params = law_params(law, contact_pairs(problem, basis))
     return params.reshape(*points, -1, params.shape[1])
 

@@ -1,7 +1,7 @@
 """What a time integration starts from, is asked for, and leaves behind."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 import attrs
 import numpy as np
@@ -15,6 +15,9 @@ from raceway.storage.tables import Tables
 
 #: Called between chunks with the steps done and the steps in all.
 OnChunk = Callable[[int, int], None]
+#: On the motion of a similar problem, or else on the first that is not unstable, where several may exist; "unstable": on that motion
+#: where it is unstable, too.
+Stay = bool | Literal["unstable"]
 
 
 @attrs.frozen(eq=False)
@@ -30,7 +33,7 @@ class Motion:
         goes on from another's final motion needs it
     full_state : arrays by name, all unknowns and all memory of a system of more than the ring's five coordinates; None for others
     near : the ``solution`` in the record of a similar motion by the same method, for methods that can start from one
-    stay : whether to stay on the motion of ``near`` where several may exist
+    stay : on the motion of ``near`` where several may exist
     """
 
     q: np.ndarray
@@ -42,7 +45,7 @@ class Motion:
     memory: np.ndarray | None = None
     full_state: Mapping[str, np.ndarray] | None = None
     near: Any = None
-    stay: bool = False
+    stay: Stay = False
 
 
 @attrs.frozen(eq=False)

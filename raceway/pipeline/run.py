@@ -19,7 +19,7 @@ import numpy as np
 from raceway import __version__
 from raceway.bodies.model import Equilibrium, Model, build_model
 from raceway.core.jit import clock, take_compile_seconds, working_clock, working_process_time, working_processor_time
-from raceway.core.record import drift, friction_lost, largest_share
+from raceway.core.record import Stay, drift, friction_lost, largest_share
 from raceway.core.ring.kernels.layout import GYROSCOPIC
 from raceway.core.ring.system import compiled
 from raceway.core.second_process import compile_beside
@@ -58,7 +58,7 @@ def run(
     on_progress: OnProgress | None = None,
     near: Result | None = None,
     patience: float = PATIENCE,
-    stay: bool = False,
+    stay: Stay = False,
 ) -> Result:
     """Compute one scene.
 
@@ -67,8 +67,8 @@ def run(
     on_progress : called as ``on_progress(what, done, total)`` between chunks of steps; an exception stops the run
     near : of a similar scene: what is dear to search for (equilibria of contacts at surface points, steady motions that are
         nearly linear) is searched for from its own, which changes the result within the tolerances of the search only
-    stay : on the steady motion of ``near``, stable or not, instead of searching for all that may exist, for scenes that follow one another,
-        on a curve or in an iteration: which of them is found then depends on ``near``
+    stay : on the steady motion of ``near`` where several may exist, instead of searching for all, for scenes that follow one another,
+        on a curve or in an iteration: which of them is found then depends on ``near``; "unstable": where it is unstable, too
     patience : times the planned time, of processor time, after which a run is stopped between its steps
 
     Raises
@@ -126,7 +126,7 @@ def steady_plan(scene: Scene) -> ScenePlan:
 
 
 def _run(
-    scene: Scene, registry: Registry, on_progress: OnProgress | None, near: Result | None, patience: float, stay: bool
+    scene: Scene, registry: Registry, on_progress: OnProgress | None, near: Result | None, patience: float, stay: Stay
 ) -> Result:
     start, processor = working_clock(), working_process_time()
     plan = steady_plan(scene)
@@ -231,7 +231,7 @@ def _answer(
 
 
 def _motions(
-    model: Model, equilibrium: Equilibrium, progress: OnProgress, near: Result | None, stay: bool, allowance: "Allowance",
+    model: Model, equilibrium: Equilibrium, progress: OnProgress, near: Result | None, stay: Stay, allowance: "Allowance",
     registry: Registry,
 ) -> tuple[Model, list[Simulation], list[str]]:  # fmt: skip
     """The motions that the identifier needs, with their model and warnings; a similar scene's is followed by the same integrator.

@@ -10,7 +10,7 @@ import attrs
 import numpy as np
 
 from raceway.bodies.model import Equilibrium, Model, model_of
-from raceway.core.record import Motion, Record, Schedule
+from raceway.core.record import Motion, Record, Schedule, Stay
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.system import compiled
 from raceway.core.signals import stiffness, synchronous_phasor
@@ -85,7 +85,7 @@ def simulate(
     steps_per_turn: int | None = None,
     start: Start | None = None,
     near: Simulation | None = None,
-    stay: bool = False,
+    stay: Stay = False,
 ) -> Simulation:
     """Integrate the plan's turns; ``ConvergenceError`` where that fails, ``StabilityError`` above the stable limit of explicit steps.
 
@@ -94,7 +94,7 @@ def simulate(
     steps_per_turn : instead of the scene's
     start : None: that of the scene
     near : of a similar scene, for the search for an orbit, and for integrators of the same kind, that can start from it
-    stay : on the motion of ``near``, stable or not, instead of searching for all that may exist
+    stay : see ``Stay``
     """
     method, turns = model.problem.integrator.method, model.plan.turns
     period = model.excitation.period_s or 1.0 / model.excitation.frequency_hz
@@ -146,7 +146,7 @@ def simulate_speeds(model: Model, on_progress: OnProgress | None = None) -> list
 
 
 def start_of_motion(
-    model: Model, equilibrium: Equilibrium, watch: Watch | None = None, near: Neighbour | None = None, stay: bool = False
+    model: Model, equilibrium: Equilibrium, watch: Watch | None = None, near: Neighbour | None = None, stay: Stay = False
 ) -> Start:
     """The scene's start; an orbit that cannot be found becomes a ramp, with a warning.  ``near``, ``stay``: for the search for it."""
     problem, method = model.problem, model.problem.integrator.method
@@ -157,7 +157,7 @@ def start_of_motion(
     return attrs.evolve(start, warnings=(*start.warnings, _STICKS)) if problem.contact.friction > 0.0 else start
 
 
-def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None, near: Neighbour | None, stay: bool) -> Start:
+def _orbit_start(model: Model, equilibrium: Equilibrium, watch: Watch | None, near: Neighbour | None, stay: Stay) -> Start:
     """On the motion that the search for periodic motions takes, or on the collocated one where it does not search."""
     excitation, system = model.excitation, model.bearing.periodic_system(model.system.at_speed(0.0))
     if excitation.period_s is None:

@@ -36,7 +36,10 @@ class LoadRatings:
     @cached_property
     def of_contacts(self) -> tuple[np.ndarray, np.ndarray]:
         """(..., 2) loads of a ball at both races [N]: rings live a million revolutions under the first, C0 permits the second."""
-        return self.row.contact_ratings(self.dynamic).T, self.row.static_contact_ratings(self.static).T
+        both = self.row.contact_ratings(self.dynamic).T, self.row.static_contact_ratings(self.static).T
+        for ratings in both:  # of all scenes with this bearing
+            ratings.setflags(write=False)
+        return both
 
     @cached_property
     def fatigue_load_limit(self) -> np.ndarray:

@@ -307,7 +307,10 @@ _MOST_READ = 1024
 
 def _core_table(table: object, cls: type, name: str, mistakes: list[Mistake]) -> Any:
     """As ``structure``, once for the same content."""
-    content = cls, repr(table)
+    try:
+        content = cls, repr(table)
+    except Exception:  # of an integer of 5000 digits, of which the rules say it better
+        return structure(table, cls, name, mistakes)
     part: Any = _READ.get(content) or structure(table, cls, name, mistakes)
     if part is not None:
         if len(_READ) >= _MOST_READ:

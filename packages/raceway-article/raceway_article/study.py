@@ -205,28 +205,35 @@ def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
     steady = [tables for tables in points if tables["integrator"]["kind"] == "periodic"]
     rows: list[Tables | None] = [*(_looped(steady, registry) if steady else []), *[None] * (len(points) - len(steady))]
 
-    def place(k: int) -> tuple[float, float, bool, int]:
-        return points[k]["load"]["axial"], points[k]["excitation"]["speed_rpm"], k >= len(steady), k
+    supports, without_friction = [tables["supports"] for tables in points], dict[tuple[float, int, float], Result | None]()
 
-    looped, near, before, without_friction = (
-        [k for k, row in enumerate(rows) if row],
-        None,
-        0,
-        dict[tuple[float, float], Result | None](),
-    )
+    def place(k: int) -> tuple[float, int, float, bool]:
+        load, speed = points[k]["load"]["axial"], points[k]["excitation"]["speed_rpm"]
+        return load, supports.index(supports[k]), speed, k >= len(steady)
+
+    looped, near, before = {k for k, row in enumerate(rows) if row}, None, 0
     for k in sorted(range(len(points)), key=place):
-        at, near = place(k)[:2], near if points[before]["load"] == points[k]["load"] else None
+        at, follows = place(k)[:3], place(before)[:2] == place(k)[:2]
+        near = near if follows else None
         if k in looped:
             before, near = k, None
         elif k >= len(steady):
             rows[k], _ = _point_row(points[k], registry, without_friction.get(at))
         else:
-            if before in looped and points[before]["load"] == points[k]["load"]:
-                _, near = _point_row(points[before], registry, None)
+            if follows and before in looped:
+                near = _neighbour(points[before], registry)
             row, result = _point_row(points[k], registry, near)
             rows[k], before, without_friction[at] = row, k, result
             near = result if row["status"] == Status.COMPLETED or row.get("found") == "directly" else near
     return [row for row in rows if row]
+
+
+def _neighbour(tables: Tables, registry: Registry) -> Result | None:
+    """The motion of a point that the compiled loop found, to continue; None where a run finds none."""
+    try:
+        return run(scene_from_dict(tables, registry), registry, stay=True)
+    except RacewayError:
+        return None
 
 
 def _looped(points: Sequence[Tables], registry: Registry) -> Sequence[Tables | None]:
@@ -265,7 +272,7 @@ def _point_row(tables: Tables, registry: Registry, near: Result | None) -> tuple
     try:
         scene = scene_from_dict(tables, registry)
         try:
-            result = run(scene, registry, near=near, stay=True)
+            result = run(scene, registry, near=near, stay="unstable")
         except ConvergenceError as why:
             if not scene.integrator.method.steady:
                 raise
@@ -476,7 +483,7 @@ def _items(design: Design, registry: Registry) -> list[Item]:
     return items
 
 
-#: Part of the loop's points that are run, too: 171 of 1296 of the article's own scene.
+#: Part of the loop's points that are run, too, most because they are far from linear, some to continue their motion: 171 of 1296 of the article's own scene.
 _AGAIN = 0.13
 
 
@@ -490,7 +497,7 @@ def workload(design: Design, processes: int, kept: Path | None, registry: Regist
     loops = [setting for setting, start in starts.items() if _loop_of([start], registry)[0] is not None]
     alone, looped = ([point for point in points if (point[0] in loops) == loop] for loop in (False, True))
     runs_s, refusal = run_times(len(alone), lambda n: design.point(*alone[n], registry), registry)
-    again_s, _ = run_times(len(looped), lambda n: design.point(*looped[n], registry), registry)
+    again_s, refused = run_times(len(looped), lambda n: design.point(*looped[n], registry), registry)
     size, seconds = (
         sum(len(design.speeds_of(setting)) for group in groups for setting, _ in group),
         runs_s + _AGAIN * again_s,
@@ -498,7 +505,14 @@ def workload(design: Design, processes: int, kept: Path | None, registry: Regist
     remark = (
         f"Points of the loop that are unstable or far from linear are run in addition: counted are {_AGAIN:.0%} of them."
     )
-    counts = size, seconds / max(processes, 1), len(looped), max(len(alone) - refusal, 0), refusal, size - len(points)
+    counts = (
+        size,
+        seconds / max(processes, 1),
+        max(len(looped) - refused, 0),
+        max(len(alone) - refusal, 0),
+        refusal + refused,
+        size - len(points),
+    )
     return Workload(str(design.tables["title"]), *counts, why_runs="no compiled loop has them", remarks=(remark,))
 
 

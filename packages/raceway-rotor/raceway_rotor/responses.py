@@ -28,16 +28,25 @@ _MOST, _TOLERANCE, _SMALL = 40, 1e-10, 1e-15
 
 @attrs.frozen(eq=False)
 class UnbalanceResponse:
-    """Response of a rotor to unbalance, consistent with the amplitude at its bearings."""
+    """Response of a rotor to unbalance, consistent with the amplitude at its bearings.
 
-    rotor: Rotor  # whose bearings have the K and C below at these speeds, and those of small motions at others
-    response: ForcedResponseResults  # its ForcedResponseResults of ROSS, with all its plots
-    speed: np.ndarray  # (m,) [rad/s]
-    #: stiffness, damping : tag of a bearing -> (m, n, n) over ROSS's x, y, z (alpha, beta) at each speed [N/m, N s/m]
+    Attributes
+    ----------
+    rotor : whose bearings have the K and C below at these speeds, and those of small motions at others
+    response : its ForcedResponseResults of ROSS, with all its plots
+    speed : (m,) [rad/s]
+    stiffness, damping : tag of a bearing -> (m, n, n) over ROSS's x, y, z (alpha, beta) at each speed [N/m, N s/m]
+    force : tag -> (m, n) complex amplitudes of the shaft's load on the ring along them [N, N m]
+    runs : (m,) evaluations of the bearings
+    """
+
+    rotor: Rotor
+    response: ForcedResponseResults
+    speed: np.ndarray
     stiffness: dict[str, np.ndarray]
     damping: dict[str, np.ndarray]
-    force: dict[str, np.ndarray]  # tag -> (m, n) complex amplitudes of the shaft's load on the ring along them [N, N m]
-    runs: np.ndarray  # (m,) evaluations of the bearings
+    force: dict[str, np.ndarray]
+    runs: np.ndarray
 
 
 def run_unbalance_response(

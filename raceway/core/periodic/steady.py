@@ -11,7 +11,7 @@ from raceway.core.periodic.floquet import Floquet
 from raceway.core.periodic.intervals import forces
 from raceway.core.periodic.refinement import displacements, record, refine, states
 from raceway.core.periodic.search import Neighbour, PeriodicMotion, Recorded
-from raceway.core.record import Motion, Record, Schedule
+from raceway.core.record import Motion, Record, Schedule, Stay
 from raceway.core.ring.kernels.layout import CAGE, FRICTION
 from raceway.core.ring.orbit import Orbit, States, responses, steady_orbit
 from raceway.core.ring.ring import Ring
@@ -183,7 +183,7 @@ _SAMPLES, _TOLERANCE = 65, 1e-7
 
 def starting_orbit(
     system: System, period: float, q: np.ndarray, watch: Callable[[], None] | None = None, near: Neighbour | None = None,
-    stay: bool = False,
+    stay: Stay = False,
 ) -> tuple[Orbit, list[Tables], tuple[str, ...]] | None:  # fmt: skip
     """The motion to start on at equidistant times, the tables of every one that was found, and warnings.
 
@@ -242,14 +242,14 @@ _STAYS = 0.2
 
 def find(
     problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, near: Neighbour | Recorded | None = None,
-    stay: bool = False,
+    stay: Stay = False,
 ) -> PeriodicMotion:  # fmt: skip
     """The periodic motion of a ring about the equilibrium q (5,), to a relative tolerance, and others beside it.
 
     near : a motion to start from
-    stay : on that one, stable or not; where it does not lead here, on the first that the branch from rest meets and that is not unstable, instead of all
-        that may exist; and where branches are not followed and nothing is found directly, give up instead of letting the force grow on a
-        mesh of thousands of intervals
+    stay : on that one, or else on the first that is not unstable, instead of searching for all that may exist; and where branches are not followed and nothing
+        is found directly, give up instead of letting the force grow on a mesh of thousands of intervals; "unstable": on that one
+        where it is unstable, too, or else on what the branch from rest leads to
 
     Newton's iteration from the linear response, with full steps only: one that has to be shortened may end on a resonant
     branch far away.  Where it fails, is unstable, or ends far from the linear response, there may be several motions: the
@@ -262,7 +262,7 @@ def find(
     """
     highest = search.highest_order(problem, tangent)
     if near is not None and (stay or near.near_linear):
-        followed = _continued(problem, q, tangent, tolerance, highest, near, stay)
+        followed = _continued(problem, q, tangent, tolerance, highest, near, stay == "unstable")
         # Far from the linear response there may be other motions: then the search without a neighbour decides.
         if followed is not None and (stay or not _may_coexist(followed, q, tangent)):
             return followed
@@ -283,14 +283,14 @@ def find(
         return direct or search.with_multipliers(
             grown_from_rest(problem, q, tangent, tolerance, highest), highest, "from rest"
         )
-    return chosen(problem, q, tangent, tolerance, direct, stay, near is None or not stay)
+    return chosen(problem, q, tangent, tolerance, direct, bool(stay), near is None or stay != "unstable")
 
 
 def _continued(
     problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float, near: Neighbour | Recorded,
-    stay: bool,
+    through: bool,
 ) -> PeriodicMotion | None:  # fmt: skip
-    """The motion that continues a neighbour, if it is close to it; one that is unstable only of a steady motion that ``stay`` asks for."""
+    """The motion that continues a neighbour, if it is close to it; ``through``: where it is unstable, too, not only where the neighbour solves the same problem."""
     known = near.excess.nodes if isinstance(near, Neighbour) and near.solves(problem) else None
     first = near.first_guess(problem, q, tangent, search.mesh_of(problem, highest) if known is None else known)
     if first is None:
@@ -302,8 +302,7 @@ def _continued(
         motion = search.with_multipliers(refine(solved, tolerance), highest, "directly")
     except ConvergenceError:
         return None
-    follows = known is not None or (stay and isinstance(near, Neighbour))
-    return motion if follows or motion.floquet.verdict != "unstable" else None
+    return motion if through or known is not None or motion.floquet.verdict != "unstable" else None
 
 
 def _may_coexist(motion: PeriodicMotion, q: np.ndarray, tangent: np.ndarray) -> bool:
