@@ -196,7 +196,8 @@ def failure(why: RacewayError) -> Tables:
 def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
     """One row a point, in order; a run that fails or is refused becomes a row with its reason.
 
-    As in a run-up each motion is continued from that at the speed before, stable or not; where that does not lead on, it is searched for.
+    As in a run-up each motion is continued from that at the speed before, stable or not, and over several tilt stiffnesses from that at
+    the one before; where that does not lead on, it is searched for.
     Where it is unstable, or none is found, ``instead`` states what a ring does, by time integration: from beside that motion, or from rest.
     With friction the orbit of another start is the motion without it at the same point, where that was run.
 
@@ -205,15 +206,16 @@ def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
     steady = [tables for tables in points if tables["integrator"]["kind"] == "periodic"]
     rows: list[Tables | None] = [*(_looped(steady, registry) if steady else []), *[None] * (len(points) - len(steady))]
 
-    supports, without_friction = [tables["supports"] for tables in points], dict[tuple[float, int, float], Result | None]()
+    supports, without_friction = [tables["supports"] for tables in points], dict[tuple[float, float, int], Result | None]()
 
-    def place(k: int) -> tuple[float, int, float, bool]:
+    def place(k: int) -> tuple[float, float, int, bool]:
         load, speed = points[k]["load"]["axial"], points[k]["excitation"]["speed_rpm"]
-        return load, supports.index(supports[k]), speed, k >= len(steady)
+        return load, speed, supports.index(supports[k]), k >= len(steady)
 
     looped, near, before = {k for k, row in enumerate(rows) if row}, None, 0
+    same = 1 if all(one == supports[0] for one in supports) else 2  # over stiffness: at the same speed
     for k in sorted(range(len(points)), key=place):
-        at, follows = place(k)[:3], place(before)[:2] == place(k)[:2]
+        at, follows = place(k)[:3], place(before)[:same] == place(k)[:same]
         near = near if follows else None
         if k in looped:
             before, near = k, None
