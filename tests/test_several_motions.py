@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from checks.validation.several import article, by_integration, heavy
-from raceway import ConvergenceError, run
+from raceway import ConvergenceError, extend, run, scene_from_dict
 from raceway.core.periodic import branches, search, steady
 from raceway.extend import differentiation
 
@@ -82,6 +82,19 @@ def test_a_motion_that_only_another_speed_or_load_leads_to(axial, speed, amplitu
     assert gap < 1e-6
     assert abs(z - result.identification.dynamic_stiffness) < 1e-6 * abs(z)
     assert multiplier == pytest.approx(result.simulation.orbits[0]["multiplier"], abs=1e-4)
+
+
+def test_a_motion_is_continued_where_it_is_unstable():
+    """400 N, one direction, tilt free: unstable at 12 990 r/min, where a search leads to it without damping only, and not at the speeds beside."""
+    motions, near = [], None
+    for speed in (12487.5, 12990.0, 13492.5):
+        tables = article(400.0, kind="periodic", tolerance=1e-9)
+        tables["excitation"] |= {"speed_rpm": speed, "amplitude": "unbalance"}
+        tables["kinematics"] = {"ball_inertia": False, "gyroscopic": "none", "ring_growth": False}
+        near = extend.run(scene_from_dict(tables), near=near, stay="unstable")
+        motions.append(near.stability["floquet"])
+    assert [motion["verdict"] == "unstable" for motion in motions] == [False, True, False]
+    assert {motion["found"] for motion in motions} == {"directly"}
 
 
 @pytest.mark.slow
