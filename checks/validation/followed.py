@@ -13,8 +13,8 @@ from checks.validation.reference.shooting import swinging, trajectory
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.refinement import displacements
 from raceway.core.periodic.search import directly, highest_order
+from raceway.core.periodic.steady import synchronous_response
 from raceway.extend import System
-from raceway.points.branch import first_component
 from raceway.points.parameter import parameter_of
 from raceway.testing import default_registry
 
@@ -126,4 +126,4 @@ def _again(branch: Branch, fold: Point) -> np.ndarray:
 
 
 def z_of(point: Point) -> complex:
-    return first_component(point.solved)[0]
+    return synchronous_response(point.solved, np.pi * np.arange(720) / 180.0)[0]  # two turns, where a period doubles

@@ -16,11 +16,11 @@ from raceway.answers.quantities import read_in
 from raceway.answers.table import Words
 from raceway.core.periodic.branch import Branch, Point
 from raceway.core.periodic.collocation import Solved
-from raceway.core.periodic.intervals import Change, forces, spread
+from raceway.core.periodic.intervals import Change, spread
 from raceway.core.periodic.refinement import displacements, states
+from raceway.core.periodic.steady import synchronous_response
 from raceway.core.ring.kernels.layout import DAMPING, TIME_CONSTANT
 from raceway.core.ring.orbit import States, responses
-from raceway.core.signals import stiffness
 from raceway.errors import ConvergenceError
 from raceway.framework.shown import Fact
 from raceway.points.attractor import Attractor
@@ -306,22 +306,11 @@ def _line(label: str, row: Orbit) -> dict[str, str]:
 def orbit_of(point: Point, arc: float, mass: float) -> Orbit:
     """Numbers of one point; ``mass`` m of K = Re Z + m w^2 [kg]."""
     solution, stability = point.solved, point.floquet
-    z, amplitude = first_component(solution)
+    z, amplitude = synchronous_response(solution, _angles(solution))
     return Orbit(
         point.parameter, arc, solution.problem.speed, z, mass, amplitude, swing(solution), stability.largest,
         int((np.abs(stability.multipliers) > _OUTSIDE).sum()), open_contacts(solution)[1], point.error, stability.verdict, stability.leaves_by,
     )  # fmt: skip
-
-
-def first_component(solution: Solved) -> tuple[complex, float]:
-    """Z [N/m] along the force and major semi-axis [m] of the 1x component, over all turns of the span."""
-    problem, angles = solution.problem, _angles(solution)
-    push = np.empty((len(angles), 5))
-    forces(problem.system.force, problem.system.force_params, angles / problem.clock, push)
-    kernel = 2.0 / len(angles) * np.exp(-1j * angles)
-    x, force = kernel @ displacements(solution, angles), kernel @ push
-    forward, backward = 0.5 * abs(x[1] - 1j * x[2]), 0.5 * abs(x[1] + 1j * x[2])
-    return complex(stiffness(force, x)), float(forward + backward)
 
 
 def swing(solution: Solved) -> float:

@@ -21,7 +21,7 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.storage.tables import Tables
 
 #: Samples of a turn for its 1x line: a path has no more intervals as a rule, and harmonics up to this order alias nothing.
-_TABLE_SAMPLES = 360
+_OF_A_TURN = 2.0 * np.pi * np.arange(360) / 360
 
 _WAYS = {
     "+1": "through +1: it drifts to another motion",
@@ -51,13 +51,11 @@ def _orbit(motion: PeriodicMotion, reported: bool) -> Tables:
     }
 
 
-def synchronous_response(solution: Solved) -> tuple[complex, float]:
-    """Z [N/m] along the force and the major semi-axis [m] of the radial motion's synchronous (1x) component."""
-    problem = solution.problem
-    angles = 2.0 * np.pi * np.arange(_TABLE_SAMPLES) / _TABLE_SAMPLES
-    push = np.empty((_TABLE_SAMPLES, 5))
+def synchronous_response(solution: Solved, angles: np.ndarray = _OF_A_TURN) -> tuple[complex, float]:
+    """Z [N/m] along the force and the major semi-axis [m] of the radial motion's synchronous (1x) component, at angles (n,) of whole turns."""
+    problem, push = solution.problem, np.empty((len(angles), 5))
     forces(problem.system.force, problem.system.force_params, angles / problem.clock, push)
-    phasor = 2.0 / _TABLE_SAMPLES * np.exp(-1j * angles)
+    phasor = 2.0 / len(angles) * np.exp(-1j * angles)
     line, force = phasor @ displacements(solution, angles), phasor @ push
     forward, backward = 0.5 * abs(line[1] - 1j * line[2]), 0.5 * abs(line[1] + 1j * line[2])
     return complex(stiffness(force, line)), float(forward + backward)
