@@ -33,6 +33,13 @@ def test_points_are_what_runs_give(first: int) -> None:
     assert compared.status["COMPUTED"] >= 30
 
 
+def test_one_number_of_many_blocks_is_refused_alone() -> None:
+    angles = np.linspace(14.0, 16.0, 20001)
+    angles[15000] = -5.0
+    answer = rw.function({**STATIC, "load": {"axial": 500.0}}, ["bearing.contact_angle_deg"], ["stiffness"])(angles)
+    assert np.flatnonzero(answer["status"] == rw.PointStatus.REFUSED).tolist() == [15000]
+
+
 #: A law that is twice as stiff where a ball has more than 200 N of the axial load, asked in a way that no missing load would make fail.
 _BY_LOAD = """
 import numpy as np

@@ -385,7 +385,12 @@ class Function:
             if len(fit) and not all(
                 self._is_allowed(keys, ends) for ends in product(*map(set, zip(fit.min(0), fit.max(0), strict=True)))
             ):
-                # Rules are intervals, or compare two options of a law: numbers beyond them are looked at one by one.
+                # Rules are intervals, or compare two options of a law: numbers beyond them are looked at one by one, where their block is.
+                if (half := len(numbers) // 2) >= BLOCK[self.moving]:
+                    parts = (
+                        {key: column[part] for key, column in columns.items()} for part in (slice(half), slice(half, None))
+                    )
+                    return np.concatenate([self._refusals(part) for part in parts])
                 several, place = np.unique(numbers, axis=0, return_inverse=True)
                 fitness = [bool(np.isfinite(row).all()) and self._is_allowed(keys, row) for row in several]
                 refusals |= ~np.array(fitness)[place.ravel()]
