@@ -26,6 +26,7 @@ CHANGES = {
     "one direction": {"excitation": SCENE["excitation"] | {"kind": "unidirectional", "unbalance": 1e-5}, "supports": {"tilt": "locked"}},
     "side load": {"load": {"axial": 500.0, "radial": [40.0, -20.0]}, "rotor": {"mass": 1.5, "damping": 300.0}},
     "dashpots, moments": {"contact": {"damping": 60.0}, "kinematics": {"gyroscopic": "traction"}},
+    "balls without mass, dashpots": {"contact": {"damping": 60.0}, "kinematics": {"ball_inertia": False}, "load": {"axial": 500.0, "radial": [150.0, 0.0]}},
     "time constants": {"contact": {"time_constant": 5e-7}, "excitation": SCENE["excitation"] | {"whirl": "backward"}},
 }  # fmt: skip
 

@@ -222,8 +222,7 @@ class ColumnBearing:
         """Inner and outer (n, Z) [rad]; nan where a contact is open."""
         centre = np.empty((len(states.q), 2, self.points.table.shape[1]))
         groove_centres(self.points.scalars, self.points.table, states.q, centre)
-        placed = self.plan.balls != "weightless"
-        return contact_angles(np.moveaxis(centre, 1, 2), placed, states.ball, states.force)
+        return contact_angles(np.moveaxis(centre, 1, 2), True, states.ball, states.force)
 
     def pressures(self, force: np.ndarray) -> np.ndarray:
         """(n, 2 Z) peak pressures [Pa] under contact forces (n, 2 Z) [N]."""
@@ -318,7 +317,7 @@ def assembled_columns(cls: type[C], problem: Problem, plan: ScenePlan, basis: Ba
     n = problem.points[0]
     parts["scalars"][:, ring.CAGE] = 0.0  # at rest; balls of periodic motions stand
     columns = 2 + elastic_columns(parts["scalars"][0])
-    lanes = parts["base_kernel"] is rigid_inertial and parts["kernel"] in (rigid_inertial, rigid_tangential)
+    lanes = parts["kernel"] in (rigid_inertial, rigid_tangential)
     lanes &= not np.any(parts["scalars"][:, ring.FRICTION])
     kernels = Kernels(parts["kernel"], parts["base_kernel"], columns, parts["law"], lanes)
     none = np.zeros((5, 5))

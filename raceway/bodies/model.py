@@ -111,7 +111,7 @@ class BuiltBearing(ABC):
         ----------
         balls : the plan's "weightless", "inertial" or "tangential"
         """
-        return balls != "weightless"
+        return True
 
     def contact_angles(
         self, model: Model, q: np.ndarray, ball: np.ndarray, force: np.ndarray, t: np.ndarray | float = 0.0

@@ -68,13 +68,8 @@ def rigid_system(problem: Problem, plan: ScenePlan, basis: Basis) -> System:
 
 def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
     """Kernels of balls and law, and their numbers, with a first axis of n operating points where these have columns."""
-    if plan.centrifugal:
-        from raceway.core.ring.kernels.rigid_inertial import rigid_inertial as base
-    else:
-        from raceway.core.ring.kernels.rigid_weightless import rigid_weightless as base
-    kernel = base  # base: the one whose forces have a potential
-    if plan.balls == "tangential":
-        from raceway.core.ring.kernels.rigid_inertial import rigid_tangential as kernel
+    from raceway.core.ring.kernels.rigid_inertial import rigid_inertial, rigid_tangential
+
     params = law_of_contacts(problem, basis)
     geometry, inner, outer, reference = basis.geometry, basis.inner, basis.outer, basis.ball_load
     out = np.zeros((*problem.points, ring.SCALARS))
@@ -93,8 +88,8 @@ def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:
     if plan.gyroscopic:
         add_moments(out, problem, geometry)
     return {
-        "kernel": kernel,
-        "base_kernel": base,
+        "kernel": rigid_tangential if plan.balls == "tangential" else rigid_inertial,
+        "base_kernel": rigid_inertial,  # whose forces have a potential
         "law": plugin_kernel(problem.contact.law, "contact law", LAW, "LAW"),
         "law_params": params,
         "scalars": out,

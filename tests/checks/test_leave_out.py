@@ -30,11 +30,11 @@ print(json.dumps([sorted(sys.modules), kernels]))
 #: Optional modules that a scene imports, without "raceway.core."; of all that stand here it imports no other.
 IMPORTED = {
     (): "ring.kernels.rigid_inertial periodic",
-    ("kinematics.spin_speed_rpm=0", "integrator.kind=central_difference"): "ring.kernels.rigid_weightless periodic time.compiled",
+    ("kinematics.spin_speed_rpm=0", "integrator.kind=central_difference"): "ring.kernels.rigid_inertial periodic time.compiled",
     ("contact.friction=0.1", "integrator.turns=2"): "ring.kernels.rigid_inertial periodic time.compiled",
     ("identifier.kind=tangent",): "ring.kernels.rigid_inertial",
     ("bodies.kind=condensed", "kinematics.spin_speed_rpm=0", "integrator.turns=1"): (
-        "ring.kernels.rigid_weightless ring.kernels.structural fem.hexahedron fem.revolution periodic time.compiled"
+        "ring.kernels.rigid_inertial ring.kernels.structural fem.hexahedron fem.revolution periodic time.compiled"
     ),
 }  # fmt: skip
 OPTIONAL = {"fem.elastic", *(module for modules in IMPORTED.values() for module in modules.split())}

@@ -34,14 +34,20 @@ from raceway.core.ring.states import LEAST, POINTS, STATES, TOLERANCE
 from raceway.core.signatures import LAW_POINTER, LINEAR, MATRIX, VECTOR
 
 #: Rows of ``work`` behind the law's, halves of 4 Z: azimuth; side and lever [m]; reach of the tilts [m] and centrifugal force [N]; e at
-#: rest [m]; offsets [m]; place p [m]; its step by R [m]; its derivatives by e; directions of its contacts and 1 over
-#: their lengths [1/m].
-DIRECTION, SEAT, REACH, REST, OFFSET, PLACE, STEP, BY_CENTRE, INNER, OUTER, BY_LENGTH = (*range(5, 12), 12, 14, 15, 16)
+#: rest [m]; offsets [m]; of balls that nothing pushes off the line of the groove centres the outer race's share of the approach, else 0;
+#: place p [m]; its step by R [m]; its derivatives by e; directions of its contacts and 1 over their lengths [1/m].
+DIRECTION, SEAT, REACH, REST, OFFSET, SHARE, PLACE, STEP, BY_CENTRE, INNER, OUTER, BY_LENGTH = (
+    *range(5, 13),
+    13,
+    15,
+    16,
+    17,
+)
 #: Of damped motions: rate of the place [m/s]; gap that a contact with a time constant answers to [m].
-PLACE_RATE, AHEAD = 17, 18
+PLACE_RATE, AHEAD = 18, 19
 #: At the first guess of equilibria 1 where a ball differs in its azimuth alone from the one before.
 LIKE = AHEAD
-WORK_ROWS = 19
+WORK_ROWS = 20
 #: Rows of ``of_points``, one number of each point: q, its step, load, shaft against tilts, reach of the tilts; numbers of rolling; the tangent
 #: and its right side.
 Q, DQ, LOAD, SHAFT, ARM, ROLLS, TANGENT = 0, 5, 10, 15, 16, 17, 24
@@ -77,6 +83,8 @@ def gather(first, points, params, work, of_points):
             work[DIRECTION, c], work[DIRECTION, o], work[SEAT, c], work[SEAT, o] = cosine, sine, side, lever
             work[REACH, c], work[REACH, o], work[REST, c], work[REST, o] = reach, table[k, ring.CENTRIFUGAL], rest_a, rest_r
             work[OFFSET, c], work[OFFSET, o] = ring.offsets_of(k, scalars, table)
+            pushed = table[k, ring.CENTRIFUGAL] != 0.0 or scalars[ring.GYROSCOPIC] != 0.0
+            work[SHARE, c] = 0.0 if pushed else table[k, ring.OUTER_SHARE]
             alike = k > 0 and q[1] == q[2] == q[3] == q[4] == 0.0
             for i in range(ring.CENTRIFUGAL if alike else ring.COLUMNS, ring.COLUMNS):
                 alike &= table[k, i] == table[k - 1, i]
@@ -123,8 +131,15 @@ def _follow(k, live, of_points, work):
     if any_of(size > most):
         scale = where(size > most, most / size, 1.0)
         sa, sr = scale * sa, scale * sr
-    pa, pr = pa + sa, pr + sr
-    xa, xr = ra + ea - pa, rr + er - pr
+    pa, pr, ea, er = pa + sa, pr + sr, ra + ea, rr + er
+    share = take(work, SHARE, k, live)
+    if any_of(share > 0.0):
+        # The races in series; what lies outside of them begins anew, what nothing presses lies midway.
+        length, so = root(ea * ea + er * er), root(pa * pa + pr * pr)
+        deep = length - li - lo
+        so = where((so > lo) & (so < lo + deep), so, lo + where(deep > 0.0, share, 0.5) * deep) / length
+        pa, pr = where(share > 0.0, so * ea, pa), where(share > 0.0, so * er, pr)
+    xa, xr = ea - pa, er - pr
     so, si = root(pa * pa + pr * pr), root(xa * xa + xr * xr)
     by_so, by_si = 1.0 / so, 1.0 / si
     put_pair(work, PLACE, k, live, pa, pr)
@@ -365,8 +380,9 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
     for k in range(0, end, WIDTH):
         inner, outer = contacts_of(k, live, work)
         (sa, sr), (pa, pr) = pair_of(work, STEP, k, live), pair_of(work, PLACE, k, live)
-        # A ball without centrifugal force that nothing presses has no place.
-        done = done & ~((inner.force == 0.0) & (inner.stiffness == 0.0) & (take(work, REACH, end + k, live) == 0.0))
+        # A ball without centrifugal force that nothing presses has no place off the line of the groove centres.
+        loose = (inner.force == 0.0) & (inner.stiffness == 0.0) & (take(work, REACH, end + k, live) == 0.0)
+        done = done & ~(loose & (take(work, SHARE, k, live) == 0.0))
         put_pair(work, PLACE, k, live, pa + sa, pr + sr)
         closed_i = inner.force - inner.stiffness * (inner.axial * sa + inner.radial * sr)
         closed_o = outer.force + outer.stiffness * (outer.axial * sa + outer.radial * sr)

@@ -39,7 +39,7 @@ class States(NamedTuple):
 
 class Kernels(NamedTuple):
     """``system`` (a ``SYSTEM``), ``base`` (the one whose forces have a potential, ``columns`` of ``ball``) and ``law`` (a ``LAW``);
-    ``lanes`` : whether the balls are those of ``raceway.core.ring.lockstep``, rigid with inertia."""
+    ``lanes`` : whether the balls are those of ``raceway.core.ring.lockstep``, rigid."""
 
     system: Any
     base: Any

@@ -69,10 +69,6 @@ class ElasticBodies(BuiltBearing):
         """All nodes in balance."""
         return start.static_orbit(_elastic(system), ramped)
 
-    def has_places(self, balls: str) -> bool:
-        """Always: balls are bodies."""
-        return True
-
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
         """Keys of ``equilibrium.balls[]`` in result.json beyond those of all bodies, each (Z,).
 

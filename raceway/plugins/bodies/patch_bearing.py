@@ -27,7 +27,7 @@ from raceway.core.fem.patches.pressure import (
 )
 from raceway.core.fem.patches.system import PatchSystem, Pool
 from raceway.core.record import Record
-from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL
+from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.orbit import steady_orbit
 from raceway.core.ring.ring import Evaluation, Ring
 from raceway.core.ring.system import System, surrogate
@@ -280,8 +280,7 @@ def _first_reach(problem: Problem, basis: Basis, rigid: System, guess: np.ndarra
         now = still.evaluate(q, ball=ball[:, : still.ball_columns], t=t)
         centre = still.centre_vectors(q, t)[0]
         z = still.ball_count
-        centres = now.ball[:, :2] if rigid.table[:, CENTRIFUGAL].any() else 0.5 * centre
-        for race, vector in enumerate((centre - centres, centres)):
+        for race, vector in enumerate((centre - now.ball[:, :2], now.ball[:, :2])):
             angles[race].append(np.arctan2(vector[:, 0], vector[:, 1]))
             loads[race].append(now.contact_force[race * z : (race + 1) * z])
     free = basis.geometry.contact_angle

@@ -361,8 +361,6 @@ class PatchSystem(SteppedRing):
     def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
         """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
         q_part, ball, _ = attrs.evolve(self.surrogate, load=self.load / parts).solve_equilibrium(q)
-        if not self.table[:, layout.CENTRIFUGAL].any():
-            ball = np.zeros_like(ball)  # weightless balls of rigid bodies have no place of their own
         total = 0
         for part in range(1, parts + 1):
             task = partial(self._newton, q_part, ball, self.load * (part / parts), tolerance)

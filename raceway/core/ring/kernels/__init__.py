@@ -19,8 +19,7 @@ Every kernel has the signature ``raceway.core.signatures.SYSTEM``, whose records
 and returns 0, or 1 when the balls did not find their equilibrium.  Damping and tilt stiffness of the shaft, masses and
 outer loads are linear and belong to ``raceway.core.ring.system``.  Z counts the balls of all rows.
 
-rigid_weightless   balls without mass: the two races in series
-rigid_inertial     balls with centrifugal force: two unknowns each, a convex potential; with gyroscopic moments or friction: none
+rigid_inertial     rigid balls: two unknowns each, a convex potential; with gyroscopic moments or friction: none
 rolling            moments and friction of four balls, in lanes
 structural         each of these on elastic rings and balls: contacts and structural compliances in series
 between            balls that act on each other through elastic rings

@@ -1,11 +1,12 @@
-"""Rigid rings and balls with centrifugal force: each ball centre finds its place in its meridian plane.
+"""Rigid rings and balls, with or without centrifugal force: each ball centre finds its place in its meridian plane.
 
 With n = (sin a, cos a) the direction of a contact at its angle a and t = (cos a, -sin a), the inner race gives a ball
 g_i = f_i n_i + h_i t_i and the outer one takes g_o = f_o n_o + h_o t_o; g_i - g_o + F_c = 0.  h = tau - T: T comes from the gyroscopic
 moment, tau from friction; both put the couple -r h on the section of the inner ring (of friction -r k_t u, which belongs to the stored
 energy).  Without h, of balls without columns of slips, that is the least of a convex potential; moments and sliding have none, and tangents
 are not symmetric.  A damped Newton iteration finds the place p for all balls at once, four in the lanes of one step.  The ball's own
-acceleration in its meridian plane is left out: its slowest mode, along the groove, lies at some kHz.
+acceleration in its meridian plane is left out: its slowest mode, along the groove, lies at some kHz.  Without any of these forces the
+place lies on the line of the groove centres, where the races are in series; a ball that carries nothing lies midway.
 """
 
 import numpy as np
