@@ -48,8 +48,6 @@ from .points.follow import follow as follow
 from .points.function import Function as Function
 from .points.function import PointStatus as PointStatus
 from .points.function import function as function
-from .points.law import LawCurves as LawCurves
-from .points.law import law as law
 from .points.sensitivities import Sensitivities as Sensitivities
 from .points.sensitivities import sensitivities as sensitivities
 from .points.sweep import sweep as sweep
@@ -63,6 +61,7 @@ from raceway_fmu.export import FMU as FMU
 from raceway_measure.fit.fitted import Fitted as Fitted
 from raceway_measure.fit.identify import Identified as Identified
 from raceway_catalogue.inferred import Inferred as Inferred
+from raceway_checks.law import LawCurves as LawCurves
 from raceway_checks.precision.study import Precision as Precision
 from raceway_rotor.export import RossTable as RossTable
 from raceway_view.view import View as View
@@ -74,5 +73,6 @@ from raceway_rotor.export import export_ross as export_ross
 from raceway_measure.fit.fit import fit as fit
 from raceway_measure.fit.identify import identify as identify
 from raceway_catalogue.infer import infer as infer
+from raceway_checks.law import law as law
 from raceway_checks.precision.study import precision as precision
 from raceway_view.view import view as view

@@ -63,6 +63,7 @@ from .core.ring.ring import Increment as Increment
 from .core.ring.ring import Ring as Ring
 from .core.ring.energy import energy_balance as energy_balance
 from .core.ring.kernels.impact import impact_system as impact_system
+from .core.ring.kernels.impact import single_contact as single_contact
 from .core.ring.kernels.layout import CAGE as CAGE
 from .core.ring.kernels.layout import SCALARS as SCALARS
 from .core.ring.orbit import at_rest as at_rest
@@ -167,6 +168,7 @@ from .pipeline.equilibrium import solve_equilibrium as solve_equilibrium
 from .pipeline.front import radial_note as radial_note
 from .pipeline.first_order import definitions as definitions
 from .pipeline.first_order import resolved as resolved
+from .pipeline.result import damping_origin as damping_origin
 from .pipeline.run import run as run
 from .pipeline.run_parts import quantity_rows as quantity_rows
 from .pipeline.run_screen import screen as screen

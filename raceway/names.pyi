@@ -46,8 +46,6 @@ from .points.follow import follow as follow
 from .points.function import Function as Function
 from .points.function import PointStatus as PointStatus
 from .points.function import function as function
-from .points.law import LawCurves as LawCurves
-from .points.law import law as law
 from .points.sensitivities import Sensitivities as Sensitivities
 from .points.sensitivities import sensitivities as sensitivities
 from .points.sweep import sweep as sweep

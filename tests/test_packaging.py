@@ -41,8 +41,9 @@ def test_what_is_in_a_package_that_is_missing_is_told():
         (["export", "--fmu", "x.toml"], "`raceway export --fmu` is in raceway-fmu, which RACEWAY_DISABLE leaves out"),
         (["plan", "examples/minimal.toml", "--set", "mesh.kind=gmsh"], "mesher 'gmsh' is in raceway-meshing, which"),
         (["study", "rig", "x.toml"], "no command 'rig' (in raceway-measure, which RACEWAY_DISABLE leaves out"),
+        (["dev", "law", "hertz"], "no command 'law' (in raceway-checks, which RACEWAY_DISABLE leaves out"),
     ]
-    found = several([words for words, _ in rows], RACEWAY_DISABLE="measure,fmu,meshing")
+    found = several([words for words, _ in rows], RACEWAY_DISABLE="measure,fmu,meshing,checks")
     for (_, told), (code, _, errors) in zip(rows, found, strict=True):
         assert code == 2 and told in errors
 

@@ -121,21 +121,6 @@ ANSWERS: tuple[Command | Later, ...] = (
 DEVELOPERS = (
     Later("new-plugin", "raceway.cli.plugins:new_plugin_command", "Write a package for a new plug-in."),
     Later("check-plugin", "raceway.cli.plugins:check_plugin", "Test a plug-in against its contract."),
-    Command(
-        "law",
-        "raceway.points.law:law",
-        "Force, stiffness, damping and energy per cycle of a contact law.",
-        "raceway dev law hertz --set contact.damping=300\n"
-        "raceway dev law penalty --out raceway-out/penalty\n"
-        "raceway dev law film --set contact.viscosity=0.03 \\\n"
-        "    --set kinematics.spin_speed_rpm=10000",
-        {
-            "name": Option(positional=True),
-            "race": Option(choices=("inner", "outer")),
-            **Option.metavars(ball="NUMBER", amplitude="PART", frequency="HZ"),
-        },
-        folder=None,
-    ),
     Later("schema", "raceway.cli.plugins:schema", "JSON schema of a scene."),
     Later("cache", "raceway.cli.plugins:cache", "List or clear the caches."),
     Later("plugins", "raceway.cli.plugins:plugins", "List installed plug-ins and their options."),

@@ -19,12 +19,22 @@ from raceway.framework.packages import missing_package, named
 
 
 class _CommandsByName(Commands):
-    """Commands of a table; only the one that is asked for is imported, none for ``--help``."""
+    """Commands of a table and of packages; only the one that is asked for is imported, none for ``--help``."""
 
-    sections: ClassVar[dict[str, tuple[Command | Later, ...]]] = SECTIONS
+    sections: ClassVar[dict[str, tuple[Command | Later, ...]]]
+
+    def heading(self, word: str) -> str:
+        """Of this group's help, under which a package's commands stand, by its word for them; "" where another group has them."""
+        raise NotImplementedError
 
     def _sections(self) -> dict[str, tuple[Command | Later, ...]]:
-        return self.sections
+        from raceway.framework.registry import default_registry
+
+        sections = dict(self.sections)
+        for word, commands in default_registry().mapping("raceway_commands").items():
+            if heading := self.heading(word):
+                sections[heading] = (*sections.get(heading, ()), *sorted(commands, key=lambda about: about.name))
+        return sections
 
     def _table(self) -> dict[str, Command | Later]:
         return {about.name: about for commands in self._sections().values() for about in commands}
@@ -55,8 +65,15 @@ class _CommandsByName(Commands):
         return super().resolve_command(ctx, args)
 
     def _lines(self) -> dict[str, list[tuple[str, str]]]:
-        """Heading -> name and summary of each command, for the help."""
-        return {heading: [(about.name, about.summary) for about in own] for heading, own in self.sections.items()}
+        """Heading -> name and summary of each command, for the help; those of packages as these list them: none is imported."""
+        lines = {heading: [(about.name, about.summary) for about in own] for heading, own in self.sections.items()}
+        for word, name, summary in sorted(listed_commands()):
+            if heading := self.heading(word):
+                lines.setdefault(heading, []).append((name, summary))
+        return lines
+
+    def elsewhere(self, word: str) -> str:
+        return missing_package(word, "commands")
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         for heading, commands in self._lines().items():
@@ -67,34 +84,26 @@ class _CommandsByName(Commands):
 class _AllCommands(_CommandsByName):
     """``raceway``."""
 
-    def _sections(self) -> dict[str, tuple[Command | Later, ...]]:
-        from raceway.framework.registry import default_registry
+    sections: ClassVar[dict[str, tuple[Command | Later, ...]]] = SECTIONS
 
-        further = default_registry().mapping("raceway_commands")
-        by_name = {heading: sorted(commands, key=lambda about: about.name) for heading, commands in further.items()}
-        return {head: (*self.sections.get(head, ()), *by_name.get(head, ())) for head in {**self.sections, **by_name}}
-
-    def _lines(self) -> dict[str, list[tuple[str, str]]]:
-        """With those of packages, as these list them: none is imported."""
-        lines = super()._lines()
-        for heading, name, summary in sorted(listed_commands()):
-            lines.setdefault(heading, []).append((name, summary))
-        return lines
+    def heading(self, word: str) -> str:
+        return "" if word == "dev" else word
 
     def elsewhere(self, word: str) -> str:
-        if missing := missing_package(word, "commands"):
-            return missing
         commands = [about for about in self._table().values() if isinstance(about, Command)]
         flags = {o.flag: f"{about.name} --{o.flag}" for about in commands for o in about.options.values() if o and o.flag}
         parts = {name.partition(" --")[2]: name for name in self._table() if " " in name}
-        full_name = (flags | parts | {about.name: f"dev {about.name}" for about in DEVELOPERS}).get(word)
-        return full_name and f"it is `raceway {full_name}`" or ""
+        full_name = (flags | parts | {name: f"dev {name}" for name in dev.list_commands(click.Context(dev))}).get(word)
+        return f"it is `raceway {full_name}`" if full_name else super().elsewhere(word)
 
 
 class _DeveloperCommands(_CommandsByName):
     """``raceway dev``."""
 
     sections: ClassVar[dict[str, tuple[Command | Later, ...]]] = {"Commands": DEVELOPERS}
+
+    def heading(self, word: str) -> str:
+        return "Commands" if word == "dev" else ""
 
 
 @click.group(cls=_DeveloperCommands, short_help="Plug-ins: templates, conformance, laws, schema, caches.")

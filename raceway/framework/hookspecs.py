@@ -79,7 +79,7 @@ def raceway_studies() -> Classes:  # type: ignore[empty-body]
 
 @hookspec
 def raceway_commands() -> dict[str, tuple[NamedCommand, ...]]:  # type: ignore[empty-body]
-    """Commands beside ``raceway run``, by their heading in ``raceway --help``."""
+    """Commands beside ``raceway run``, by their heading in ``raceway --help``; "dev": those of ``raceway dev``."""
 
 
 @hookspec

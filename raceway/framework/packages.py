@@ -32,10 +32,10 @@ def available(package: str) -> bool:
 
 
 def missing_package(word: str, part: str) -> str:
-    """Which of the packages has a word in a part, and how to get it; "" where none has."""
+    """Which of the packages that are not there has a word in a part, and how to get it; "" where none has."""
     from raceway.errors import extra
 
-    package = next((package for package, has in packages().items() if word in has[part]), "")
+    package = next((package for package, has in packages().items() if word in has[part] and not available(package)), "")
     if package and find_spec(package.replace("-", "_")):
         return f"in {package}, which RACEWAY_DISABLE leaves out"
     return package and f"in {package}: {extra(*packages()[package]['needs'], package)}"

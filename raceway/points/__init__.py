@@ -9,5 +9,4 @@ band        ``raceway.band``;  sensitivities: derivatives by every number of a s
 workload    points before any is computed: mistakes, plug-ins and files in them, size and cost
 function    ``raceway.function``: quantities as a function of arrays;  column_quantities: what it computes, with derivatives
 follow, parameter, branch, attractor    ``raceway.follow``: the branch of steady orbits over a continuous key
-law         ``raceway.law``: one contact of a bearing with any installed contact law, beside Hertz'
 """

@@ -1,4 +1,4 @@
-"""What this package adds to ``raceway``: error against run time, stability on stiff and extreme cases, published reference cases."""
+"""What this package adds to ``raceway``: error against run time, stiff and extreme cases, published reference cases, one contact alone."""
 
 from __future__ import annotations
 
@@ -43,10 +43,28 @@ def raceway_commands() -> dict[str, tuple[rw.Command, ...]]:
                 folder=None,
                 pictures=None,
             ),
-        )
+        ),
+        "dev": (
+            rw.Command(
+                "law",
+                "raceway_checks.law:law",
+                "Force, stiffness, damping and energy per cycle of a contact law.",
+                "raceway dev law hertz --set contact.damping=300\n"
+                "raceway dev law penalty --out raceway-out/penalty\n"
+                "raceway dev law film --set contact.viscosity=0.03 \\\n"
+                "    --set kinematics.spin_speed_rpm=10000",
+                {
+                    "name": rw.Option(positional=True),
+                    "race": rw.Option(choices=("inner", "outer")),
+                    **rw.Option.metavars(ball="NUMBER", amplitude="PART", frequency="HZ"),
+                },
+                folder=None,
+            ),
+        ),
     }
 
 
 @rw.hookimpl
 def raceway_names() -> dict[str, str]:
-    return dict.fromkeys(("Precision", "precision"), "raceway_checks.precision.study")
+    precision = dict.fromkeys(("Precision", "precision"), "raceway_checks.precision.study")
+    return precision | dict.fromkeys(("LawCurves", "law"), "raceway_checks.law")

@@ -15,23 +15,11 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 import attrs
 import numpy as np
 
-from raceway.answers.answer import Answer, Part
-from raceway.answers.table import Words, sections
-from raceway.bodies.model import build_model
-from raceway.core.ring.kernels.impact import single_contact
-from raceway.core.ring.ring import Increment
-from raceway.core.ring.system import System, compiled
-from raceway.errors import RacewayError, SceneError
-from raceway.framework.doors import PATHS, door
-from raceway.framework.options import at_least, positive
-from raceway.framework.registry import registry_with
-from raceway.framework.shown import Fact
-from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.pipeline.result import damping_origin
-from raceway.planning.resolve import resolve
-from raceway.scene.scene import Change, Scene, SceneSource, as_given
-from raceway.scene.tables import TIME_CONSTANTS
-from raceway.storage.tables import Tables
+from raceway import Answer, RacewayError, Scene, SceneError, at_least, build_model, door, positive
+from raceway.extend import (
+    PATHS, TIME_CONSTANTS, Change, Fact, Increment, Part, SceneSource, System, Tables, Words, as_given, compiled,
+    damping_origin, registry_with, resolve, sections, single_contact, solve_equilibrium,
+)  # fmt: skip
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,7 +36,6 @@ _SHARES = (0.25, 0.5, 1.0, 1.5, 2.0)
 SAMPLES, _PERIODS = 720, 4
 #: Of a mean of so many samples, over the largest force.
 _ROUNDING = 1e-13
-#: Colours of the picture.
 
 
 @attrs.frozen(eq=False)
@@ -169,7 +156,7 @@ class LawCurves(Answer):
 
     def draw(self) -> Figure:
         """Force, stiffness, damping and the cycle's loop."""
-        from raceway.answers.picture import Line, Plot, draw_panels
+        from raceway.extend import Line, Plot, draw_panels
 
         micro, contact, motion = 1e6 * self.approach, self.contact, self.cycle
         damped = motion.energy != 0.0 or bool(self.damping.any())
