@@ -45,7 +45,7 @@ def steps(count: int) -> tuple[float, Any, float]:
     """Time of a step [s], the last motion, and bytes of the device, of steps of the pressed bearing on the article's mesh."""
     from checks.explicit_step import ARTICLE, bearing, pressed
     from raceway import load_scene
-    from raceway.core import device
+    from raceway.core.fem.elastic import device
     from raceway.extend import Recorder, Schedule
 
     built, before, least = bearing(load_scene(ARTICLE)), device.free_bytes(), []
@@ -122,7 +122,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=ROOT / "raceway-out" / "device.json")
     arguments = parser.parse_args()
     os.environ["NUMBA_ENABLE_CUDASIM"] = "0"
-    from raceway.core import device
+    from raceway.core.fem.elastic import device
 
     reason = device.absent()
     passed = tests(simulated=bool(reason))

@@ -64,6 +64,12 @@ def extra(*names: str) -> str:
     return f"pip install {words} in a checkout of Raceway"
 
 
+def lacking(package: str, libraries: Sequence[str]) -> str:
+    """That an installed package lacks libraries of the system, and what to type for them on Debian."""
+    line = f"apt-get install -y --no-install-recommends {' '.join(libraries)}"
+    return f"{package} is installed but lacks system libraries; on Debian, as root: {line}"
+
+
 @attrs.frozen
 class Mistake:
     """One thing wrong in a scene: where, what stood there in the key's unit, the rule, and the way out.

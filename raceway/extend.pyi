@@ -21,6 +21,7 @@ from .contact_laws.penalty import square as square
 from .contact_laws.hertz import three_halves as three_halves
 from .core.threads import ThreadPool as ThreadPool
 from .core.threads import usable_cores as usable_cores
+from .core.jit import working_process_time as working_process_time
 from .core.recorder import Recorder as Recorder
 from .core.contact.geometry import BallBearing as BallBearing
 from .core.contact.damping import stored_energy as stored_energy
@@ -28,7 +29,7 @@ from .core.contact.hertz import axis_shear as axis_shear
 from .core.contact.hertz import axis_stresses as axis_stresses
 from .core.contact.hertz import contact_modulus as contact_modulus
 from .core.contact.hertz import ellipse as ellipse
-from .core.excitations import no_force as no_force
+from .core.ring.system import no_force as no_force
 from .core.fem.hexahedron.operator import HexOperator as HexOperator
 from .core.fem.hexahedron.rows import centre_stress as centre_stress
 from .core.fem.hexahedron.rows import largest_shear as largest_shear
@@ -48,12 +49,10 @@ from .core.fem.mesh.hex_mesh import growing as growing
 from .core.fem.mesh.quality import Prediction as Prediction
 from .core.fem.mesh.quality import refuse_bad_cells as refuse_bad_cells
 from .core.fem.mesh.quality import refuse_coarse as refuse_coarse
-from .core.fem.mesh.quality import refuse_doubled as refuse_doubled
 from .core.fem.mesh.quality import refuse_memory as refuse_memory
-from .core.fem.mesh.quality import summary as summary
 from .core.fem.mesh.quality import cell_quality as cell_quality
 from .core.fem.mesh.part_meshes import ring_shape as ring_shape
-from .core.ratings import BallRow as BallRow
+from .core.quantities.ratings import BallRow as BallRow
 from .core.record import Motion as Motion
 from .core.record import Record as Record
 from .core.record import Schedule as Schedule
@@ -81,6 +80,7 @@ from .core.fem.elastic.ring import standstill as standstill
 from .core.fem.elastic.stress import cells_near as cells_near
 from .errors import Status as Status
 from .errors import extra as extra
+from .errors import lacking as lacking
 from .framework.contracts import ContactLaw as ContactLaw
 from .framework.contracts import Excitation as Excitation
 from .framework.contracts import Format as Format
@@ -101,10 +101,10 @@ from .framework.duties import reach_of as reach_of
 from .framework.duties import renews as renews
 from .framework.options import Rule as Rule
 from .framework.options import nearest as nearest
-from .framework.registry import Entry as Entry
-from .framework.registry import Registry as Registry
-from .framework.registry import default_registry as default_registry
-from .framework.registry import registry_with as registry_with
+from .framework.loading.registry import Entry as Entry
+from .framework.loading.registry import Registry as Registry
+from .framework.loading.registry import default_registry as default_registry
+from .framework.loading.registry import registry_with as registry_with
 from .framework.shown import Fact as Fact
 from .framework.shown import Shown as Shown
 from .framework.shown import duration as duration
@@ -113,7 +113,7 @@ from .framework.shown import number as number
 from .framework.shown import number_within as number_within
 from .framework.shown import race_words as race_words
 from .framework.shown import tilt_words as tilt_words
-from .framework.sources import blamed as blamed
+from .framework.loading.sources import blamed as blamed
 from .answers.answer import Part as Part
 from .answers.answer import Interrupted as Interrupted
 from .answers.quantities import dry_damping_words as dry_damping_words
@@ -130,7 +130,6 @@ from .answers.picture import name_ends as name_ends
 from .answers.picture import new_figure as new_figure
 from .answers.picture import save_figure as save_figure
 from .answers.picture import wrapped as wrapped
-from .answers.progress import RemainingTime as RemainingTime
 from .answers.progress import ShowProgress as ShowProgress
 from .answers.progress import telling as telling
 from .answers.quantities import AMPLITUDE as AMPLITUDE
@@ -183,8 +182,6 @@ from .plugins.excitations.harmonic import HarmonicLoad as HarmonicLoad
 from .plugins.excitations.harmonic import harmonic_load as harmonic_load
 from .plugins.formats import labelled_dataset as labelled_dataset
 from .plugins.formats import picture as picture
-from .plugins.system_libraries import refuse_pictures as refuse_pictures
-from .plugins.system_libraries import remedy as remedy
 from .points.attractor import FAILED as FAILED
 from .points.attractor import Attractor as Attractor
 from .points.attractor import attractor_beside_run as attractor_beside_run
@@ -204,17 +201,14 @@ from .points.column_quantities import stated_columns as stated_columns
 from .points.dataset import DOF as DOF
 from .points.dataset import open_store as open_store
 from .points.effects import trend as trend
-from .points.engine import Clocks as Clocks
 from .points.engine import Item as Item
 from .points.engine import local as local
-from .points.engine import processor_time as processor_time
 from .points.engine import without_mesh as without_mesh
 from .points.engine import work_through as work_through
 from .points.selection import LIST as LIST
 from .points.selection import Selection as Selection
 from .points.selection import head as head
 from .points.selection import listed as listed
-from .points.selection import only_axes as only_axes
 from .points.selection import parse_at as parse_at
 from .points.selection import select as select
 from .points.store import Store as Store
@@ -249,7 +243,7 @@ from .scene.inputs import leaves as leaves
 from .scene.scene import plain_tables as plain_tables
 from .scene.inputs import read_toml as read_toml
 from .scene.inputs import tidy as tidy
-from .scene.schema import scene_schema as scene_schema
+from .cli.schema import scene_schema as scene_schema
 from .scene.structure import structure as structure
 from .scene.tables import TIME_CONSTANTS as TIME_CONSTANTS
 from .scene.tables import Identifying as Identifying
@@ -330,6 +324,4 @@ from .points.axes import Vary as Vary
 from .points.axes import axes_of as axes_of
 from .points.axes import refuse_mistakes as refuse_mistakes
 from .scene.inputs import parse_change as parse_change
-from .points.engine import peak_memory as peak_memory
-from .points.engine import reset_peak as reset_peak
 from .pipeline.content import Content as Content

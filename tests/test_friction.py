@@ -6,7 +6,7 @@ import pytest
 import raceway as rw
 from checks.validation.scenes import built_in
 from raceway import RacewayError
-from raceway.core.rolling_friction import measured_factors
+from raceway.core.quantities.rolling_friction import measured_factors
 from raceway.testing import run
 
 Friction, Sliding = built_in("quantity", "friction"), built_in("quantity", "sliding")

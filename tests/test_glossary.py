@@ -8,8 +8,8 @@ import pytest
 
 from checks.validation.command_line import ARTICLE
 from raceway import load_scene
+from raceway.cli.schema import keys
 from raceway.extend import Registry, run
-from raceway.scene.schema import keys
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 
 DOCS = Path(__file__).parents[1] / "docs"

@@ -269,7 +269,7 @@ class Deaf:
 def test_workers_do_not_hear_a_terminal_from_their_start(name):
     """In a process of its own: what clears up behind the first worker is started with it."""
     code = f"""
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.registry import default_registry
 from tests.test_interrupt import Deaf
 if __name__ == "__main__":
     executor = default_registry().find("executor", "{name}").plugin(workers=2)

@@ -420,17 +420,17 @@ def test_negative_indices_count_from_the_end() -> None:
 #: Two kernels, the second by a process that fails: how many are awaited before and after, counts, and what comes from the cache.
 BESIDE = """
 import json, sys
-from raceway.core import jit, second_process
+from raceway.core import jit, threads
 from raceway.core.ring.elimination import cholesky_solve, copy_matrix
-second_process.usable_cores = lambda: 2
+threads.usable_cores = lambda: 2
 rows = []
 for kernel in (cholesky_solve, copy_matrix):
     name = f"{kernel.py_func.__module__}:{kernel.py_func.__qualname__}"
-    second_process.compile_beside(name)
+    threads.compile_beside(name)
     rows.append([list(jit.awaited) == [name]])
     kernel.compile()
     rows[-1] += len(jit.awaited), jit.clock["compiled"], jit.clock["loaded"], sum(kernel.stats.cache_hits.values())
-    second_process.compile_beside.__wrapped__(name)
+    threads.compile_beside.__wrapped__(name)
     rows[-1].append(len(jit.awaited))
     sys.executable = "false"
 print(json.dumps(rows))

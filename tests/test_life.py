@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from raceway import run
-from raceway.core.ratings import (
+from raceway.core.quantities.ratings import (
     STEEL,
     equivalent_loads,
     equivalent_loads_of_turn,

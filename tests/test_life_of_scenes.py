@@ -10,7 +10,7 @@ import pytest
 import raceway as rw
 from checks.validation.scenes import built_in
 from raceway import SceneError
-from raceway.core.ratings import equivalent_loads, life_factor, reliability_factor, system_life
+from raceway.core.quantities.ratings import equivalent_loads, life_factor, reliability_factor, system_life
 from raceway.extend import open_store
 from raceway.points.dataset import write_csv
 from raceway.scene.lubricant import Lubricant

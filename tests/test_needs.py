@@ -4,13 +4,15 @@ import re
 from pathlib import Path
 
 import pytest
+from raceway_meshing import gmsh
+from raceway_view import system_libraries
 
 from checks.validation.command_line import EXAMPLES, python, raceway
 from checks.validation.system_libraries import NEEDS, install_line
-from raceway.plugins.system_libraries import DEBIAN
 from tests.hidden_libraries import hide
 
 ROOT = EXAMPLES.parent
+DEBIAN = {"gmsh": gmsh.DEBIAN, "pyvista": system_libraries.DEBIAN}
 FILE = "import pytest\n\n" + "\n\n".join(f'@pytest.mark.needs("{name}")\ndef test_{name}():\n    pass\n' for name in NEEDS)
 
 

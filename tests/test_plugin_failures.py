@@ -9,7 +9,7 @@ import pytest
 from checks.validation.command_line import install, law
 from raceway import PluginError
 from raceway.extend import Registry
-from raceway.framework.packages import packages
+from raceway.framework.loading.sources import packages
 from raceway.scene.reading import check_requirements
 from tests.fake_site import LAW, FakeSite
 

@@ -8,7 +8,7 @@ import pytest
 
 from checks.validation.scenes import built_in
 from raceway import FORCE, LAW, PluginError, build_model, jit, scene_from_dict
-from raceway.framework.probe import probe_excitation, probe_law
+from raceway.framework.loading.probe import probe_excitation, probe_law
 from raceway.testing import b7206c, run, solve_equilibrium
 from tests import broken_laws
 

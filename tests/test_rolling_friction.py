@@ -7,8 +7,8 @@ from scipy.optimize import minimize_scalar
 from scipy.special import ellipe
 
 from checks.validation import rolling_friction as published
-from raceway.core.contact.losses import exponential, logarithm, mean_slip
-from raceway.core.rolling_friction import MEASURED, losses, spin_shape
+from raceway.core.quantities.losses import exponential, logarithm, mean_slip
+from raceway.core.quantities.rolling_friction import MEASURED, losses, spin_shape
 
 
 @pytest.mark.parametrize("load", [50.0, 500.0])

@@ -63,7 +63,7 @@ def test_what_could_not_be_loaded_is_named_below_the_list(monkeypatch):
     registry = Registry(third_party=False)
 
     registry.add(Broken(), "raceway-broken")
-    monkeypatch.setattr("raceway.framework.registry.default_registry", lambda: registry)
+    monkeypatch.setattr("raceway.framework.loading.registry.default_registry", lambda: registry)
     shown = " ".join(invoke("study", "--help").stdout.split())
     assert "article" in shown and "not loaded: plug-in `raceway-broken`: `raceway_studies` raises" in shown
     with pytest.raises(PluginError, match="no study named 'mine'"):

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
-from raceway.core.thermal import (
+from raceway.core.quantities.thermal import (
     LINKS,
     NODES,
     STEEL_CONDUCTIVITY,

@@ -99,7 +99,7 @@ print(json.dumps(found))
 BLOCKED = """
 import json
 from raceway import load_scene, SceneError
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.registry import default_registry
 try:
     load_scene("third_party_law/scene.toml")
     told = ""

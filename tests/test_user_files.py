@@ -18,8 +18,8 @@ from checks.validation.cubes import block
 from checks.validation.scenes import built_in
 from raceway import MeshError, RacewayError, SceneError, scene_from_dict
 from raceway.extend import memory_for, read_numbers, size_words
-from raceway.framework import sources as plugin_sources
-from raceway.framework.sources import import_file
+from raceway.framework.loading import sources as plugin_sources
+from raceway.framework.loading.sources import import_file
 from raceway.points import axes as design
 from raceway.points.axes import design_file
 from raceway.storage import number_table

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from raceway.core import wheel_kernels
 {before}
-from raceway.core.excitations import no_force
+from raceway.core.ring.system import no_force
 from raceway.core.jit import clock
 out = np.ones(5)
 no_force(0.0, np.zeros(0), out)

@@ -21,9 +21,9 @@ from typing import Any
 import attrs
 
 from checks.validation.command_line import invoke, raceway
+from raceway.cli.schema import keys
 from raceway.extend import Registry
-from raceway.framework.packages import named
-from raceway.scene.schema import keys
+from raceway.framework.loading.sources import named
 from raceway.scene.structure import table_of_list
 from raceway.scene.tables import TABLES
 

@@ -64,7 +64,7 @@ def static(deviation: float | None) -> list[Verified]:
 def study(found: Curves) -> Article:
     """A whole study around invented curves."""
     compared = tuple(
-        driver._Trend(*given, (first, *ratios), (first, *ratios)) for given, (first, ratios) in driver.TRENDS.items()
+        driver.Trend(*given, (first, *ratios), (first, *ratios)) for given, (first, ratios) in driver.TRENDS.items()
     )
     scan = {
         load: [row(speed, load, 1e8 * (1.0 + (0.1 - 0.02 * n) * (speed > 12000.0))) for n in range(len(driver.STIFFNESSES))

@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 
 from raceway.core.columns import Number
-from raceway.core.rolling_friction import BallContacts, Lubrication, losses, spin_shape
+from raceway.core.quantities.rolling_friction import BallContacts, Lubrication, losses, spin_shape
 from raceway.extend import ellipse
 
 _SIDES = np.array([[-1.0], [1.0]])
@@ -134,7 +134,7 @@ def drag_force(contacts: LoadedContacts, oil: Lubrication, cage: np.ndarray) -> 
 def torques(
     contacts: LoadedContacts, oil: Lubrication, speed: np.ndarray, outer_race: bool = False
 ) -> dict[str, np.ndarray]:
-    """By the names of ``raceway.core.rolling_friction.Losses``, of each contact (n, 2, Z) and ball (n, Z), at speeds (n,) above 0."""
+    """By the names of ``raceway.core.quantities.rolling_friction.Losses``, of each contact (n, 2, Z) and ball (n, Z), at speeds (n,) above 0."""
     rates, w, f = ball_rates(contacts, outer_race), speed[:, None, None], contacts.conformity
     q, a, diameter = contacts.load, contacts.semi_major, contacts.ball_diameter
     across = 2.0 * f * diameter / (2.0 * f + 1.0)

@@ -18,7 +18,6 @@ from pathlib import Path
 import pytest
 
 from raceway import RacewayError
-from raceway.extend import refuse_pictures
 
 
 def _programs(*names: str) -> str:
@@ -38,6 +37,8 @@ def _gmsh() -> str:
 
 def _pictures() -> str:
     """Why VTK cannot draw."""
+    from raceway_view.system_libraries import refuse_pictures
+
     try:
         refuse_pictures()
     except RacewayError as fault:

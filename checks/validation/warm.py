@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 import raceway as rw
-from raceway.core import rolling_friction
+from raceway.core.quantities import rolling_friction
 from raceway.pipeline.warm import band_of_heat
 
 _LINKS = ("inner_balls", "outer_balls", "inner_oil", "balls_oil", "outer_oil", "inner_shaft", "outer_housing")

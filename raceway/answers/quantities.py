@@ -9,7 +9,7 @@ from typing import Any
 import attrs
 
 from raceway.errors import PluginError
-from raceway.framework.registry import Registry, default_registry
+from raceway.framework.loading.registry import Registry, default_registry
 from raceway.framework.shown import Fact, number, number_within
 
 #: Units that people read, with their factors.

@@ -12,7 +12,7 @@ from raceway.core.ring.ring import ChangingSpeed
 from raceway.core.signatures import FORCE
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.duties import force_params
-from raceway.framework.probe import plugin_kernel
+from raceway.framework.loading.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.scene.growth import RunningBearing
@@ -134,7 +134,7 @@ def linear_parts(problem: Problem, plan: ScenePlan) -> Tables:
 def excitation(problem: Problem) -> Tables:
     """The excitation's kernel and parameters."""
     if problem.excitation is None:
-        from raceway.core.excitations import no_force
+        from raceway.core.ring.system import no_force
 
         return {"force": no_force, "force_params": np.zeros(1)}
     return {

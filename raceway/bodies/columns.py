@@ -18,7 +18,6 @@ from raceway.bodies.rigid_bearing import contact_parts, law_of_contacts
 from raceway.bodies.running import ITERATIONS, LOAD_TOLERANCE, running_pairs
 from raceway.core.columns import at_rows, distinct, has_columns, largest, per_ball, some
 from raceway.core.contact.hertz import Ellipse
-from raceway.core.excitations import no_force
 from raceway.core.periodic.fourier import Turning
 from raceway.core.periodic.orbits import Orbits, orbits
 from raceway.core.periodic.turn import one_pitch
@@ -28,11 +27,11 @@ from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import OWN_OFFSET_INNER, OWN_OFFSET_OUTER, elastic_columns
 from raceway.core.ring.kernels.rigid_inertial import rigid_inertial, rigid_tangential
 from raceway.core.ring.states import LOOSE, Kernels, Points, States
-from raceway.core.ring.system import System
+from raceway.core.ring.system import System, no_force
 from raceway.core.signatures import FORCE, Linear
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import force_params, is_elementwise_force, law_params, reach_of, renews
-from raceway.framework.probe import plugin_kernel
+from raceway.framework.loading.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.scene.bearing import DIMENSIONS

@@ -16,8 +16,8 @@ from raceway.core.signatures import LAW
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.duties import law_params
 from raceway.framework.estimate import Estimate
-from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.probe import plugin_kernel, probe_excitation, probe_law
+from raceway.framework.loading.registry import default_registry
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.storage.tables import Tables

@@ -5,5 +5,6 @@ main       the group of all commands, and of studies;  console: messages and exi
 commands   their table;  command: one made from a public function
 interrupt  Ctrl-C, SIGTERM, SIGHUP, and standard streams that are closed or know ASCII only
 plan       raceway plan
+schema     JSON schema of a scene file
 sweep, plugins   commands that are more than a front: sweeps; for developers, with caches and a first scene
 """

@@ -37,11 +37,11 @@ from raceway.cli.frame import (
 )
 from raceway.cli.interrupt import answered
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
-from raceway.framework.packages import named
+from raceway.framework.loading.sources import named
 
 if TYPE_CHECKING:
     from raceway.answers.answer import Answer
-    from raceway.framework.registry import Registry
+    from raceway.framework.loading.registry import Registry
 
 Value = Any
 #: Types of options by annotation; of others, texts.
@@ -200,7 +200,7 @@ class Command(NamedTuple):
 def _perform(about: Command, front: Callable[..., Value], values: dict[str, Value]) -> int:
     """Read the scene, call the front, write and show its answer."""
     from raceway.answers.answer import Interrupted
-    from raceway.framework.registry import registry_with
+    from raceway.framework.loading.registry import registry_with
     from raceway.scene.scene import Scene
     from raceway.storage.files import slug, writable
 

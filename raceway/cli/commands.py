@@ -7,7 +7,7 @@ from typing import NamedTuple
 import click
 
 from raceway.cli.command import Command, Option
-from raceway.framework.packages import named
+from raceway.framework.loading.sources import named
 
 
 class Later(NamedTuple):

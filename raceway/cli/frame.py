@@ -20,7 +20,7 @@ from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
     from raceway.answers.progress import ProgressBar
-    from raceway.framework.registry import Registry
+    from raceway.framework.loading.registry import Registry
     from raceway.pipeline.result import Result
     from raceway.planning.plan import ScenePlan
     from raceway.scene.scene import Given, Scene
@@ -31,8 +31,8 @@ OF_KEYS = ("changes", "keys", "vary", "axes", "free", "at", "ranges", "tolerance
 
 def scene_keys(context: click.Context, option: click.Parameter, incomplete: str) -> list[str]:
     """Keys that begin so, or after "key=" the values that begin so."""
-    from raceway.framework.registry import default_registry
-    from raceway.scene.schema import scene_schema
+    from raceway.cli.schema import scene_schema
+    from raceway.framework.loading.registry import default_registry
 
     key, equals, value = incomplete.partition("=")
     # Path of each key -> words that it takes, of all plug-ins that have the key.
@@ -259,7 +259,7 @@ def listen(context: click.Context, _option: click.Parameter, verbose: bool) -> N
     """Begin to report, until the command ends."""
     if not verbose:
         return
-    from raceway.framework.registry import default_registry
+    from raceway.framework.loading.registry import default_registry
 
     handler, listener, manager = _Lines(), _Listener(), default_registry().manager
     before = LOGGER.level

@@ -14,8 +14,8 @@ from raceway import __version__
 from raceway.cli.command import Command
 from raceway.cli.commands import DEVELOPERS, SECTIONS, Later
 from raceway.cli.console import Commands
-from raceway.framework.installed import listed_commands
-from raceway.framework.packages import missing_package, named
+from raceway.framework.loading import listed_commands
+from raceway.framework.loading.sources import missing_package, named
 
 
 class _CommandsByName(Commands):
@@ -28,7 +28,7 @@ class _CommandsByName(Commands):
         raise NotImplementedError
 
     def _sections(self) -> dict[str, tuple[Command | Later, ...]]:
-        from raceway.framework.registry import default_registry
+        from raceway.framework.loading.registry import default_registry
 
         sections = dict(self.sections)
         for word, commands in default_registry().mapping("raceway_commands").items():
@@ -123,7 +123,7 @@ class Studies(Commands):
         return missing_package(f"study:{word}", "plugins")
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        from raceway.framework.registry import default_registry
+        from raceway.framework.loading.registry import default_registry
 
         return default_registry().names("study")
 
@@ -131,8 +131,8 @@ class Studies(Commands):
         if cmd_name not in self.list_commands(ctx):
             return None
         from raceway.errors import PluginError, RacewayError
-        from raceway.framework.registry import default_registry
-        from raceway.framework.sources import foreign_words
+        from raceway.framework.loading.registry import default_registry
+        from raceway.framework.loading.sources import foreign_words
 
         entry = default_registry().find("study", cmd_name)
         who = f"study '{cmd_name}' of {entry.distribution}"
@@ -148,7 +148,7 @@ class Studies(Commands):
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        from raceway.framework.registry import default_registry
+        from raceway.framework.loading.registry import default_registry
 
         registry = default_registry()
         entries = registry.of_kind("study")
@@ -161,7 +161,7 @@ class Studies(Commands):
 @click.group(cls=Studies, short_help="Whole studies that end in a page, and others' studies.")
 @click.option(
     "--plugin", multiple=True, type=click.Path(path_type=Path), metavar="FILE.py", is_eager=True, expose_value=False,
-    callback=lambda _context, _option, files: named("raceway.framework.registry:registry_with")(files),
+    callback=lambda _context, _option, files: named("raceway.framework.loading.registry:registry_with")(files),
     help="A one-off plug-in file with a study; repeat for more.",
 )  # fmt: skip
 def study() -> None:

@@ -25,8 +25,8 @@ from raceway.cli.console import print_json
 from raceway.cli.frame import FILE, common, faults, plugin_files, show, show_progress
 from raceway.errors import PluginError, RacewayError
 from raceway.framework.contracts import KINDS, plural
+from raceway.framework.loading.registry import Registry, default_registry, registry_with
 from raceway.framework.options import nearest
-from raceway.framework.registry import Registry, default_registry, registry_with
 from raceway.scene.catalogue import preset as known
 from raceway.scene.catalogue import preset_of
 from raceway.scene.reading import options_class
@@ -49,7 +49,7 @@ def plugins(plugins: tuple[Path, ...], as_json: bool) -> int:
       raceway dev plugins --json
       raceway dev plugins --plugin my_law.py
     """
-    from raceway.scene.schema import key_schema, keys
+    from raceway.cli.schema import key_schema, keys
 
     registry, rows = registry_with(plugins), list[Tables]()
     for entry in registry.of_kind(*KINDS):
@@ -94,7 +94,7 @@ def schema(as_json: bool) -> int:
     Example:
       raceway dev schema > scene.schema.json
     """
-    from raceway.scene.schema import scene_schema
+    from raceway.cli.schema import scene_schema
 
     del as_json  # it is JSON either way
     print_json(scene_schema(default_registry()))

@@ -20,7 +20,7 @@ from raceway.cli.frame import RESULTS, require_matplotlib
 from raceway.cli.interrupt import answered
 from raceway.errors import RacewayError, SceneError, extra
 from raceway.framework.contracts import Executor
-from raceway.framework.registry import registry_with
+from raceway.framework.loading.registry import registry_with
 from raceway.framework.shown import Fact
 from raceway.points.axes import Design, design_file, grid, point_words, sampled, shown
 from raceway.points.dataset import NOT_CHECKED, TABLE, all_failed, blank, open_store, points_of, write_csv, write_netcdf

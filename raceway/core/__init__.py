@@ -1,20 +1,16 @@
 """Numerics only: arrays in, arrays out.
 
-jit            the one decorator for compiled kernels;  compiler: what numba does otherwise for them;  wheel_kernels: those that a wheel brings;  deferred: those beside light classes;  second_process: compiles some meanwhile
+jit            the one decorator for compiled kernels;  compiler: what numba does otherwise for them;  wheel_kernels: those that a wheel brings;  deferred: those beside light classes
 columns        numbers that may be columns, one of each operating point; interpolation of smooth functions between few
 lanes          one number of each of four balls at a time
 signatures     types of the kernels that are passed as function pointers
-thermal        steady temperatures of a network of six nodes, and its conductances
-device         CUDA devices, and functions for their kernels of the sources of the CPU's
-threads        threads that share work, and how many there are
+threads        threads that share work, and how many there are; a second process that compiles kernels meanwhile
 contact        Hertz contact, half-space, elastic sphere, geometry of the bearing, contact damping
-ratings        load ratings of ISO 281 and ISO 76, and the contact loads that they stand for; reference life of ISO/TS 16281, modified life
-rolling_friction  losses of balls in contacts and mixture: inlet, hysteresis, slip, drag
-excitations    the compiled force of nothing
 record         duties of a system that is stepped from Python; schedule, start and record of a time integration;  recorder: takes steps into it
 ring           the compiled bearing: five coordinates of the inner ring, balls condensed out
 time           one-step, explicit and static methods: compiled loops and loops in Python
 periodic       steady motions by collocation and continuation, with their Floquet multipliers
+quantities     lives, friction, temperatures
 signals        dynamic stiffness from the spectral lines of a motion
 fem            the shared finite elements: meshes, hexahedra, condensation, elastic bodies in full
 """

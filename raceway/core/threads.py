@@ -1,8 +1,17 @@
-"""Threads that share numbered jobs; kernels let each other run (``jit(releases=True)``), so plain Python threads do."""
+"""What shares the processor's cores: threads with numbered jobs, and a second process that compiles kernels beside the first.
 
+Kernels let each other run (``jit(releases=True)``), so plain Python threads do.  Of the second process the first run of a clone waits half
+as long.
+"""
+
+import atexit
+import multiprocessing
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
+from functools import cache
 from itertools import pairwise
 from typing import TypeVar
 
@@ -88,3 +97,35 @@ class ThreadPool:
 
         self.do(len(shares), share_job)
         return results
+
+
+@cache
+def compile_beside(*names: str) -> None:
+    """Start a process that compiles these kernels, "module:name", in turn, unless they are there or no processor is left for it.
+
+    Who needs one of them meanwhile waits for it; should the process end early, it compiles the kernel itself.
+    """
+    from raceway.core import jit, wheel_kernels
+
+    folder = jit.kernel_folder()
+    busy = usable_cores() < 2 or multiprocessing.parent_process() is not None or wheel_kernels.writing
+    if busy or folder is None or folder.unwritable or wheel_kernels.folder() is not None:
+        return
+    missing = [name for name in names if name not in jit.awaited and not jit.kernel_named(*name.split(":")).kept]
+    if not missing:
+        return
+    command = [sys.executable, "-P", "-m", __name__, *missing]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True)
+    atexit.register(process.kill)
+    assert process.stdout is not None
+    finished = map(str.strip, process.stdout)
+    jit.awaited.update(dict.fromkeys(missing, finished))
+
+
+if __name__ == "__main__":
+    from raceway.core import jit
+
+    for name in sys.argv[1:]:
+        jit.kernel_named(*name.split(":")).compile()
+        sys.stdout.write(f"{name}\n")
+        sys.stdout.flush()

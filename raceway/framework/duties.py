@@ -21,8 +21,8 @@ from raceway.framework.contracts import (
     Traits,
     said,
 )
+from raceway.framework.loading.sources import blamed
 from raceway.framework.shown import Fact
-from raceway.framework.sources import blamed
 from raceway.storage.tables import ReadTables, Tables
 
 T = TypeVar("T")

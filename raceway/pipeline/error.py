@@ -32,7 +32,7 @@ from raceway.core.ring.ring import TOLERANCE
 from raceway.core.ring.system import compiled, surrogate
 from raceway.errors import BeyondPlanError, ConvergenceError
 from raceway.framework.estimate import Estimate, Note
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.registry import default_registry
 from raceway.pipeline.content import ErrorTable
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.identified import Identified

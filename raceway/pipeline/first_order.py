@@ -24,7 +24,7 @@ from raceway.answers.quantities import (
 )
 from raceway.bodies.model import Equilibrium, Model, tilts_follow
 from raceway.errors import ConvergenceError, SceneError
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.registry import default_registry
 from raceway.framework.shown import Fact, race_words, tilt_words
 from raceway.pipeline.equilibrium import race_of
 from raceway.pipeline.gradient import Gradient, Gradients, NoDerivative, StaticGradient, SteadyOrbit

@@ -12,7 +12,7 @@ from raceway.answers.progress import ShowProgress, telling
 from raceway.answers.quantities import KYY, KYY_TILTS_FOLLOW
 from raceway.errors import RacewayError
 from raceway.framework.doors import DURATION, PATH, PATHS, TEXTS, door
-from raceway.framework.registry import default_registry, registry_with
+from raceway.framework.loading.registry import default_registry, registry_with
 from raceway.pipeline import PATIENCE
 from raceway.storage.files import writable
 

@@ -22,10 +22,10 @@ from raceway.framework.contracts import Format
 from raceway.framework.doors import PATH, door
 from raceway.framework.duties import of_results
 from raceway.framework.estimate import Note, few_words
+from raceway.framework.loading.registry import Entry, Registry
+from raceway.framework.loading.sources import blamed
 from raceway.framework.options import nearest
-from raceway.framework.registry import Entry, Registry
 from raceway.framework.shown import Fact, in_micro, largest_facts, number, tilt_words
-from raceway.framework.sources import blamed
 from raceway.pipeline.content import AtRest, Content, ErrorTable
 from raceway.pipeline.equilibrium import equilibrium_table, largest_contacts, motion_table, pressures
 from raceway.pipeline.error import Errors

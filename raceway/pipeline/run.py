@@ -22,11 +22,11 @@ from raceway.core.jit import clock, take_compile_seconds, working_clock, working
 from raceway.core.record import Stay, drift, friction_lost, largest_share
 from raceway.core.ring.kernels.layout import GYROSCOPIC
 from raceway.core.ring.system import compiled
-from raceway.core.second_process import compile_beside
 from raceway.core.signals import Identification, Line, lines
+from raceway.core.threads import compile_beside
 from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, RacewayError, SceneError
 from raceway.framework.estimate import Estimate
-from raceway.framework.registry import Registry, default_registry
+from raceway.framework.loading.registry import Registry, default_registry
 from raceway.pipeline import PATIENCE
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.error import Errors, body_errors, error_warnings, errors_of, misfit_warnings

@@ -7,7 +7,7 @@ from raceway.answers.quantities import HEADLINE, K_ERROR, KXX, KYY, KYY_TILTS_FO
 from raceway.answers.table import Row, number, tilt_words
 from raceway.errors import PluginError
 from raceway.framework.duties import quantity_screen
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.registry import default_registry
 from raceway.framework.shown import in_micro
 from raceway.pipeline.content import AtRest, Content
 from raceway.pipeline.uncertainty import interval, stated

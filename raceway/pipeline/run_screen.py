@@ -7,7 +7,7 @@ from raceway.answers import quantities as q
 from raceway.answers.answer import Part
 from raceway.answers.table import WIDTH, Row, Words, height, in_a_line, lines_of, micro, rooms, sections, tilt_words
 from raceway.framework.duties import has_rollers
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.registry import default_registry
 from raceway.pipeline import run_parts
 from raceway.pipeline.content import Content
 from raceway.pipeline.run_parts import bodies_rows, cost_row, equilibrium_rows, error_rows, orbit_rows, stability_rows

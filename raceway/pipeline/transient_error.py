@@ -35,7 +35,7 @@ from raceway.core.signals import stiffness, synchronous_phasor
 from raceway.errors import ConvergenceError, StabilityError
 from raceway.framework.duties import ramp_turns
 from raceway.framework.estimate import Estimate, Note
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.registry import default_registry
 from raceway.pipeline.identified import Identified
 from raceway.pipeline.simulate import OnProgress, Simulation, last_turn, settles_elsewhere, simulate, steady_record
 from raceway.plugins.identifiers import whole_turns

@@ -2,7 +2,7 @@
 
 The temperatures x of inner rings, balls and outer rings are where those that follow from them are the same, G(x) = x: the bearing is
 solved for with x in [mounting] and, as the oil in a contact's inlet is as warm as its surfaces, the mean over all contacts in the lubricant;
-friction gives the heat, the network of ``raceway.core.thermal`` its temperatures.
+friction gives the heat, the network of ``raceway.core.quantities.thermal`` its temperatures.
 n points are solved for at once as columns: Broyden's method (good update) from cold, then, for points where it finds nothing, half steps
 of x <- G(x), which follow the warming up.  Where these run away there is no steady temperature: more heat is made the
 warmer the bearing is than can leave it.
@@ -20,9 +20,9 @@ from raceway.bodies.builder import Builder
 from raceway.bodies.columns import ColumnBearing, solved_columns
 from raceway.bodies.model import model_of
 from raceway.bodies.mounting import preload_table
-from raceway.core.thermal import NODES
+from raceway.core.quantities.thermal import NODES
 from raceway.errors import ConvergenceError, RacewayError, SceneError
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.registry import default_registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.quantities import plugins_stating, solved_point, stated_numbers
 from raceway.planning.columns import column_problem, why_not

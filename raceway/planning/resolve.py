@@ -14,7 +14,7 @@ from raceway.core.contact.geometry import axial_balance
 from raceway.errors import SceneError
 from raceway.framework.contracts import Traits
 from raceway.framework.duties import BodyKind, changes_speed, duration_s, has_phase, ramp_turns, speed_rpm, steady_form
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.registry import default_registry
 from raceway.framework.rules import Rule, speaking
 from raceway.scene.bearing import Bearing
 from raceway.scene.growth import RunningBearing, ring_inertia

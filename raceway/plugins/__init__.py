@@ -7,7 +7,6 @@ quantities   lives, friction, temperatures, films, ball-pass frequencies
 meshers      hexahedra of the bodies
 executors    processes and clusters for many points, and how workers end
 formats      pictures and labelled arrays of one run
-system_libraries   system libraries that packages for meshes and pictures need
 """
 
 from raceway.framework.hookspecs import hookimpl

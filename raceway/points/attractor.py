@@ -23,7 +23,7 @@ from raceway.core.ring.kernels.layout import DAMPING
 from raceway.core.ring.ring import Ring
 from raceway.core.time.schemes import integrate
 from raceway.errors import ConvergenceError, RacewayError
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.registry import default_registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.result import Result
 from raceway.scene.scene import Scene

@@ -14,7 +14,7 @@ import attrs
 import numpy as np
 
 from raceway.errors import Mistake, PluginError, SceneError
-from raceway.framework.registry import Registry
+from raceway.framework.loading.registry import Registry
 from raceway.scene.inputs import parse_value, read_toml, text_of, tidy, value_at, with_value
 from raceway.scene.reading import numbers_only, options_class
 from raceway.scene.scene import scene_from_dict

@@ -17,8 +17,8 @@ from raceway.answers.table import Words
 from raceway.bodies.model import build_model
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.doors import KEY_VALUES, PATH, PATHS, TEXTS, door
+from raceway.framework.loading.registry import Registry, default_registry
 from raceway.framework.options import at_least
-from raceway.framework.registry import Registry, default_registry
 from raceway.framework.shown import Fact, number
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.pipeline.first_order import definitions, described, resolved, values

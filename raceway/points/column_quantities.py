@@ -17,7 +17,7 @@ from raceway.core.ring.ring import COORDINATES
 from raceway.core.ring.states import States
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, turn_samples
-from raceway.framework.registry import Registry, default_registry
+from raceway.framework.loading.registry import Registry, default_registry
 from raceway.pipeline.plausible import column_bounds
 from raceway.pipeline.result import Result
 from raceway.planning.columns import why_not

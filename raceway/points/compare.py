@@ -20,7 +20,7 @@ from raceway.answers.quantities import ENDS, K_ERROR, C, Quantity, Z, named
 from raceway.answers.table import Words
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import KEY_VALUES, PATH, PATHS, door, member
-from raceway.framework.registry import Registry, registry_with
+from raceway.framework.loading.registry import Registry, registry_with
 from raceway.framework.shown import Fact, number_within
 from raceway.pipeline.run import run
 from raceway.pipeline.uncertainty import interval, of_ratio

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from raceway.answers.quantities import COLUMNS, ERROR_BODIES, Quantity, named
 from raceway.errors import ConvergenceError, RacewayError, extra
-from raceway.framework.registry import Registry, default_registry
+from raceway.framework.loading.registry import Registry, default_registry
 from raceway.pipeline.result import Result
 from raceway.plugins.formats import labelled_dataset
 from raceway.points.axes import Design, is_number

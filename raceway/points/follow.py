@@ -20,8 +20,8 @@ from raceway.core.periodic.special_points import DOUBLING, located, special_poin
 from raceway.core.periodic.steady import find
 from raceway.errors import ConvergenceError
 from raceway.framework.doors import PATH, PATHS, door
+from raceway.framework.loading.registry import registry_with
 from raceway.framework.options import at_least, positive
-from raceway.framework.registry import registry_with
 from raceway.points.attractor import attractor_beside
 from raceway.points.branch import OPENS, PEAK, Followed, Label, Orbit, growth_of_swing, open_contacts, orbit_of, resonance
 from raceway.points.parameter import Parameter, parameter_of

@@ -18,13 +18,12 @@ from numpy.typing import ArrayLike
 
 from raceway.answers.quantities import KNOWN, Quantity, plugin_quantities
 from raceway.bodies.builder import Builder
-from raceway.core.second_process import compile_beside
-from raceway.core.threads import ThreadPool, usable_cores
+from raceway.core.threads import ThreadPool, compile_beside, usable_cores
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import PATHS, TEXT, TEXTS, Reader, door
 from raceway.framework.duties import is_foundation, why_no_quantities
+from raceway.framework.loading.registry import default_registry
 from raceway.framework.options import at_least, nearest
-from raceway.framework.registry import default_registry
 from raceway.framework.shown import duration
 from raceway.pipeline.gradient import other_meshes, refuse_points
 from raceway.pipeline.run import run

@@ -19,7 +19,7 @@ from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import System, compiled
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.contracts import Excitation
-from raceway.framework.registry import Registry
+from raceway.framework.loading.registry import Registry
 from raceway.pipeline.equilibrium import solve_equilibrium
 from raceway.points.axes import numbers_at
 from raceway.scene.inputs import parse_value, with_value

@@ -176,24 +176,6 @@ def listed(values: Sequence[object]) -> str:
     return ", ".join(texts)
 
 
-def only_axes(selection: Selection, allowed: Sequence[str], purpose: str) -> None:
-    """Refuse axes that would have to be chosen first.
-
-    SceneError: Naming each axis, its values and what to type.
-    """
-    mistakes = [
-        Mistake(
-            key,
-            None,
-            f"has {len(values)} values ({listed(values)}), {purpose}: choose one with --at {key}={shown(values[0])}",
-        )
-        for key, values in selection.axes.items()
-        if key not in allowed
-    ]
-    if mistakes:
-        raise SceneError(mistakes)
-
-
 def _values(array: np.ndarray) -> list[Any]:
     """Different values as plain Python objects, numbers in rising order."""
     different = list(dict.fromkeys(np.atleast_1d(array).ravel().tolist()))

@@ -21,7 +21,7 @@ import attrs
 import numpy as np
 
 from raceway.errors import RacewayError
-from raceway.framework.registry import Registry
+from raceway.framework.loading.registry import Registry
 from raceway.scene.scene import Scene
 from raceway.storage.kernel_cache import source_key
 from raceway.storage.tables import ReadTables, Tables

@@ -21,8 +21,8 @@ from raceway.core.threads import usable_cores
 from raceway.errors import PluginError, RacewayError, SceneError
 from raceway.framework.contracts import Batch, Executor, Lost
 from raceway.framework.doors import PATH, PATHS, TEXTS, Reader, door, member, reader
+from raceway.framework.loading.registry import Registry, registry_with
 from raceway.framework.options import at_least
-from raceway.framework.registry import Registry, registry_with
 from raceway.framework.shown import duration
 from raceway.pipeline.simulate import OnProgress
 from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at

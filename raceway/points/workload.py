@@ -13,7 +13,7 @@ import numpy as np
 from raceway.answers.answer import Answer, Part
 from raceway.answers.table import Row, Words, sections
 from raceway.errors import Mistake, RacewayError, SceneError
-from raceway.framework.registry import Registry
+from raceway.framework.loading.registry import Registry
 from raceway.framework.shown import duration
 from raceway.planning.parts import START_S, slowness
 from raceway.planning.plan import column_time, make_plan

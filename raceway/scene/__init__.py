@@ -7,7 +7,6 @@ keys        numbers of a scene that can change a little
 reading     plain tables to those of a scene: presets, materials, plug-ins that it requires
 structure   plain tables to attrs objects, strictly, every mistake with its path
 units       numbers given as text with a unit
-schema      JSON schema of a scene file
 catalogue   bearing presets by name
 designation  makers' designations: angle, clearance, class, ceramic balls, what is ignored; clearances of ISO 5753-1; sets of rows of balls
 ratings     load ratings of the rows: by keys, as the catalogue prints them, or from geometry

@@ -12,7 +12,7 @@ from raceway.errors import Mistake
 from raceway.framework.options import at_least, between, nearest, option, positive, word_or
 
 if TYPE_CHECKING:
-    from raceway.core.rolling_friction import Lubrication
+    from raceway.core.quantities.rolling_friction import Lubrication
 
 if TYPE_CHECKING:
     import numpy as np
@@ -237,7 +237,7 @@ class Lubricant(Oil):
 
     def around_balls(self, oil_fraction: Number) -> Lubrication:
         """As friction sees it; ``oil_fraction`` : where the key says 'auto', broadcast to (n, 1, Z)."""
-        from raceway.core.rolling_friction import Lubrication
+        from raceway.core.quantities.rolling_friction import Lubrication
 
         coefficients = self.dynamic_viscosity, self.alpha, self.beta, self.conductivity, self.density
         fraction = oil_fraction if isinstance(self.oil_fraction, str) else self.oil_fraction

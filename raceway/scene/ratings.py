@@ -7,7 +7,7 @@ import attrs
 import numpy as np
 
 from raceway.core.columns import Number
-from raceway.core.ratings import STEEL, STEEPEST, BallRow
+from raceway.core.quantities.ratings import STEEL, STEEPEST, BallRow
 from raceway.scene.bearing import STEEL as STEEL_YOUNG
 from raceway.scene.bearing import Bearing
 from raceway.scene.catalogue import preset_of

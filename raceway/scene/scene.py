@@ -12,7 +12,7 @@ import attrs
 
 from raceway.errors import SceneError
 from raceway.framework.doors import PATH, TEXTS, door, reader
-from raceway.framework.registry import REGISTRY, Registry, default_registry, registry_with
+from raceway.framework.loading.registry import REGISTRY, Registry, default_registry, registry_with
 from raceway.framework.shown import Fact, Shown
 from raceway.scene.inputs import (
     is_text,

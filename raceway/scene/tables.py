@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 import attrs
 
+from raceway.framework.loading.registry import Registry
 from raceway.framework.options import at_least, between, finite, inside, length, one_of, option, positive, word_or
-from raceway.framework.registry import Registry
 from raceway.scene.bearing import Bearing, Material
 from raceway.scene.lubricant import Lubricant
 from raceway.storage.tables import Tables
@@ -230,7 +230,7 @@ def _to_ambient(node: str) -> float | str:
 class Heat:
     """Temperatures of rings, balls and oil are computed from the heat of friction; conductances are those of all rows together.
 
-    Conductances that are 'auto' follow from correlations (``raceway.core.thermal``), those to the ambient from ISO 15312.
+    Conductances that are 'auto' follow from correlations (``raceway.core.quantities.thermal``), those to the ambient from ISO 15312.
     """
 
     oil_inlet_c: float = option(unit="°C", help="temperature of the supplied oil", rule=between(-273.15, 1e3))

@@ -7,8 +7,8 @@ import attrs
 
 from raceway.errors import RacewayError
 from raceway.framework.duties import speed_rpm, unused_with_bodies
+from raceway.framework.loading.registry import Registry
 from raceway.framework.options import unused_options
-from raceway.framework.registry import Registry
 from raceway.framework.rules import Rule, speaking
 from raceway.scene.reading import read_tables
 from raceway.scene.tables import SceneTables

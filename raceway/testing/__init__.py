@@ -22,7 +22,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from raceway.framework.registry import Entry, Registry
+    from raceway.framework.loading.registry import Entry, Registry
     from raceway.testing.suite import Conformity, Suite
 
 #: kind -> (module, class) of its suite
@@ -39,7 +39,7 @@ _PUBLIC = {
     **dict.fromkeys(("Conformity", "Row", "Suite", "duty", "require"), "raceway.testing.suite"),
     # What tests of single steps need beside the public functions.
     **dict.fromkeys(("b7206c", "model_of", "settled"), "raceway.testing.suite"),
-    **dict.fromkeys(("Registry", "default_registry"), "raceway.framework.registry"),
+    **dict.fromkeys(("Registry", "default_registry"), "raceway.framework.loading.registry"),
     "drive": "raceway.testing.contact_law",
     "samples": "raceway.testing.signals",
     "Model": "raceway.bodies.model",
@@ -75,6 +75,6 @@ def check_named(text: str, registry: Registry | None = None) -> Conformity:
     PluginError
         A name that is unknown, or that means more than one plug-in; the message lists the choices.
     """
-    from raceway.framework.registry import default_registry
+    from raceway.framework.loading.registry import default_registry
 
     return check((registry or default_registry()).find_any(text))

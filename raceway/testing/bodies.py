@@ -22,7 +22,7 @@ from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.contracts import BodiesKind, Cost, Traits
 from raceway.framework.duties import gives_columns, unused_with_bodies
 from raceway.framework.hookspecs import hookimpl
-from raceway.framework.registry import Registry
+from raceway.framework.loading.registry import Registry
 from raceway.integrators.methods import CentralDifference, Newmark, QuasiStatic
 from raceway.pipeline.run import run
 from raceway.planning.columns import why_not

@@ -17,7 +17,7 @@ from raceway.bodies.builder import Builder
 from raceway.errors import RacewayError
 from raceway.framework.contracts import Batch, Executor, Format, Mesher, Quantities, Refused, SolvedPoints, Study
 from raceway.framework.duties import of_results, quantities_at, quantity_report, why_no_quantities
-from raceway.framework.registry import default_registry
+from raceway.framework.loading.registry import default_registry
 from raceway.pipeline.quantities import solved_point
 from raceway.pipeline.result import Result
 from raceway.pipeline.run import run

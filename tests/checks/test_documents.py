@@ -11,7 +11,7 @@ from checks import reports as files
 from checks.documents import commands, drawing, packages, promises
 from checks.documents.versions import with_versions
 from raceway.cli.main import main
-from raceway.scene.schema import keys
+from raceway.cli.schema import keys
 from raceway.scene.tables import TABLES
 
 

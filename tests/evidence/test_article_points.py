@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from raceway_article.design import Setting, article_tables, design
-from raceway_article.study import rows_of_curve
+from raceway_article.rows import rows_of_curve
 
 from raceway.extend import default_registry
 

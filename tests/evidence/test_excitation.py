@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from raceway_article.study import TRENDS
+from raceway_article.trends import TRENDS
 
 from raceway import compare, sweep
 from raceway.extend import read_toml
@@ -73,7 +73,7 @@ def test_map_against_another_solver(claim):
             first.append(1e-6 * float(slow.sel(at)) / expected - 1.0)
             change.append(float(fast.sel(at) / slow.sel(at)) / ratios[-1] - 1.0)
     where = "tilt locked and free, 400, 1000, 2000 N, centrifugal force, no ring growth"
-    source = "another rigid-ring solver (packages/raceway-article/raceway_article/study.py), which loads towards ball 0; three or four digits"
+    source = "another rigid-ring solver (packages/raceway-article/raceway_article/trends.py), which loads towards ball 0; three or four digits"
     quantity = f"k at 10 980 r/min, {where}: largest relative difference"
     claim(quantity, np.abs(first).max(), at_most=0.003, basis="other program", source=source)
     quantity = f"k(15 000 r/min) / k(10 980 r/min), {where}: largest relative difference"

@@ -26,7 +26,7 @@ begin = time.process_time()
 meshes = mesh_bodies(resolve(scene))
 seconds = time.process_time() - begin
 memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
-from raceway.core.fem.mesh.quality import summary
+from raceway_view.mesh_summary import summary
 print(json.dumps({"seconds": seconds, "memory": memory, "summary": summary(meshes)}))
 """
 

@@ -10,7 +10,8 @@ from itertools import product
 
 import numpy as np
 import pytest
-from raceway_article.study import SOLVER_SPEEDS, TRENDS
+from raceway_article.design import SOLVER_SPEEDS
+from raceway_article.trends import TRENDS
 
 from checks.validation.ball_pass import passing_hz, passing_scene, static_amplitude
 from checks.validation.equilibria import EXTREME_RESIDUAL, RESIDUAL, families, part, random_scenes, solve
@@ -24,7 +25,7 @@ from raceway.extend import phasors
 from raceway.testing import b7206c, model_of, settled, simulate, solve_equilibrium
 
 SOLVER = "another rigid-ring solver (checks/validation/expected_values.py)"
-TURNING = "another rigid-ring solver (packages/raceway-article/raceway_article/study.py)"
+TURNING = "another rigid-ring solver (packages/raceway-article/raceway_article/trends.py)"
 #: Printed digits, largest relative error of rounding.
 ROUNDING = {3: 0.005, 4: 0.0005}
 CONVEX = "the potential of loaded rings is convex: there is an equilibrium"

@@ -3,11 +3,12 @@
 import attrs
 import numpy as np
 import pytest
+from raceway_view.mesh_summary import summary
 
 from checks.validation.cubes import block
 from checks.validation.solids import facet_normals
 from raceway import MeshError
-from raceway.extend import HexMesh, cell_quality, merged, refuse_bad_cells, summary
+from raceway.extend import HexMesh, cell_quality, merged, refuse_bad_cells
 
 #: Sums of a few hundred terms in double precision.
 ROUNDING = 1e-12

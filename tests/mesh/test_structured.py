@@ -5,6 +5,7 @@ from math import pi
 import attrs
 import numpy as np
 import pytest
+from raceway_view.mesh_summary import summary
 
 from checks.validation.command_line import EXAMPLES
 from checks.validation.quarter import quarter_groove
@@ -13,7 +14,7 @@ from checks.validation.solids import facet_normals
 from raceway import MeshError, SceneError, load_scene, scene_from_dict
 from raceway.core.fem.mesh import part_meshes as sphere
 from raceway.core.fem.mesh.part_meshes import ball_cells, ball_mesh, ring_mesh
-from raceway.extend import EDGES, cell_quality, graded, growing, mesh_bodies, refuse_bad_cells, resolve, ring_shape, summary
+from raceway.extend import EDGES, cell_quality, graded, growing, mesh_bodies, refuse_bad_cells, resolve, ring_shape
 from raceway.plugins.bodies.mesh import mesher_of
 
 Structured = built_in("mesher", "structured")

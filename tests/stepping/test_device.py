@@ -20,8 +20,7 @@ from raceway import (
     make_plan,
     scene_from_dict,
 )
-from raceway.core import device
-from raceway.core.fem.elastic import device_steps
+from raceway.core.fem.elastic import device, device_steps
 from raceway.core.fem.elastic.device_steps import DeviceSteps
 from raceway.extend import Schedule, integrate, three_halves
 from tests.test_elastic_scene import EXCITED, scene

@@ -14,15 +14,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
 import attrs
+from raceway_checks.clocks import Clocks
 from raceway_checks.verify.reference import reference_cases
 
 from raceway import Answer, ConvergenceError, RacewayError, Scene, SceneError, make_plan, scene_from_dict
 from raceway.extend import (
-    C, Clocks, Fact, Item, K, OnProgress, Part, ReadTables, Registry, RemainingTime, Tables, Words, Workload, Z, local,
-    row_key, rows_table, run, stored_rows, tables_at, with_value, without_nan, work_through, write_whole, written,
+    C, Fact, Item, K, OnProgress, Part, ReadTables, Registry, Tables, Words, Workload, Z, local, row_key, rows_table, run,
+    stored_rows, tables_at, with_value, without_nan, work_through, write_whole, written,
 )  # fmt: skip
 from raceway_article.design import CLAIMED, EXPLICIT, RACES, excitation_of, friction_of
-from raceway_article.study import failure
+from raceway_article.remaining_time import RemainingTime
+from raceway_article.rows import failure
 
 if TYPE_CHECKING:
     from raceway import Result

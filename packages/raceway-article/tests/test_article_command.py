@@ -8,6 +8,7 @@ import re
 
 import attrs
 import pytest
+from raceway_article import rows
 from raceway_article import study as driver
 from raceway_article.design import ARTICLE, FRICTIONS, ROTATING, Setting, article_tables, design, shaft_tilt_stiffness
 from raceway_article.figures import Picture, drawings
@@ -83,11 +84,9 @@ def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
     def fail(*_, **__):
         raise ConvergenceError("no motion was found")
 
-    monkeypatch.setattr(driver, "run", fail)
-    monkeypatch.setattr(driver, "_looped", lambda points, _: [None] * len(points))
-    monkeypatch.setattr(
-        driver, "attractor_from_rest", lambda _, speed, turns: Attractor(speed, FAILED, turns, why="nothing")
-    )
+    monkeypatch.setattr(rows, "run", fail)
+    monkeypatch.setattr(rows, "_looped", lambda points, _: [None] * len(points))
+    monkeypatch.setattr(rows, "attractor_from_rest", lambda _, speed, turns: Attractor(speed, FAILED, turns, why="nothing"))
     found = invoke("study", "article", *SMALL, "--out", tmp_path)
     assert found.exit_code == 1
     assert "every run failed" in found.stderr and "no motion was found" in found.stderr

@@ -13,12 +13,13 @@ import pytest
 from raceway_article import elastic
 from raceway_article.elastic import SCENE, ElasticDesign, design
 from raceway_article.elastic_page import drawings, page
+from raceway_article.remaining_time import RemainingTime
 
 import raceway as rw
 from checks.validation.article_study import elastic_study
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway import ConvergenceError, SceneError
-from raceway.extend import RemainingTime, read_toml
+from raceway.extend import read_toml
 from raceway.testing import default_registry
 
 #: Three balls under a penalty so soft that every load case has an equilibrium: every path, no accuracy.

@@ -15,7 +15,7 @@ from raceway_catalogue.rating_conventions import CONFORMITY, pair_stiffness
 import raceway as rw
 from checks.validation.command_line import invoke
 from raceway import SceneError
-from raceway.core.ratings import groove_curvatures, hertz_load_factor, static_load_factor
+from raceway.core.quantities.ratings import groove_curvatures, hertz_load_factor, static_load_factor
 from raceway.extend import BallBearing, BallRow, contact_modulus
 
 #: 7206C: 12 balls of 9.525 mm on 46 mm, 15 deg.

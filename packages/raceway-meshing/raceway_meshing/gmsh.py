@@ -19,7 +19,7 @@ import attrs
 import numpy as np
 
 from raceway import MeshError, one_of, option, positive
-from raceway.extend import Bearing, HexMesh, Prediction, remedy
+from raceway.extend import Bearing, HexMesh, Prediction, lacking
 from raceway_meshing.formats import facets_of_quads, readable
 from raceway_meshing.mesh_files import BODIES, ball_path, bodies, file_unit, refuse_no_body, ring_path, with_node_sets
 
@@ -27,6 +27,11 @@ _SOLIDS = {4: "tetrahedra", 5: "hexahedra", 6: "prisms", 7: "pyramids"}
 #: Endings of files and OpenCASCADE's readers for them.
 _READERS = {".step": "step", ".stp": "step", ".brep": "brep"}
 _MILLIMETRE = 1e-3
+#: Debian's packages that gmsh lacks; the Makefile's APT_PACKAGES contain them all.
+DEBIAN = (
+    "libfontconfig1", "libgl1", "libglu1-mesa", "libgomp1", "libxcursor1", "libxext6", "libxfixes3", "libxft2",
+    "libxinerama1", "libxrender1",
+)  # fmt: skip
 #: Hexahedra of tetrahedra of twice the element's size, split in four, for each cube of that size (2.4 to 3 measured).
 _SPLIT = 3.0
 #: What Gmsh and the taking over of its mesh need beside the meshes: as such [bytes], and a cell (1450 to 1700 measured).
@@ -108,7 +113,7 @@ class Gmsh:
         try:
             import gmsh
         except OSError as why:  # of the loader of its library
-            raise MeshError(f"mesh.kind = 'gmsh' cannot be used: {remedy('gmsh')} ({why})") from why
+            raise MeshError(f"mesh.kind = 'gmsh' cannot be used: {lacking('gmsh', DEBIAN)} ({why})") from why
         with signals_as_before():
             gmsh.initialize([], readConfigFiles=False, interruptible=False)
         try:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import attrs
+import numpy as np
 
 from raceway import MeshError, PluginError, option, positive
 from raceway.extend import Bearing, HexMesh, Mesher, blamed, nearest
@@ -103,7 +104,7 @@ class File:
         return bodies(self, bearing, self._body)
 
     def _body(self, body: str, path: str) -> HexMesh:
-        from raceway.extend import default_registry, refuse_bad_cells, refuse_doubled
+        from raceway.extend import default_registry, refuse_bad_cells
 
         try:  # the format that has the file's ending, of those that this process knows
             form = default_registry().format_of(path)
@@ -129,9 +130,44 @@ class File:
         mesh = attrs.evolve(mesh, points=self.scale * mesh.points, node_sets=nodes, facet_sets=facets)
         refuse_bad_cells(mesh, f"{body} ({Path(path).name})")
         try:
-            refuse_doubled(mesh, f"{body} ({Path(path).name})")
+            _refuse_doubled(mesh, f"{body} ({Path(path).name})")
         except MeshError as why:
             if body != "ball":
                 raise
             raise MeshError.at(f"mesh.{body}", path, f"{why}. It must be the {BALL}; copies are placed") from why
         return with_node_sets(mesh.renumbered())
+
+
+def _refuse_doubled(mesh: HexMesh, body: str) -> None:
+    """Refuse what cannot be one body: cells that are duplicated, points that coincide and are not one, parts that do not hang together.
+
+    MeshError: How many, and where the first is.
+    """
+    _, first, counts = np.unique(np.sort(mesh.cells, axis=1), axis=0, return_index=True, return_counts=True)
+    if (counts > 1).any():
+        cell = int(first[counts > 1].min())
+        raise MeshError(
+            f"`{body}`: {int((counts - 1).sum())} cells are duplicated; the first is cell {cell}: remove the copies"
+        )
+    points = mesh.points[np.unique(mesh.cells)]
+    grain = 1e-9 * float(np.ptp(points, axis=0).max())
+    _, first, counts = np.unique(np.round(points / grain), axis=0, return_index=True, return_counts=True)
+    if (counts > 1).any():
+        where = ", ".join(f"{x:.6g}" for x in points[first[counts > 1].min()])
+        raise MeshError(
+            f"`{body}`: {int((counts - 1).sum())} points coincide with others without being merged, the first at ({where}) m: "
+            "touching parts are not connected there. Merge coincident nodes"
+        )
+    # Sets of cells that share nodes with no other set
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    count = int(mesh.cells.max()) + 1
+    rows, columns = np.repeat(np.arange(len(mesh.cells)), 8), mesh.cells.reshape(-1)
+    owns = coo_matrix(
+        (np.ones(rows.size, dtype=np.int8), (rows, columns + len(mesh.cells))), shape=(len(mesh.cells) + count,) * 2
+    )
+    _, label = connected_components(owns, directed=False)
+    parts = len(np.unique(label[: len(mesh.cells)]))
+    if parts > 1:
+        raise MeshError(f"`{body}`: its cells form {parts} parts that are not connected: give one connected body")

@@ -11,14 +11,14 @@ Frame and signs: docs/physics.md.  Z(w) = K - m w^2 + j w C; the mass is taken o
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import attrs
 import numpy as np
 
 from raceway import Mistake, RacewayError, SceneError
 from raceway.extend import (
-    COLUMNS, LIST, TIME_CONSTANTS, Selection, Tables, dry_damping_words, listed, member, only_axes, radial_note, shown,
+    COLUMNS, LIST, TIME_CONSTANTS, Selection, Tables, dry_damping_words, listed, member, radial_note, shown,
 )  # fmt: skip
 from raceway_rotor.sources import DIRECTION, SOURCES, reduced, tilt_note
 
@@ -109,7 +109,7 @@ def coefficients(
     if not (math.isfinite(unresolved) and unresolved >= 0.0):
         raise SceneError.at("--damping", unresolved, "must be a finite damping of at least 0 N s/m")
     purpose = "and a table of coefficients goes over speed and frequency only"
-    only_axes(selection, (SPEED, SPIN, DIRECTION), purpose)
+    _only_axes(selection, (SPEED, SPIN, DIRECTION), purpose)
     default = "tangent" if selection.value("excitation.kind") is None else "rotating"
     source = member("source", source or ("directions" if DIRECTION in selection.axes else default), SOURCES)
     if source == "directions":
@@ -119,7 +119,7 @@ def coefficients(
             axes = {key: selection.axes[key] for key in sorted(selection.axes, key=lambda key: key == DIRECTION)}
             selection = attrs.evolve(selection, axes=axes, dataset=selection.dataset.transpose(*axes, ...))
     else:
-        only_axes(selection, (SPEED, SPIN), purpose)
+        _only_axes(selection, (SPEED, SPIN), purpose)
     if selection.unfinished:
         raise RacewayError(
             f"the table would have gaps: points without result: {selection.gaps}. Finish them with raceway sweep ... "
@@ -234,3 +234,21 @@ def _axes(selection: Selection, *arrays: np.ndarray) -> tuple[np.ndarray | None,
     if len(spins):
         return spins, None, arrays
     return (speeds, None, arrays) if selection.value(SPIN) is None else (None, speeds, arrays)
+
+
+def _only_axes(selection: Selection, allowed: Sequence[str], purpose: str) -> None:
+    """Refuse axes that would have to be chosen first.
+
+    SceneError: Naming each axis, its values and what to type.
+    """
+    mistakes = [
+        Mistake(
+            key,
+            None,
+            f"has {len(values)} values ({listed(values)}), {purpose}: choose one with --at {key}={shown(values[0])}",
+        )
+        for key, values in selection.axes.items()
+        if key not in allowed
+    ]
+    if mistakes:
+        raise SceneError(mistakes)

@@ -13,10 +13,11 @@ import numpy as np
 
 from raceway import Answer, RacewayError, SceneError, door
 from raceway.extend import (
-    FACES, PATH, HexMesh, Part, Row, Tables, Words, blamed, boundary, grouped, number, of_results, refuse_pictures,
+    FACES, PATH, HexMesh, Part, Row, Tables, Words, blamed, boundary, grouped, number, of_results,
     registry_with, sections, slug, write_whole,
 )  # fmt: skip
 from raceway_view.pictures import INK, Plotter, look_from, rendered
+from raceway_view.system_libraries import refuse_pictures
 from types import ModuleType
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ class _Meshes(Answer):
 
     stem: ClassVar[str] = "mesh"
 
-    #: ``raceway.core.fem.mesh.quality.summary`` with title, mesher, seconds, and the files that ``save`` wrote
+    #: ``raceway_view.mesh_summary.summary`` with title, mesher, seconds, and the files that ``save`` wrote
     content: Tables
     meshes: dict[str, HexMesh]  # by name of the body
     form: Entry  # what writes them
@@ -166,7 +167,8 @@ def mesh(
     RacewayError
         A format that only reads, or a package that is missing.
     """
-    from raceway.extend import mesh_bodies, resolve, summary
+    from raceway.extend import mesh_bodies, resolve
+    from raceway_view.mesh_summary import summary
 
     registry = registry_with(plugins)
     # The format of a name, or of the ending of its files.

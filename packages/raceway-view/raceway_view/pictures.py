@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 import numpy as np
 
 from raceway import RacewayError
-from raceway.extend import Tables, new_figure, refuse_pictures
+from raceway.extend import Tables, new_figure
 from raceway_view.bodies import INNER, OUTER, BearingSolids, Snapshot
+from raceway_view.system_libraries import refuse_pictures
 from types import ModuleType
 
 if TYPE_CHECKING:

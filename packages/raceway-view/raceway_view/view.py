@@ -14,7 +14,7 @@ import numpy as np
 from raceway import Answer, Result, SceneError, door
 from raceway.extend import (
     PATH, PATHS, Fact, K, OnProgress, Part, ShowProgress, Tables, Words, X, as_scene, equilibrium_table, figure_png,
-    given_axes, largest_contacts, largest_facts, mesh_bodies, picture, quantity_rows, race_words, refuse_pictures,
+    given_axes, largest_contacts, largest_facts, mesh_bodies, picture, quantity_rows, race_words,
     registry_with, run, sections, stated, telling, wrapped, writable, write_whole,
 )  # fmt: skip
 from raceway_view.bodies import BearingSolids, Snapshot
@@ -22,6 +22,7 @@ from raceway_view.mesh import mesh_picture
 from raceway_view.page import view_page
 from raceway_view.pictures import contacts, overview
 from raceway_view.stress import contact_stress_files, contacts_left_out, field_files
+from raceway_view.system_libraries import refuse_pictures
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -3,6 +3,5 @@
 geometry   groove curvatures, groove centres, contact angle, cage speed; balls on springs under an axial load alone
 hertz      exact elliptic Hertz contact, the half-space around it, stresses below it
 damping    normal damping, and the energy that a contact stores
-losses     torque of balls that roll between races, a compiled loop over points
 film       thickness of an elastohydrodynamic film, entraining speed
 """

@@ -4,17 +4,24 @@ import attrs
 import numpy as np
 
 from raceway.core.contact.geometry import Growth
-from raceway.core.jit import Kernel
+from raceway.core.jit import Kernel, jit
 from raceway.core.record import check_state
 from raceway.core.ring.equilibrium import BALLS_FAILED, CONVERGED, ITERATIONS, RESIDUAL, RUN_AWAY, SLOW, solve_equilibrium
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP, layout
 from raceway.core.ring.kernels.layout import are_condensed, elastic_columns, work_rows
 from raceway.core.ring.ring import AT_ONCE, COORDINATES, TOLERANCE, Evaluation, Increment, Ring
-from raceway.core.signatures import Balls, Constants, Contacts, Forces, Linear, Response, StaticState
+from raceway.core.signatures import FORCE, Balls, Constants, Contacts, Forces, Linear, Response, StaticState
 from raceway.errors import ConvergenceError
 
 #: Rounding of a force over stiffness and distance of ball and groove centres; 0.4 to 0.7 of 2.2e-16 were measured.
 _ROUNDING = 8.9e-16
+
+
+@jit(FORCE)
+def no_force(t, params, out):  # type: ignore[no-untyped-def]
+    """The force of no excitation."""
+    for i in range(out.size):
+        out[i] = 0.0
 
 
 @attrs.define(eq=False, kw_only=True)

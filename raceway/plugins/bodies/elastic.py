@@ -111,9 +111,9 @@ def device_of(problem: Problem, cells: int, unknowns: int) -> tuple[str, str]:
     asked = said(problem.integrator.method, "device")
     if asked == "cpu" or not problem.recorded:
         return "", "integrator.device is 'cpu'"
-    from raceway.core.device import need_bytes, refusal, title
+    from raceway.core.fem.elastic.device import need_bytes, refusal, title
     from raceway.core.signatures import LAW
-    from raceway.framework.probe import plugin_kernel
+    from raceway.framework.loading.probe import plugin_kernel
 
     if reason := _not_compiled(problem):
         return "", reason
@@ -126,7 +126,7 @@ def device_of(problem: Problem, cells: int, unknowns: int) -> tuple[str, str]:
 def _step_s(problem: Problem, cells: int, unknowns: int) -> float:
     """Time of an explicit step [s]: of the processor, or of a device by how fast its memory is."""
     if device_of(problem, cells, unknowns)[0]:
-        from raceway.core.device import bandwidth
+        from raceway.core.fem.elastic.device import bandwidth
 
         return max(cells * _DEVICE_BYTES / bandwidth(), _DEVICE_S)
     if _not_compiled(problem):

@@ -16,7 +16,7 @@ from raceway.core.ring.system import System
 from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.duties import is_hertzian, law_params
-from raceway.framework.probe import plugin_kernel
+from raceway.framework.loading.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.plugins.bodies.elastic_contacts import ElasticBodies, ElasticResultants

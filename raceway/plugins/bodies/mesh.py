@@ -11,7 +11,7 @@ from raceway.core.fem.mesh.hex_mesh import HexMesh
 from raceway.core.fem.mesh.quality import Prediction, body_bytes, refuse_bad_cells, refuse_memory
 from raceway.errors import MeshError, Mistake, PluginError, SceneError
 from raceway.framework.contracts import Mesher
-from raceway.framework.sources import blamed
+from raceway.framework.loading.sources import blamed
 from raceway.planning.resolve import Problem
 from raceway.scene.bearing import Bearing
 from raceway.scene.tables import Supports

@@ -35,7 +35,7 @@ from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError, RacewayError
 from raceway.framework.duties import is_constraint, law_params
 from raceway.framework.estimate import Estimate
-from raceway.framework.probe import plugin_kernel
+from raceway.framework.loading.probe import plugin_kernel
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.plugins.bodies.condensed_bearing import inertia_table

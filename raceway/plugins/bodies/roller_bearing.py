@@ -10,7 +10,7 @@ from raceway.bodies.basis import Basis, changing_speed, excitation, linear_parts
 from raceway.bodies.columns import ColumnBearing, assembled_columns
 from raceway.bodies.model import BuiltBearing, Equilibrium, Model, Told
 from raceway.core.columns import Number, per_ball
-from raceway.core.ratings import STRIBECK
+from raceway.core.quantities.ratings import STRIBECK
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels import rollers as lines
 from raceway.core.ring.states import States
@@ -19,7 +19,7 @@ from raceway.core.signatures import LAW
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.duties import law_params
-from raceway.framework.probe import plugin_kernel, probe_excitation, probe_law
+from raceway.framework.loading.probe import plugin_kernel, probe_excitation, probe_law
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.scene.bearing import DIMENSIONS

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 
-from raceway.core.ratings import STRIBECK
+from raceway.core.quantities.ratings import STRIBECK
 from raceway.errors import Mistake
 from raceway.framework.contracts import Cost, Traits
 from raceway.framework.duties import line_contact

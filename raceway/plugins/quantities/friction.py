@@ -1,6 +1,6 @@
 """Friction torque and power loss of all rows and of each, by source, with a band.
 
-The terms are those of ``raceway.core.rolling_friction``; seals and cage are given.  Each end of the band is the farther one of two: the terms'
+The terms are those of ``raceway.core.quantities.rolling_friction``; seals and cage are given.  Each end of the band is the farther one of two: the terms'
 own bands, relative and independent of each other, torque +- sqrt(sum (band part)^2), and what bearings measured near this size and speed leave
 possible (``measured_factors``).  Palmgren's rule of thumb stands beside it (``palmgren_torque``).
 """
@@ -23,7 +23,7 @@ from raceway.framework.shown import Fact, number
 from raceway.storage.tables import ReadTables, Tables
 
 if TYPE_CHECKING:
-    from raceway.core.rolling_friction import BallContacts, Losses
+    from raceway.core.quantities.rolling_friction import BallContacts, Losses
 
 #: Sources of friction, as results name them, and what they are.
 PARTS = {
@@ -97,7 +97,7 @@ class Friction:
 
     def measured(self, points: SolvedPoints) -> tuple[Number, Number]:
         """Factors (n,) of the computed friction within which measured bearings lie; of rows the widest."""
-        from raceway.core.rolling_friction import measured_factors
+        from raceway.core.quantities.rolling_friction import measured_factors
 
         if not isinstance(self.measured_band, str):
             return 1.0 / self.measured_band, self.measured_band
@@ -108,7 +108,7 @@ class Friction:
 
     def losses(self, points: SolvedPoints) -> Losses:
         """Of every contact and ball."""
-        from raceway.core.rolling_friction import losses
+        from raceway.core.quantities.rolling_friction import losses
 
         oil = points.problem.lubricant
         assert oil is not None, "why_not says so"
@@ -192,7 +192,7 @@ def oil_fraction(points: SolvedPoints) -> Number:
     heat, rows = points.problem.heat, points.problem.bearing.of_rows
     if heat is None or isinstance(heat.oil_flow, str):
         return _LITTLE_OIL
-    from raceway.core.thermal import jet_oil_fraction
+    from raceway.core.quantities.thermal import jet_oil_fraction
 
     by_row = [jet_oil_fraction(heat.oil_flow / len(rows), points.speed, b.pitch_diameter) for b in rows]
     return np.stack(by_row, axis=-1)[:, None, points.row]
@@ -203,7 +203,7 @@ def beyond_jets(points: SolvedPoints) -> list[str]:
     heat, oil = points.problem.heat, points.problem.lubricant
     if heat is None or isinstance(heat.oil_flow, str) or oil is None or not isinstance(oil.oil_fraction, str):
         return []
-    from raceway.core.thermal import JET_SPEEDS
+    from raceway.core.quantities.thermal import JET_SPEEDS
 
     n_dm = float(points.speed[0]) * 30e3 / pi * max(float(row.pitch_diameter) for row in points.problem.bearing.of_rows)
     low, high = JET_SPEEDS
@@ -217,7 +217,7 @@ def beyond_jets(points: SolvedPoints) -> list[str]:
 
 def ball_contacts(points: SolvedPoints) -> BallContacts:
     """The contacts of all rows as the core's friction sees them."""
-    from raceway.core.rolling_friction import BallContacts
+    from raceway.core.quantities.rolling_friction import BallContacts
 
     rows = points.problem.bearing.of_rows
 

@@ -3,7 +3,7 @@
 A scene with [heat] is solved where the temperatures that it is computed with are those that follow from it (``raceway.pipeline.warm``).
 
 The heat of a contact goes to both of its bodies in halves, drag of the balls to the oil, that of seals to both rings in halves.  Conductances
-that are 'auto' in the table [heat] follow from ``raceway.core.thermal``: contacts at the mean load and angle of the loaded balls of each
+that are 'auto' in the table [heat] follow from ``raceway.core.quantities.thermal``: contacts at the mean load and angle of the loaded balls of each
 row, with the piezoviscous-elastic film of Hamrock and Dowson between them; convection with the viscosity of the contacts' inlets; joints and
 emission from the sizes of the rings.  Oil reaches the inner ring against the centrifugal field only where it passes between the balls: of
 its surface the share of the gaps, 1 - Z D / (pi d_m), is wetted, an estimate from geometry.
@@ -20,7 +20,7 @@ from raceway.answers.quantities import Quantity
 from raceway.core.columns import Number
 from raceway.core.contact.film import film, thermal_reduction
 from raceway.core.contact.hertz import contact_modulus
-from raceway.core.thermal import JOINT, Network, oil_convection, rolling_contact, seat_emission
+from raceway.core.quantities.thermal import JOINT, Network, oil_convection, rolling_contact, seat_emission
 from raceway.framework.contracts import Problem, SolvedPoints
 from raceway.framework.shown import Fact, number
 from raceway.scene.bearing import Bearing

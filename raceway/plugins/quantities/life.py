@@ -2,7 +2,7 @@
 
 Lives follow from the loads of all contacts, which know clearance, preload, tilts and speed: the constant ones, or, where a force
 repeats itself, those over a turn of the motion, in which a load that turns with the inner ring meets its points otherwise than those of
-the outer ring (``raceway.core.ratings``).  Whatever fails first ends the life: rings and rows add up.
+the outer ring (``raceway.core.quantities.ratings``).  Whatever fails first ends the life: rings and rows add up.
 
 The static safety factor is the contact load that C0 permits over the largest one, on the race where it is less; where C0 is by the
 geometry, (4200 MPa / p_max)^3 of steel.
@@ -18,7 +18,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import Quantity
-from raceway.core.ratings import (
+from raceway.core.quantities.ratings import (
     VISCOSITY_RATIOS,
     at_places,
     equivalent_loads,

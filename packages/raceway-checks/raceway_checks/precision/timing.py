@@ -6,8 +6,9 @@ from typing import NotRequired, TypedDict, cast
 from raceway import RacewayError, Scene
 from raceway.extend import (
     AXIAL_DISPLACEMENT, P0, PEAK_BALL_LOAD, Content, Item, K, Registry, Store, Tables, Z_IMAG, Z_REAL, local, named,
-    peak_memory, reset_peak, row_key, without_mesh, work_through,
+    row_key, without_mesh, work_through,
 )  # fmt: skip
+from raceway_checks.clocks import peak_memory, reset_peak
 
 #: No further repeat is begun once a setting has taken this long [s].
 PATIENCE_S = 10.0

@@ -17,9 +17,10 @@ import attrs
 
 from raceway import Answer, RacewayError, SceneError, scene_from_dict
 from raceway.extend import (
-    Fact, Item, Part, ReadTables, Registry, Store, Tables, Words, local, micro, nearest, processor_time, program_key,
+    Fact, Item, Part, ReadTables, Registry, Store, Tables, Words, local, micro, nearest, program_key,
     registry_with, tables_key, work_through, written,
 )  # fmt: skip
+from raceway_checks.clocks import processor_time
 from raceway_checks.stability.catalogue import Case, catalogue
 
 if TYPE_CHECKING:

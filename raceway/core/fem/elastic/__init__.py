@@ -15,6 +15,6 @@ superelement   a body eliminated once, down to the nodes that contacts may touch
 interface   all bodies, seen from the nodes of their contacts;  superelement_solver: Newton's method in the contacts alone
 explicit    compiled explicit steps of one-point elements in contact at surface points;  explicit_kernels: the parts of a step
 bearing     the bodies of a ball bearing as one system, in equilibrium or stepped in time
-device_steps   explicit steps on a CUDA device, by the functions of ``explicit_kernels``
+device      CUDA devices, and functions for their kernels of the sources of the CPU's;  device_steps: explicit steps there
 ring        the bearing seen from its inner ring: the interface of all systems
 """

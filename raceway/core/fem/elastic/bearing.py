@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from raceway.core import device
+from raceway.core.fem.elastic import device
 from raceway.core.fem.elastic.assembly import Assembly, Body, Cage, Frame
 from raceway.core.fem.elastic.bearing_data import BearingData
 from raceway.core.fem.elastic.contact import CIRCLE, Contact, NodalContact

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from raceway.core import device
-from raceway.core.device import device_source
+from raceway.core.fem.elastic import device
+from raceway.core.fem.elastic.device import device_source
 from raceway.core.fem.elastic.explicit import ExplicitSteps
 from raceway.core.fem.elastic.explicit_kernels import (
     DONE,

@@ -7,12 +7,11 @@ the contact far away and a linear stiffness the same system is a linear oscillat
 
 import numpy as np
 
-from raceway.core.excitations import no_force
 from raceway.core.jit import Kernel, jit
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import normal_forces
-from raceway.core.ring.system import System
+from raceway.core.ring.system import System, no_force
 from raceway.core.signatures import SYSTEM
 
 #: Entry of ``scalars`` in which this kernel finds the gap at x = 0 [m]; there is no groove whose offset it could be.

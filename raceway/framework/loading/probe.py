@@ -277,7 +277,7 @@ def _check_array(values: Any, who: str, source: str, expected: str, shape: tuple
 
 def _who(words: str, kind: str, plugin: ContactLaw | Excitation, distribution: str | None) -> str:
     if distribution is None:
-        from raceway.framework.registry import default_registry
+        from raceway.framework.loading.registry import default_registry
 
         owners = [
             e.distribution for e in default_registry().entries.get((kind, plugin.name), []) if e.plugin is type(plugin)

@@ -14,7 +14,7 @@ Balls turn about an axis in the plane of the two contacts, rolling without slip 
 outer and the inner contact do not spin, next to the one that dissipates less: of Coulomb friction all angles between cost the same where
 both ends do, so the passage from one to the other costs nothing.
 
-The terms are those of ``raceway.core.contact.losses``, a compiled loop.
+The terms are those of ``raceway.core.quantities.losses``, a compiled loop.
 
 Not modelled: heat of the contact's own shear, which lowers traction at high slip; starvation; roughness; cage and lands.  What is missing
 by ``MEASURED`` bearings decides how far the friction is known (``measured_factors``).
@@ -28,7 +28,7 @@ import attrs
 import numpy as np
 
 from raceway.core.columns import Number
-from raceway.core.contact.losses import Contacts, ball_losses
+from raceway.core.quantities.losses import Contacts, ball_losses
 
 #: Density of air [kg/m3].
 _AIR = 1.2
@@ -143,7 +143,7 @@ class Lubrication:
 
     @property
     def film(self) -> np.ndarray:
-        """(1 or n, 5) as in ``raceway.core.contact.losses._Film``."""
+        """(1 or n, 5) as in ``raceway.core.quantities.losses._Film``."""
         thermal = self.viscosity * self.temperature_viscosity / self.conductivity
         numbers = self.viscosity, self.pressure_viscosity, thermal, self.traction_limit, self.eyring_stress
         return np.stack(np.broadcast_arrays(*map(np.atleast_1d, numbers)), axis=-1)

@@ -1,4 +1,4 @@
-"""Losses of balls that roll between races, in one pass over points, balls and contacts: see ``raceway.core.rolling_friction``."""
+"""Losses of balls that roll between races, in one pass over points, balls and contacts: see ``raceway.core.quantities.rolling_friction``."""
 
 from math import factorial, log
 from typing import NamedTuple

@@ -1,23 +1,17 @@
-"""System libraries of packages that draw and mesh: what to install where a package is there and its libraries are not.
+"""System libraries of pyvista: what to install where it is there and they are not.
 
-A package can lack them in two ways: its import fails, or it ends the whole process at the first picture.  The second is
-therefore tried in a process of its own.
+Without them it ends the whole process at the first picture, which is therefore tried in a process of its own.
 """
 
 import subprocess
 import sys
 from functools import cache
 
-from raceway.errors import RacewayError
+from raceway import RacewayError
+from raceway.extend import lacking
 
-#: Debian's packages by what lacks them; the Makefile's APT_PACKAGES contain them all.
-DEBIAN = {
-    "gmsh": (
-        "libfontconfig1", "libgl1", "libglu1-mesa", "libgomp1", "libxcursor1", "libxext6", "libxfixes3", "libxft2",
-        "libxinerama1", "libxrender1",
-    ),
-    "pyvista": ("libegl1", "libgl1"),
-}  # fmt: skip
+#: Debian's packages that pyvista lacks; the Makefile's APT_PACKAGES contain them all.
+DEBIAN = ("libegl1", "libgl1")
 
 #: The smallest picture that VTK draws without a display.
 _PICTURE = """
@@ -34,12 +28,6 @@ window.Render()
 _PATIENCE = 60.0
 
 
-def remedy(package: str) -> str:
-    """The line that installs what ``package`` lacks."""
-    line = f"apt-get install -y --no-install-recommends {' '.join(DEBIAN[package])}"
-    return f"{package} is installed but lacks system libraries; on Debian, as root: {line}"
-
-
 def refuse_pictures(otherwise: str = "") -> None:
     """Refuse to draw with pyvista where that would end the process.
 
@@ -47,7 +35,7 @@ def refuse_pictures(otherwise: str = "") -> None:
     """
     fault = _fault_of_pictures()
     if fault:
-        raise RacewayError(f"pictures cannot be drawn: {remedy('pyvista')}{otherwise} ({fault})")
+        raise RacewayError(f"pictures cannot be drawn: {lacking('pyvista', DEBIAN)}{otherwise} ({fault})")
 
 
 @cache

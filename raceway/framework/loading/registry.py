@@ -25,9 +25,16 @@ from raceway.errors import PluginError, RacewayError
 from raceway.framework import hookspecs
 from raceway.framework.contracts import KINDS, broken_duties
 from raceway.framework.doors import reader
+from raceway.framework.loading.sources import (
+    chosen_entry_points,
+    foreign_words,
+    import_file,
+    is_foreign_fault,
+    missing_package,
+    named,
+    owner,
+)
 from raceway.framework.options import nearest
-from raceway.framework.packages import missing_package, named
-from raceway.framework.sources import chosen_entry_points, foreign_words, import_file, is_foreign_fault, owner
 
 _BUILT_IN = ("raceway.contact_laws", "raceway.integrators", "raceway.plugins")
 

@@ -1,12 +1,15 @@
-"""What is installed beside ``raceway``: commands and public names of this project's packages and of third parties.
+"""How plug-ins are found, loaded and tried; here the commands and public names that are installed beside ``raceway``.
 
-Nothing is imported until a name is used, so that ``import raceway`` and ``dir(raceway)`` stay light.
+registry   plug-ins by kind and name
+sources    this project's packages, entry points, one-off files
+probe      compiled kernel of a plug-in by its declared signature, and trial calls of it before a run
 """
 
 from collections.abc import Iterator
+from importlib.metadata import entry_points
 from typing import Any
 
-from raceway.framework.packages import available, missing_package, named, packages
+from raceway.framework.loading.sources import available, missing_package, named, packages
 
 
 def listed_commands() -> Iterator[tuple[str, str, str]]:
@@ -15,10 +18,8 @@ def listed_commands() -> Iterator[tuple[str, str, str]]:
         if available(package):
             parted = ((name, text.partition(": ")) for name, text in has["commands"].items() if text)
             yield from ((heading, name, summary) for name, (heading, _, summary) in parted)
-    from importlib.metadata import entry_points
-
     if any(getattr(point.dist, "name", "") not in packages() for point in entry_points(group="raceway")):
-        from raceway.framework.registry import default_registry
+        from raceway.framework.loading.registry import default_registry
 
         own = {name for has in packages().values() for name in has["commands"]}
         for heading, commands in default_registry().mapping("raceway_commands").items():
@@ -41,7 +42,7 @@ def further_name(name: str) -> Any:
             if not available(package):
                 raise AttributeError(f"raceway.{name} is {missing_package(name, 'names')}")
             return named(f"{has['names'][name]}:{name.rpartition('.')[2]}")
-    from raceway.framework.registry import default_registry
+    from raceway.framework.loading.registry import default_registry
 
     if (module := default_registry().mapping("raceway_names").get(name)) is None:
         raise AttributeError(f"module 'raceway' has no attribute '{name}'")
