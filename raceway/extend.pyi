@@ -85,7 +85,9 @@ from .framework.contracts import ContactLaw as ContactLaw
 from .framework.contracts import Excitation as Excitation
 from .framework.contracts import Format as Format
 from .framework.contracts import Integrator as Integrator
+from .framework.contracts import Lost as Lost
 from .framework.contracts import Mesher as Mesher
+from .framework.contracts import Refused as Refused
 from .framework.doors import FINITE as FINITE
 from .framework.doors import KEY_VALUES as KEY_VALUES
 from .framework.doors import PATH as PATH

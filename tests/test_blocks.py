@@ -20,8 +20,7 @@ import pytest
 import raceway as rw
 from checks.validation.command_line import PATIENCE_S, invoke
 from checks.validation.scenes import built_in
-from raceway.extend import COLUMNS, open_store, tables_at
-from raceway.framework.contracts import Lost
+from raceway.extend import COLUMNS, Lost, open_store, tables_at
 from raceway.planning.parts import slowness
 from raceway.planning.plan import column_time
 from raceway.points import sweep

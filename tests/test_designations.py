@@ -6,7 +6,6 @@ import pytest
 
 import raceway as rw
 from raceway import SceneError
-from raceway.scene.designation import read_designation
 
 #: Designation: name in the catalogue, contact angle [deg], clearance class, class of ISO 492, ceramic balls.
 KNOWN = {
@@ -28,16 +27,20 @@ KNOWN = {
     "62/22-2RS": ("62/22", 0, "", "", ""),
     "W 6204-2RS1/C4": ("6204", 0, "C4", "", ""),
 }
+WITH_FITS = {
+    "mounting": {"shaft_interference": 5e-6}, "tolerances": {"load.axial": "±10 %"}, "load": {"axial": 1000.0}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("text", KNOWN)
 def test_a_designation_is_a_bearing_of_the_catalogue(text):
     name, angle, clearance, tolerance, ceramic = KNOWN[text]
-    said, table = read_designation(text), rw.catalogue(text)[0].table
-    assert name in said.names
-    assert (said.clearance, said.tolerance, said.ceramic) == (clearance, tolerance, ceramic)
+    table, plain = rw.catalogue(text)[0].table, rw.catalogue(name)[0].table
     same = ("ball_count", "ball_diameter", "pitch_diameter", "bore", "outer_diameter", "width")
-    assert {key: table[key] for key in same} == {key: rw.catalogue(name)[0].table[key] for key in same}
+    assert {key: table[key] for key in same} == {key: plain[key] for key in same}
+    classed = rw.catalogue(f"{name}/{clearance}")[0].table if clearance else plain
+    assert table.get("radial_clearance") == classed.get("radial_clearance")
+    assert rw.scene_from_dict(WITH_FITS | {"bearing": {"preset": text}}).source["tolerances"].get("class", "") == tolerance
     assert table["contact_angle_deg"] == angle
     assert table["balls"].get("material", "") == ceramic
 
@@ -62,7 +65,8 @@ def test_every_part_stands_in_the_result(text):
 
 
 def test_what_is_not_used_is_named_as_ignored():
-    words = read_designation("6205-2RS-XY77").words
+    scene = {"bearing": {"preset": "6205-2RS-XY77"}, "load": {"axial": 200.0}}
+    words = rw.run(scene).to_dict()["geometry"]["designation"]
     assert words == "6205-2RS-XY77: 2RS: seals or shields, ignored; XY77: not known, ignored"
 
 
@@ -77,12 +81,7 @@ def test_hybrid_bearings_have_ceramic_balls_and_are_stiffer():
 
 
 def test_the_class_acts_in_tolerances_with_fits():
-    tables = {
-        "bearing": {"preset": "7014 CD/P4A"},
-        "mounting": {"shaft_interference": 5e-6},
-        "tolerances": {"load.axial": "±10 %"},
-        "load": {"axial": 1000.0},
-    }
+    tables = WITH_FITS | {"bearing": {"preset": "7014 CD/P4A"}}
     assert rw.scene_from_dict(tables).source["tolerances"]["class"] == "P4"
     own = {**tables, "tolerances": {"class": "P5"}}
     assert rw.scene_from_dict(own).source["tolerances"]["class"] == "P5"

@@ -19,8 +19,7 @@ import pytest
 import raceway as rw
 import raceway.core
 from raceway import at_least, positive
-from raceway.extend import PATH, PATHS, ShowProgress, open_store, write_whole
-from raceway.framework.doors import DURATION
+from raceway.extend import DURATION, PATH, PATHS, ShowProgress, open_store, write_whole
 
 SCENE = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
 SOFT = {"preset": "B7206C", "balls": {"young": 1e6}}

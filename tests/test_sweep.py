@@ -20,8 +20,7 @@ from checks.validation.command_line import ARTICLE, EXAMPLES, invoke
 from checks.validation.scenes import built_in
 from raceway import PluginError, RacewayError, SceneError, __version__, scene_from_dict
 from raceway import sweep as front
-from raceway.extend import open_store, read_toml, tables_at, written
-from raceway.framework.contracts import Refused
+from raceway.extend import Refused, open_store, read_toml, tables_at, written
 from raceway.points.axes import Design, design_file, grid, listed_points, parse_axes
 from raceway.points.dataset import values_of
 from raceway.points.engine import Work

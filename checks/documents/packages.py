@@ -8,7 +8,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import raceway
-from raceway.framework.contracts import KINDS
+from raceway.extend import default_registry
 
 FOLDER = Path(raceway.__file__).parent
 PACKAGES, STUB = FOLDER / "data" / "packages.json", FOLDER / "__init__.pyi"
@@ -25,8 +25,7 @@ def declared() -> dict[Path, str]:
         own, commands = (getattr(plugin, f"raceway_{hook}", dict)() for hook in ("names", "commands"))
         listed = {about.name: f"{heading}: {about.summary}" for heading, several in commands.items() for about in several}
         listed |= {word: "" for several in commands.values() for about in several for word in about.aliases}
-        found = ((kind, one) for kind, (hook, _) in KINDS.items() for one in getattr(plugin, hook, list)())
-        plugins = [f"{kind}:{getattr(one, 'name', one)}" for kind, one in found]
+        plugins = [f"{entry.kind}:{entry.name}" for entry in default_registry().all() if entry.distribution == distribution]
         project = tomllib.loads((FOLDER.parent / "packages" / distribution / "pyproject.toml").read_text(encoding="utf-8"))
         needs = [word.partition("==")[0] for word in project["project"]["dependencies"] if word.startswith("raceway-")]
         packages[distribution] = {"names": own, "commands": listed, "plugins": sorted(plugins), "needs": needs}

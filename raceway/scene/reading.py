@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from packaging.specifiers import SpecifierSet
 
 
-def check_requirements(table: object, registry: Registry, mistakes: list[Mistake]) -> None:
+def check_requirements(table: Mapping[str, object], registry: Registry, mistakes: list[Mistake]) -> None:
     """Append a mistake for every requirement that is missing, too old, or not a requirement at all.
 
     table : name -> version specifier such as ">=1.2, <2"; "" for any version
@@ -46,9 +46,6 @@ def check_requirements(table: object, registry: Registry, mistakes: list[Mistake
 
     from raceway import __version__
 
-    if not isinstance(table, Mapping):
-        mistakes.append(Mistake("requires", table, 'must be a table of names and versions: [requires] and NAME = ">=1.2"'))
-        return
     #: Normalised name -> (distribution, version), for distributions, entry points and plug-ins' names.
     distributions: dict[str, tuple[str, str]] = {}
     for entry in registry.all():
