@@ -4,14 +4,17 @@ import json
 import os
 from pathlib import Path
 
+import attrs
 import pytest
 
 from checks.validation.command_line import MINIMAL, install, invoke, raceway
-from raceway import PluginError
+from checks.validation.scenes import built_in
+from raceway import PluginError, load_scene, run
 from raceway.extend import Registry
 from raceway.testing import SUITES
 from tests.test_docs import FILES
 
+Rigid = built_in("bodies", "rigid")
 ROOT = Path(__file__).parents[1]
 #: The plug-ins of docs/plugins.md and examples/plugins by kind.
 OWN = {
@@ -155,6 +158,32 @@ def test_a_report_that_raises_is_named_after_the_result_is_saved(tmp_path, body,
     assert f"format 'bad' of {bad.name}: {words}" in told and "The result is saved" in told
     assert json.loads((out / "result.json").read_text())["title"] and (out / "good.txt").read_text() == "good"
     assert "tangent kxx" in found.stdout
+
+
+def fails(fault):
+    def duty(*_given):
+        raise fault
+
+    return duty
+
+
+@pytest.mark.parametrize(
+    ("duty", "answer", "words"),
+    [
+        ("faults", lambda *_: None, "faults() returned NoneType; it must be list"),
+        ("traits", fails(SystemExit(3)), "traits() raises SystemExit: 3"),
+        ("stable_step", lambda *_: "short", "stable_step() returned str; it must be float or None"),
+        ("cost", fails(ValueError("no idea")), "cost() raises ValueError: no idea"),
+        ("build", lambda *_: 7, "build() returned int; it must be a raceway.extend.BuiltBearing"),
+        ("build", fails(KeyError("x")), "build() raises KeyError: 'x'"),
+    ],
+)
+def test_a_broken_duty_of_bodies_names_the_kind(duty, answer, words):
+    own = attrs.frozen(type("Own", (Rigid,), {"name": "own", duty: answer}))
+    scene = load_scene(MINIMAL, ["integrator.kind=central_difference"])
+    with pytest.raises(PluginError) as caught:
+        run(attrs.evolve(scene, bodies=own()))
+    assert str(caught.value).startswith(f"bodies 'own': {words}")
 
 
 def test_two_formats_of_one_ending_are_refused_by_name(tmp_path):

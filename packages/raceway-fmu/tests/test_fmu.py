@@ -28,9 +28,9 @@ TURNING = MAP | {"contact": {}, "excitation": MAP["excitation"] | {"force": 400.
 
 @pytest.fixture(scope="module", autouse=True)
 def compiled_in_haste():
-    """Half of the compiler's time; tests/test_commands.py exports with the flags that users get."""
+    """A third of the compiler's time; tests/test_commands.py exports with the flags that users get."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(unit, "_FLAGS", ("-std=c99", "-O1", "-fPIC", "-shared"))
+        patch.setattr(unit, "_FLAGS", ("-std=c99", "-O0", "-fPIC", "-shared"))
         yield
 
 
@@ -51,7 +51,7 @@ def test_map_is_the_function_within_its_stated_error(maps: dict[int, Path], vers
     instance = Instance(maps[version], exchange)
     assert instance.outputs == ["equivalent_stiffness", "equivalent_damping"]
     assert all(instance.value(f"relative_error.{name}") <= 1e-4 for name in instance.outputs)
-    assert map_difference(instance, 500 if version == 2 else 100, TWO) <= 1.0
+    assert map_difference(instance, 500 if version == 2 and not exchange else 100, TWO) <= 1.0
     assert instance.in_range and not instance.messages
 
 
@@ -126,7 +126,7 @@ def test_force_is_that_of_the_kernels(tmp_path: Path, name: str) -> None:
     for version, path in paths.items():
         assert validate_fmu(path) == []
         instance = Instance(path, exchange=version == 3)
-        differences = force_difference(instance, FORCES[name], 20)
+        differences = force_difference(instance, FORCES[name], 15 if version == 2 else 3)  # the same sources
         assert differences["force"] < 1e-11 and differences["load"] < 1e-11
         assert differences["stiffness"] < 1e-7 < instance.value("relative_error.stiffness")
 
@@ -165,8 +165,8 @@ def test_directional_derivatives(maps: dict[int, Path], forces: dict[int, Path],
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_rotor_on_the_force_follows_the_orbit(forces: dict[int, Path], version: int) -> None:
-    """Steps of a 1440th of a turn: the method's own error is 1e-8."""
-    assert jeffcott(Instance(forces[version]), TURNING) < 1e-6
+    """Steps of a 720th of a turn: the method's own error is 2e-7."""
+    assert jeffcott(Instance(forces[version]), TURNING, steps=720) < 1e-6
 
 
 @pytest.mark.parametrize("version", [2, 3])
@@ -216,7 +216,7 @@ def test_sources_compile_without_a_warning_and_are_short(
         sources = list((folder / "sources").glob("*.[ch]"))
         assert sum(len(source.read_text().splitlines()) for source in sources) <= 600
         for compiler in compilers:
-            flags = ("-std=c99", "-O2", "-Wall", "-Wextra", "-Werror", "-c", "-o", "bearing.o")
+            flags = ("-std=c99", "-O1", "-Wall", "-Wextra", "-Werror", "-c", "-o", "bearing.o")
             subprocess.run([compiler, *flags, f"fmi{path.stem[-1]}.c"], cwd=folder / "sources", check=True)
 
 
