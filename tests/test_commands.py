@@ -94,7 +94,7 @@ COMMANDS = {
     "view": ("view", "STATIC", "--out", "OUT"),
     "view --mesh": ("view", "--mesh", MINIMAL, *COARSE, "--out", "OUT"),
     "dev plugins": ("dev", "plugins",),
-    "dev check-plugin": ("dev", "check-plugin", "hertz"),
+    "dev check-plugin": ("dev", "check-plugin", "tangent"),
     "dev new-plugin": ("dev", "new-plugin", "contact_law", "my_law", "--out", "OUT"),
     "dev new-scene": ("dev", "new-scene", "--out", "OUT/own.toml"),
     "dev schema": ("dev", "schema",),

@@ -66,7 +66,7 @@ def test_an_interruption_keeps_what_is_finished_and_leaves_no_process(tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt), written(tmp_path) as store:
-        work_through(squared, ITEMS, store, Processes(workers=2), REGISTRY, on_progress=stop)
+        work_through(squared, ITEMS, store, Processes(workers=1), REGISTRY, on_progress=stop)
     with written(tmp_path) as store:
         rows = [store.get(key).content for key in store.keys("done")]
     assert len(rows) == 2

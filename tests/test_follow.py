@@ -120,7 +120,7 @@ def test_period_doublings_of_a_hertzian_contact(pressed):
 
 
 def test_the_doubled_orbit_by_a_poincare_section(pressed):
-    """1000 turns of DOP853 that begin 1 % off the orbit, whose disturbances decay by e^-15 meanwhile."""
+    """500 turns of DOP853 that begin 0.1 % off the orbit, whose disturbances decay by e^-7 meanwhile."""
     one, branch, found = pressed
     longer, here = doubled(branch, found[0].point)
     size = 0.05
@@ -131,7 +131,7 @@ def test_the_doubled_orbit_by_a_poincare_section(pressed):
             break
     assert here.floquet.verdict == "stable"
     path, w = here.solved.path, here.solved.problem.speed
-    section = one.section(here.parameter, (1.01 * path.q[0, 0], 1.01 * w * path.v[0, 0]), 1000)
+    section = one.section(here.parameter, (1.001 * path.q[0, 0], 1.001 * w * path.v[0, 0]), 500)
     amplitude = here.solved.size
     # Which of the two spans comes first depends on where the integration begins.
     last = section[-2:] if np.abs(section[-1, 0] - path.q[0, 0]) > np.abs(section[-2, 0] - path.q[0, 0]) else section[-3:-1]
@@ -252,11 +252,11 @@ def test_balls_that_graze_their_races_do_not_lose_the_curve():
 
 
 def test_a_branch_does_not_jump_to_its_neighbour():
-    """Two sheets that differ by 0.1 % of the amplitude beside a fold: a branch that falls from one to the other meets its folds again."""
+    """Two sheets that differ by 0.1 % of the amplitude beside a fold: a branch that falls from one to the other misses its folds, or meets them again."""
     tables = {**SCENE, "rotor": {"mass": 2.0, "damping": 100.0}, "excitation": {**SCENE["excitation"], "force": 100.0}}
-    found = rw.follow(tables, "excitation.speed_rpm=30000:60000", points=120)
+    found = rw.follow(tables, "excitation.speed_rpm=30000:33000", points=60)
     folds = [round(label.row.parameter, 2) for label in found.labels if label.kind == FOLD]
-    assert len(folds) == len(set(folds))
+    assert len(folds) == len(set(folds)) == 2
 
 
 def test_files_hold_every_number(curve, tmp_path):

@@ -41,7 +41,7 @@ def at_force(pull: float) -> tuple[float, Traction]:
     case, _, _, mindlin = pressed()
     friction = Friction(case.patch, MU)
     low, high = 0.0, 4.0 * float(mindlin.displacement(0.999 * mindlin.limit))
-    for _ in range(50):
+    for _ in range(36):
         middle = 0.5 * (low + high)
         found = pulled(friction, middle, np.zeros(case.patch.rows * case.patch.columns))
         low, high = (middle, high) if found.force < pull else (low, middle)
