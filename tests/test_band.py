@@ -11,7 +11,7 @@ from checks.validation.command_line import invoke
 from raceway import SceneError, scene_from_dict
 from raceway.extend import default_registry, stated_columns, tolerances_of
 from raceway.pipeline.first_order import limits
-from raceway.points.band import design, indices
+from raceway.points.sensitivities import design, indices
 from raceway.testing import b7206c
 
 LOADED = b7206c(load={"axial": 500.0})

@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from raceway_rotor.export import point_rows
+from raceway_rotor.coefficient_file import point_rows
 
 import raceway as rw
 from checks.validation.command_line import invoke

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from raceway_article import elastic
+from raceway_article import elastic_design
 from raceway_article import study as driver
 from raceway_article.design import Curves, article_tables, design
-from raceway_article.elastic import ElasticArticle, ElasticRun
+from raceway_article.elastic import ElasticArticle
+from raceway_article.elastic_design import ElasticRun
 from raceway_article.study import RIG_LOADS, RIG_SPEEDS, Article
 from raceway_checks.verify.reference import Verified
 
@@ -80,12 +81,12 @@ def study(found: Curves) -> Article:
 
 def elastic_rows() -> dict[ElasticRun, Tables]:
     """Invented rows of ``raceway study article --bodies elastic``: elastic bodies are a little off condensed ones, these off Hertz."""
-    return {run: _elastic_row(run) for run in elastic.design(read_toml(elastic.SCENE)).runs()}
+    return {run: _elastic_row(run) for run in elastic_design.design(read_toml(elastic_design.SCENE)).runs()}
 
 
 def elastic_study(failed: Sequence[ElasticRun] = ()) -> ElasticArticle:
     """The study around them; of ``failed`` runs there is a reason."""
-    made = elastic.design(read_toml(elastic.SCENE))
+    made = elastic_design.design(read_toml(elastic_design.SCENE))
     rows = elastic_rows() | {
         run: {"status": "failed", "reason": "no equilibrium", "cost": {**_cost(run), "elements": None}} for run in failed
     }

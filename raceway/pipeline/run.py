@@ -5,13 +5,10 @@ A busy machine ends no run: what is counted is processor time.
 
 import os
 import platform
-import resource
-import sys
 from collections.abc import Callable
 from functools import partial
 from math import inf
 from pathlib import Path
-from typing import Any
 
 import attrs
 import numpy as np
@@ -19,9 +16,7 @@ import numpy as np
 from raceway import __version__
 from raceway.bodies.model import Equilibrium, Model, build_model
 from raceway.core.jit import clock, take_compile_seconds, working_clock, working_process_time, working_processor_time
-from raceway.core.record import Stay, drift, friction_lost, largest_share
-from raceway.core.ring.kernels.layout import GYROSCOPIC
-from raceway.core.ring.system import compiled
+from raceway.core.record import Stay
 from raceway.core.signals import Identification, Line, lines
 from raceway.core.threads import compile_beside
 from raceway.errors import BeyondPlanError, ConvergenceError, PluginError, RacewayError, SceneError
@@ -34,7 +29,7 @@ from raceway.pipeline.identified import Identified, series_warnings, start_warni
 from raceway.pipeline.plausible import inertia_warnings, motion_warnings, pressure_warnings, refuse_impossible
 from raceway.pipeline.quantities import stated_quantities
 from raceway.pipeline.result import Result, band_table
-from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds
+from raceway.pipeline.simulate import OnProgress, Simulation, simulate, simulate_speeds, stability_of, work_of
 from raceway.planning.plan import ScenePlan, make_plan, plan_of
 from raceway.planning.resolve import Problem, resolve
 from raceway.planning.rules import scene_warnings
@@ -185,8 +180,8 @@ def _run(
         identification=answer.identification,
         simulation=simulation,
         errors=errors,
-        cost={**times, **_work(answer.motions)},
-        stability=_stability(answer.motions),
+        cost={**times, **work_of(answer.motions)},
+        stability=stability_of(answer.motions),
         environment=_environment(model.problem, registry),
         lines=_lines(model, simulation),
         bodies=bodies,
@@ -272,62 +267,6 @@ def _lines(model: Model, simulation: Simulation | None) -> list[Line]:
         passing = model.geometry.ball_count * model.geometry.cage_speed(model.problem.spin_speed) / (2.0 * np.pi)
         frequencies |= {"ball pass": passing, "2x ball pass": 2.0 * passing}
     return lines(simulation.record.time, simulation.record.displacement, frequencies)
-
-
-def _work(motions: list[Simulation]) -> dict[str, Any]:
-    """Counts of the table ``cost``."""
-    counts, unit = [motion.whole.counts for motion in motions], 1 if sys.platform == "darwin" else 1024
-    devices = [count["device"] for count in counts if count.get("device", "cpu") != "cpu"]
-    return {
-        "steps": sum(count["steps"] for count in counts),
-        "newton_iterations": sum(count["evaluations"] for count in counts),
-        "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit,
-        "threads": max((count.get("threads", 1) for count in counts), default=1),
-        **({"device": devices[0]} if devices else {}),
-    }
-
-
-def _stability(motions: list[Simulation]) -> Tables:
-    """The table ``stability``: the worst of all motions (several speeds may be run); friction's energy is their sum."""
-    drifts = [drift for drift in map(_drift, motions) if drift is not None]
-    rubbing = [
-        friction_lost(m.whole.energies) if m.whole.energies else m.model.bearing.friction_lost(m.model.system, m.whole)
-        for m in motions
-        if m.model.problem.contact.friction > 0.0
-    ]
-    energies = [motion.whole.energies for motion in motions if motion.whole.energies]
-    limits = [motion.critical_time_step for motion in motions if motion.critical_time_step is not None]
-    counts = [motion.whole.counts for motion in motions]
-    floquet = [count["floquet"] for count in counts if count.get("floquet") is not None]
-    return {
-        "floquet": max(floquet, key=lambda table: table["largest"], default=None),
-        "friction_energy_j": float(sum(rubbing)) if rubbing else None,
-        "critical_time_step_s": min(limits, default=None),
-        "energy_drift": max(drifts, default=None),
-        "hourglass_energy_ratio": max((largest_share(table, "hourglass", "elastic") for table in energies), default=None),
-        "energies_j": {name: float(values[-1]) for name, values in energies[-1].items()} if energies else None,
-        "max_penetration_m": max((count["max_penetration_m"] for count in counts), default=None),
-        "status": "completed",
-    }
-
-
-def _drift(motion: Simulation) -> float | None:
-    """Drift of the energy balance; None where the motion's energy is not defined or is not balanced."""
-    model, problem = motion.model, motion.model.problem
-    if motion.whole.energies:
-        return drift(motion.whole.energies)
-    if not model.traits.resultants:
-        return None  # the energy that points store does not follow from the gap of the pair
-    law = problem.contact.law
-    potential = law.state_size == 0 and not law.dissipative and model.system.scalars[GYROSCOPIC] == 0.0
-    # What changes the speed of the balls does work, too.
-    steady = motion.start.kind != "ramp" and not problem.kinematics.orbiting and model.system.spin is None
-    if not (potential and steady and problem.integrator.method.inertial):
-        return None
-    from raceway.core.ring.energy import energy_balance
-
-    ring = compiled(model.system)
-    return None if ring is None else energy_balance(ring, motion.whole).drift
 
 
 def _environment(problem: Problem, registry: Registry) -> Tables:

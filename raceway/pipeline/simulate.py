@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import resource
+import sys
 from collections.abc import Callable
 from math import ceil, pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
 
 from raceway.bodies.model import Equilibrium, Model, model_of
-from raceway.core.record import Motion, Record, Schedule, Stay
+from raceway.core.record import Motion, Record, Schedule, Stay, drift, friction_lost, largest_share
+from raceway.core.ring.kernels.layout import GYROSCOPIC
 from raceway.core.ring.orbit import Orbit, steady_orbit
 from raceway.core.ring.system import compiled
 from raceway.core.signals import stiffness, synchronous_phasor
@@ -324,3 +327,59 @@ def settles_elsewhere(model: Model, simulation: Simulation, orbit: Record) -> bo
     )
     change = float(np.sqrt(2.0 * ((last - before) ** 2).sum(axis=1).mean()))
     return change < _REPEATS * float(np.linalg.norm(motion - steady))
+
+
+def work_of(motions: list[Simulation]) -> dict[str, Any]:
+    """Counts of the table ``cost``."""
+    counts, unit = [motion.whole.counts for motion in motions], 1 if sys.platform == "darwin" else 1024
+    devices = [count["device"] for count in counts if count.get("device", "cpu") != "cpu"]
+    return {
+        "steps": sum(count["steps"] for count in counts),
+        "newton_iterations": sum(count["evaluations"] for count in counts),
+        "peak_memory_bytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit,
+        "threads": max((count.get("threads", 1) for count in counts), default=1),
+        **({"device": devices[0]} if devices else {}),
+    }
+
+
+def stability_of(motions: list[Simulation]) -> Tables:
+    """The table ``stability``: the worst of all motions (several speeds may be run); friction's energy is their sum."""
+    drifts = [drift for drift in map(_drift, motions) if drift is not None]
+    rubbing = [
+        friction_lost(m.whole.energies) if m.whole.energies else m.model.bearing.friction_lost(m.model.system, m.whole)
+        for m in motions
+        if m.model.problem.contact.friction > 0.0
+    ]
+    energies = [motion.whole.energies for motion in motions if motion.whole.energies]
+    limits = [motion.critical_time_step for motion in motions if motion.critical_time_step is not None]
+    counts = [motion.whole.counts for motion in motions]
+    floquet = [count["floquet"] for count in counts if count.get("floquet") is not None]
+    return {
+        "floquet": max(floquet, key=lambda table: table["largest"], default=None),
+        "friction_energy_j": float(sum(rubbing)) if rubbing else None,
+        "critical_time_step_s": min(limits, default=None),
+        "energy_drift": max(drifts, default=None),
+        "hourglass_energy_ratio": max((largest_share(table, "hourglass", "elastic") for table in energies), default=None),
+        "energies_j": {name: float(values[-1]) for name, values in energies[-1].items()} if energies else None,
+        "max_penetration_m": max((count["max_penetration_m"] for count in counts), default=None),
+        "status": "completed",
+    }
+
+
+def _drift(motion: Simulation) -> float | None:
+    """Drift of the energy balance; None where the motion's energy is not defined or is not balanced."""
+    model, problem = motion.model, motion.model.problem
+    if motion.whole.energies:
+        return drift(motion.whole.energies)
+    if not model.traits.resultants:
+        return None  # the energy that points store does not follow from the gap of the pair
+    law = problem.contact.law
+    potential = law.state_size == 0 and not law.dissipative and model.system.scalars[GYROSCOPIC] == 0.0
+    # What changes the speed of the balls does work, too.
+    steady = motion.start.kind != "ramp" and not problem.kinematics.orbiting and model.system.spin is None
+    if not (potential and steady and problem.integrator.method.inertial):
+        return None
+    from raceway.core.ring.energy import energy_balance
+
+    ring = compiled(model.system)
+    return None if ring is None else energy_balance(ring, motion.whole).drift

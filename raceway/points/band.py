@@ -29,7 +29,7 @@ from raceway.planning.plan import make_plan
 from raceway.points.column_quantities import stated_columns
 from raceway.points.engine import Item, local, work_through
 from raceway.points.function import function
-from raceway.points.sensitivities import Sensitivities, sensitivities
+from raceway.points.sensitivities import Indices, Sensitivities, design, indices, sensitivities
 from raceway.points.store import row_key, written
 from raceway.points.workload import Workload, of_columns, run_times
 from raceway.scene.inputs import without
@@ -41,36 +41,6 @@ from raceway.storage.tables import Tables
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-
-@attrs.frozen(eq=False)
-class _Indices:
-    """First-order and total Sobol indices, each (quantities, d)."""
-
-    first: np.ndarray
-    total: np.ndarray
-
-
-def design(count: int, dimensions: int, seed: int) -> np.ndarray:
-    """((d + 2) n, d) numbers in [0, 1): rows of A, of B, then of A with each column of B in turn; n is a power of 2."""
-    from scipy.stats import qmc
-
-    both = qmc.Sobol(2 * dimensions, seed=seed).random(count)
-    a, b = both[:, :dimensions], both[:, dimensions:]
-    return np.vstack([a, b, *[np.where(np.arange(dimensions) == k, b, a) for k in range(dimensions)]])
-
-
-def indices(values: np.ndarray, dimensions: int) -> _Indices:
-    """Sobol indices of quantities (q, (d + 2) n) at the samples of ``design``."""
-    from scipy.stats import sobol_indices
-
-    count = values.shape[1] // (dimensions + 2)
-    parts = values.reshape(len(values), dimensions + 2, count)
-    deviations = parts - parts[:, :2].mean(axis=(1, 2))[:, None, None]
-    func = {"f_A": deviations[:, 0], "f_B": deviations[:, 1], "f_AB": np.moveaxis(deviations[:, 2:], 1, 0)}
-    sobol = sobol_indices(func=func, n=count)
-    shape = len(values), dimensions  # scipy leaves out axes of length 1
-    return _Indices(np.reshape(sobol.first_order, shape), np.reshape(sobol.total_order, shape))
 
 
 _SAMPLES, _LIMIT_COLOUR, _TOTAL, _FIRST = "#b9c9da", "#0b5fa5", "#b9c9da", "#0b5fa5"
@@ -295,7 +265,7 @@ def _summary(
     total: dict[str, list[float]] = {}
     if not reasons:
         effective = [k for k in range(len(names)) if np.ptp(ends[k]) > 1e-9 * abs(nominal[names[k]])]
-        sobol = indices(table[effective], dimensions) if effective else _Indices(np.empty((0, 0)), np.empty((0, 0)))
+        sobol = indices(table[effective], dimensions) if effective else Indices(np.empty((0, 0)), np.empty((0, 0)))
         for row_of, k in enumerate(effective):
             first[names[k]], total[names[k]] = sobol.first[row_of].tolist(), sobol.total[row_of].tolist()
     return Band(

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from functools import cached_property
-from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar
 
@@ -14,7 +12,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.answer import Answer, Interrupted, Part
-from raceway.answers.picture import Line, Plot, draw_panels, given_axes, signed, within
+from raceway.answers.picture import draw_panels, given_axes, signed, within
 from raceway.answers.progress import ShowProgress, telling
 from raceway.answers.quantities import ENDS, K_ERROR, C, Quantity, Z, named
 from raceway.answers.table import Words
@@ -23,16 +21,16 @@ from raceway.framework.doors import KEY_VALUES, PATH, PATHS, door, member
 from raceway.framework.loading.registry import Registry, registry_with
 from raceway.framework.shown import Fact, number_within
 from raceway.pipeline.run import run
-from raceway.pipeline.uncertainty import interval, of_ratio
+from raceway.pipeline.uncertainty import interval
 from raceway.planning.plan import make_plan
 from raceway.plugins.formats import labelled_dataset
 from raceway.points.axes import Axis, Vary, axes_of, noun, places_of, points, refuse_mistakes, shown, tables_at
 from raceway.points.dataset import axis_labels
 from raceway.points.effects import MOVING, Findings, Row, enumeration, explain, in_few_words
 from raceway.points.engine import Item, local, work_through
+from raceway.points.plot import MOST_PANELS, comparison_panels
 from raceway.points.store import row_key, tables_key, written
 from raceway.points.workload import key_facts
-from raceway.scene.designation import GEOMETRY
 from raceway.scene.scene import SceneSource, plain_tables, scene_from_dict
 from raceway.scene.tables import AutoIntegrator
 from raceway.storage.files import writable
@@ -43,8 +41,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
 
-#: Panels of a quantity at most, and differences that one sentence tells by themselves.
-_MOST_PANELS, _FEW = 4, 3
+#: Differences that one sentence tells by themselves.
+_FEW = 3
 
 
 @attrs.frozen(eq=False, slots=False, repr=False)
@@ -130,7 +128,7 @@ class Comparison(Answer, Findings):
             matplotlib is missing.
         """
         name = next(iter(self.quantities)) if quantity is None else member("quantity", quantity, self.quantities)
-        (panel,), axis = _panels(self, self.quantities[name], 1)
+        (panel,), axis = comparison_panels(self, self.quantities[name], 1)
         panel.draw(axes := given_axes(ax, 8.0, 5.0))
         if axis is not None:
             axes.legend(title=axis.label, frameon=False, fontsize=9)
@@ -172,10 +170,10 @@ class Comparison(Answer, Findings):
     def draw(self) -> Figure:
         """K; of static scenes kxx, kyy and x."""
         quantities = [about for about in self.quantities.values() if about is not Z]
-        parts = [_panels(self, about) for about in quantities]
+        parts = [comparison_panels(self, about) for about in quantities]
         rows, axis = [panels for panels, _ in parts], parts[0][1]
         rows = [sum(rows, [])] if len(rows[0]) == 1 else [row[k : k + 2] for row in rows for k in range(0, len(row), 2)]
-        along = noun(places_of(self.varied or self.axes, _MOST_PANELS)[0].key)
+        along = noun(places_of(self.varied or self.axes, MOST_PANELS)[0].key)
         title = f"{enumeration([about.symbol for about in quantities])} over {along}: {self.title}"
         return draw_panels(rows, title, "" if axis is None else axis.label)
 
@@ -188,60 +186,10 @@ class Comparison(Answer, Findings):
         yield Words("all quantities, courses and inertia in words: compare.json", "dim")
 
 
-def _panels(comparison: Findings, about: Quantity, most: int = _MOST_PANELS) -> tuple[list[Plot], Axis | None]:
-    """Panels of a quantity, at most so many, and the axis whose values are their curves; None: each is one curve."""
-    along, of_curves, of_panels = places_of(comparison.varied or comparison.axes, most)
-    names = () if along.numeric else tuple(map(shown, along.values))
-    values = sorted(along.values) if along.numeric else list(along.values)
-    if alone := bool(names) and not of_curves:  # each value is a curve of one point
-        of_curves = [along]
-    axes = [*of_panels, *of_curves, *([] if alone else [along])]
-    at = {tuple(repr(row.point[axis.key]) for axis in axes): row for row in comparison.rows}
-    stride, panels = math.prod(len(axis.values) for axis in of_curves[1:]), list[Plot]()
-    same = not any(axis.key.removeprefix("bearing.") in ("preset", *GEOMETRY) for axis in of_curves[:1])
-    for setting in product(*(axis.values for axis in of_panels)):
-        lines, drawn = list[Line](), list[list[Row | None]]()
-        for place, chosen in enumerate(product(*(axis.values for axis in of_curves))):
-            points_along = [(*setting, *chosen, *end) for end in ([()] if alone else [(value,) for value in values])]
-            drawn.append([at.get(tuple(map(repr, point))) for point in points_along])
-            y, low, high, doubt = np.array([_numbers(row, about) for row in drawn[-1]]).T
-            x = np.array([place] if alone else range(len(values)) if names else values, dtype=float)
-            first, *more = [axis.words(value) for axis, value in zip(of_curves, chosen, strict=True)] or [""]
-            words = ", ".join([shown(chosen[0]) if chosen else first, *more])
-            base, apart = None, None
-            if place >= stride:
-                base, first_rows = lines[place % stride], drawn[place % stride]
-                apart = np.array([_apart(*pair, about, same) for pair in zip(first_rows, drawn[-1], strict=True)]).T
-            shade = place / (len(of_curves[0].values) - 1) if len(of_curves) == 1 and of_curves[0].numeric else None
-            lines.append(Line(x, y, words, place, low, high, doubt, base, apart, shade, {"linestyle": ""} if names else {}))
-        title = ", ".join(axis.words(value) for axis, value in zip(of_panels, setting, strict=True))
-        panels.append(Plot(tuple(lines), along.label, about.axis, title, names))
-    return panels, next(iter(of_curves), None)
-
-
-def _numbers(row: Row | None, about: Quantity) -> tuple[float, float, float, float]:
-    """Value, ends of its interval, and the value of a row in doubt, in the unit that people read it in; nan for what is not there."""
-    value = None if row is None or row.failed else row.value(about.name)
-    if row is None or value is None or row.doubt is not None:
-        return math.nan, math.nan, math.nan, math.nan if value is None else about.read(value)
-    entry = (row.result.get("uncertainty") or {}).get(about.name)
-    low, high = (about.read(entry[end]) if entry else math.nan for end in ("low", "high"))
-    return about.read(value), low, high, math.nan
-
-
-def _apart(base: Row | None, row: Row | None, about: Quantity, same: bool) -> tuple[float, float]:
-    """Interval of the quantity of a row over that of another, relative; nan where it is not known."""
-    first, other = (
-        None if one is None or one.doubt is not None else (one.result.get("uncertainty") or {}).get(about.name)
-        for one in (base, row)
-    )
-    return of_ratio(first, other, same) if first and other else (math.nan, math.nan)
-
-
 def difference_words(comparison: Findings) -> list[str]:
     """One sentence: by how many per cent curves of the picture differ from the first, and whether that is within their intervals."""
     about, pairs = next(iter(comparison.quantities.values())), dict[str, list[tuple[str, np.ndarray]]]()
-    panels, axis = _panels(comparison, about)
+    panels, axis = comparison_panels(comparison, about)
     for panel, line, base in ((one, line, line.base) for one in panels for line in one.curves):
         if axis is not None and base is not None and (known := np.isfinite(line.y) & np.isfinite(base.y)).any():
             value, first = line.label.partition(", ")[0], base.label.partition(", ")[0]
@@ -251,7 +199,7 @@ def difference_words(comparison: Findings) -> list[str]:
             pairs.setdefault(f"{what}{value} against {first} {axis.unit}".rstrip(), []).append((where, numbers))
     if not pairs:
         return []
-    along, text, every = places_of(comparison.varied, _MOST_PANELS)[0], list[str](), list[np.ndarray]()
+    along, text, every = places_of(comparison.varied, MOST_PANELS)[0], list[str](), list[np.ndarray]()
     for pair, parts in pairs.items():
         every.append(np.concatenate([numbers for _, numbers in parts], axis=2))
         spans = []

@@ -1,8 +1,10 @@
-"""Layout of a sweep's pictures: the quantity, the axes for x, colour and panels, the kind of picture."""
+"""Layout of a sweep's pictures: the quantity, the axes for x, colour and panels, the kind of picture; panels of a comparison."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,11 +12,14 @@ import attrs
 import numpy as np
 
 from raceway.answers.picture import Line, Plot, draw_panels, label_axes, new_figure, save_figure, wrapped
-from raceway.answers.quantities import AXIAL_DISPLACEMENT, COLUMNS, STIFFNESS, Z_REAL, K, entry_unit, read_in
+from raceway.answers.quantities import AXIAL_DISPLACEMENT, COLUMNS, STIFFNESS, Z_REAL, K, Quantity, entry_unit, read_in
 from raceway.errors import Mistake, RacewayError, SceneError
 from raceway.framework.options import nearest
+from raceway.pipeline.uncertainty import of_ratio
 from raceway.points.axes import Axis, is_number, places_of, shown
+from raceway.points.effects import Findings, Row
 from raceway.points.selection import LIST, Selection, listed
+from raceway.scene.designation import GEOMETRY
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,6 +28,8 @@ if TYPE_CHECKING:
     from xarray import DataArray, Dataset
 
 _NO_RESULT = "#c3cad1"
+#: Panels of a comparison at most.
+MOST_PANELS = 4
 
 
 def draw(layout: _Layout) -> Figure:
@@ -116,7 +123,7 @@ def axis_of(data: DataArray, key: str) -> Axis:
 #: First that is there: what a sweep is made for, then what a static scene has.
 _DEFAULTS = (K.name, Z_REAL.name, f"{STIFFNESS.name}:y,y", AXIAL_DISPLACEMENT.name)
 _MOST_COLOURS = 8
-_MOST_PANELS = 6
+MOST_PANELS = 6
 
 
 @attrs.frozen(eq=False)
@@ -204,7 +211,7 @@ def layout(
             other_axes, key=lambda key: (key in numeric, len(axes[key]) > _MOST_COLOURS, -len(axes[key])), default=None
         )
     over = [key for key in other_axes if key != y]
-    panels = over[0] if len(over) == 1 and len(axes[over[0]]) <= _MOST_PANELS and LIST not in data.dims else None
+    panels = over[0] if len(over) == 1 and len(axes[over[0]]) <= MOST_PANELS and LIST not in data.dims else None
     if rest := [key for key in over if key != panels]:
         words = "varies, too ({}), and {} cannot show it: choose one with --at {}={}"
         raise SceneError(
@@ -265,3 +272,53 @@ def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:
 def names(dataset: Dataset) -> list[str]:
     """Variables with numbers."""
     return [str(name) for name, data in dataset.data_vars.items() if data.dtype.kind in "fiu"]
+
+
+def comparison_panels(comparison: Findings, about: Quantity, most: int = MOST_PANELS) -> tuple[list[Plot], Axis | None]:
+    """Panels of a quantity, at most so many, and the axis whose values are their curves; None: each is one curve."""
+    along, of_curves, of_panels = places_of(comparison.varied or comparison.axes, most)
+    names = () if along.numeric else tuple(map(shown, along.values))
+    values = sorted(along.values) if along.numeric else list(along.values)
+    if alone := bool(names) and not of_curves:  # each value is a curve of one point
+        of_curves = [along]
+    axes = [*of_panels, *of_curves, *([] if alone else [along])]
+    at = {tuple(repr(row.point[axis.key]) for axis in axes): row for row in comparison.rows}
+    stride, panels = math.prod(len(axis.values) for axis in of_curves[1:]), list[Plot]()
+    same = not any(axis.key.removeprefix("bearing.") in ("preset", *GEOMETRY) for axis in of_curves[:1])
+    for setting in product(*(axis.values for axis in of_panels)):
+        lines, drawn = list[Line](), list[list[Row | None]]()
+        for place, chosen in enumerate(product(*(axis.values for axis in of_curves))):
+            points_along = [(*setting, *chosen, *end) for end in ([()] if alone else [(value,) for value in values])]
+            drawn.append([at.get(tuple(map(repr, point))) for point in points_along])
+            y, low, high, doubt = np.array([_numbers(row, about) for row in drawn[-1]]).T
+            x = np.array([place] if alone else range(len(values)) if names else values, dtype=float)
+            first, *more = [axis.words(value) for axis, value in zip(of_curves, chosen, strict=True)] or [""]
+            words = ", ".join([shown(chosen[0]) if chosen else first, *more])
+            base, apart = None, None
+            if place >= stride:
+                base, first_rows = lines[place % stride], drawn[place % stride]
+                apart = np.array([_apart(*pair, about, same) for pair in zip(first_rows, drawn[-1], strict=True)]).T
+            shade = place / (len(of_curves[0].values) - 1) if len(of_curves) == 1 and of_curves[0].numeric else None
+            lines.append(Line(x, y, words, place, low, high, doubt, base, apart, shade, {"linestyle": ""} if names else {}))
+        title = ", ".join(axis.words(value) for axis, value in zip(of_panels, setting, strict=True))
+        panels.append(Plot(tuple(lines), along.label, about.axis, title, names))
+    return panels, next(iter(of_curves), None)
+
+
+def _numbers(row: Row | None, about: Quantity) -> tuple[float, float, float, float]:
+    """Value, ends of its interval, and the value of a row in doubt, in the unit that people read it in; nan for what is not there."""
+    value = None if row is None or row.failed else row.value(about.name)
+    if row is None or value is None or row.doubt is not None:
+        return math.nan, math.nan, math.nan, math.nan if value is None else about.read(value)
+    entry = (row.result.get("uncertainty") or {}).get(about.name)
+    low, high = (about.read(entry[end]) if entry else math.nan for end in ("low", "high"))
+    return about.read(value), low, high, math.nan
+
+
+def _apart(base: Row | None, row: Row | None, about: Quantity, same: bool) -> tuple[float, float]:
+    """Interval of the quantity of a row over that of another, relative; nan where it is not known."""
+    first, other = (
+        None if one is None or one.doubt is not None else (one.result.get("uncertainty") or {}).get(about.name)
+        for one in (base, row)
+    )
+    return of_ratio(first, other, same) if first and other else (math.nan, math.nan)

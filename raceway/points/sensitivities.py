@@ -1,4 +1,4 @@
-"""Sensitivities of one scene, for Python: ``raceway.sensitivities``."""
+"""Sensitivities of one scene, for Python: ``raceway.sensitivities``; Sobol indices of samples."""
 
 from __future__ import annotations
 
@@ -287,3 +287,33 @@ def sensitivities(
     models, band = sum(gradient.statics.models for _, gradient in by_key), first_order_band(model, equilibrium, tolerances)
     words, warnings = definitions(model, equilibrium), (warning,) if warning else ()
     return Sensitivities(read.title, now, words, tuple(rows), nothing, refusals, run_s, took, models, warnings, band)
+
+
+@attrs.frozen(eq=False)
+class Indices:
+    """First-order and total Sobol indices, each (quantities, d)."""
+
+    first: np.ndarray
+    total: np.ndarray
+
+
+def design(count: int, dimensions: int, seed: int) -> np.ndarray:
+    """((d + 2) n, d) numbers in [0, 1): rows of A, of B, then of A with each column of B in turn; n is a power of 2."""
+    from scipy.stats import qmc
+
+    both = qmc.Sobol(2 * dimensions, seed=seed).random(count)
+    a, b = both[:, :dimensions], both[:, dimensions:]
+    return np.vstack([a, b, *[np.where(np.arange(dimensions) == k, b, a) for k in range(dimensions)]])
+
+
+def indices(values: np.ndarray, dimensions: int) -> Indices:
+    """Sobol indices of quantities (q, (d + 2) n) at the samples of ``design``."""
+    from scipy.stats import sobol_indices
+
+    count = values.shape[1] // (dimensions + 2)
+    parts = values.reshape(len(values), dimensions + 2, count)
+    deviations = parts - parts[:, :2].mean(axis=(1, 2))[:, None, None]
+    func = {"f_A": deviations[:, 0], "f_B": deviations[:, 1], "f_AB": np.moveaxis(deviations[:, 2:], 1, 0)}
+    sobol = sobol_indices(func=func, n=count)
+    shape = len(values), dimensions  # scipy leaves out axes of length 1
+    return Indices(np.reshape(sobol.first_order, shape), np.reshape(sobol.total_order, shape))

@@ -10,7 +10,7 @@ import time
 from functools import cache
 
 import pytest
-from raceway_checks.precision.study import EXACT
+from raceway_checks.precision.answer import EXACT
 
 import raceway as rw
 from checks.validation import plan_time

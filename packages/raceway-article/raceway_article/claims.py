@@ -17,14 +17,26 @@ Seber, Wild, Nonlinear Regression (1989), section 5.4 (intervals from the sum of
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import attrs
 import numpy as np
 from raceway_checks.verify.reference import Verified
-from scipy.special import stdtrit
 
-from raceway.extend import Tables, trend
+from raceway.extend import Tables
 from raceway_article.design import FRICTION_WORDS, MEASURES, ONE_WAY, ROTATING, TILT_WORDS, Curves
 from raceway_article.rules import BRIDGED, FAILED, HOLDS, LEVEL, NOT, PARTLY, UNTESTED, Finding, Verdict
+from raceway_article.courses import (
+    ABOUT,
+    course,
+    is_about,
+    change_within,
+    load_effect,
+    rises_with_load,
+    influence,
+    influence_grows,
+    Exponent,
+    power_exponent,
+    NEAREST,
+)
+
 
 #: What the text of the article states: deviations of peak pressures; effects of the axial load in two zones of w*.
 _LARGEST_DEVIATION, _HEAVIEST_DEVIATION = 0.0242, 0.0033
@@ -40,119 +52,6 @@ _READINGS = {
 
 #: Number, claim, rule, what was computed, outcomes of the rule.
 _Row = tuple[str, str, str, str, list[Finding]]
-
-
-#: "about" a percentage: within this share of it.
-ABOUT = 0.25
-
-
-def _course(values: np.ndarray, errors: np.ndarray, failures: np.ndarray) -> str | None:
-    """ "rises" or "falls" at every step, "level", "not monotonic"; None with a failed run, without both ends, or with
-    fewer than three numbers.
-
-    values : (n,);  errors : (n,) relative; a step within its ends' errors is no step;  failures : (n,) bool
-    """
-    finite = np.isfinite(values)
-    if failures.any() or not (finite[0] and finite[-1] and finite.sum() >= 3):
-        return None
-    y = values[finite]
-    if np.ptp(y) < LEVEL * abs(y[0]):
-        return "level"
-    steps = trend(y, errors[finite])
-    return steps if steps == "not monotonic" or abs(y[-1] / y[0] - 1.0) >= LEVEL else "level"
-
-
-def _about(value: float, target: float) -> bool:
-    return abs(value - target) <= ABOUT * target
-
-
-def _change_within(w: np.ndarray, values: np.ndarray, failures: np.ndarray, first: float, last: float) -> float | None:
-    """k(last) / k(first) - 1 over the relative speed w (n,); None with a failed run or without numbers around both ends."""
-    ends = None if failures.any() else _values_at(w, values, np.array([first, last]))
-    return None if ends is None else float(ends[1] / ends[0] - 1.0)
-
-
-def load_effect(w: np.ndarray, surface: np.ndarray, failures: np.ndarray, first: float, last: float) -> float | None:
-    """Largest of max/min - 1 over the loads at the ends of a zone and the speeds in it; None as in ``_change_within``.
-
-    surface : (loads, speeds), positive;  failures : (loads, speeds) bool
-    """
-    zone = np.array([first, *w[(w > first) & (w < last)], last])
-    rows = [None if failures.any() else _values_at(w, values, zone) for values in surface]
-    complete = [row for row in rows if row is not None]
-    if len(complete) < len(rows):
-        return None
-    return float((np.max(complete, axis=0) / np.min(complete, axis=0) - 1.0).max())
-
-
-def _values_at(w: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray | None:
-    """Values at ascending points, between neighbours by straight lines; None where they do not reach both ends."""
-    finite = np.isfinite(values)
-    w, values = w[finite], values[finite]
-    return None if len(w) < 2 or at[0] < w[0] or at[-1] > w[-1] else np.interp(at, w, values)
-
-
-def _rises_with_load(surface: np.ndarray, errors: np.ndarray, failures: np.ndarray) -> list[bool | None]:
-    """At each speed: whether k rises at every step of the axial load; (loads, speeds) each."""
-    courses = [_course(*column) for column in zip(surface.T, errors.T, failures.T, strict=True)]
-    return [None if outcome is None else outcome == "rises" for outcome in courses]
-
-
-def _influence(surface: np.ndarray) -> np.ndarray:
-    """(loads,) |k*(1) - 1|, the size of the speed's influence."""
-    return np.asarray(np.abs(surface[:, -1] / surface[:, 0] - 1.0))
-
-
-def _influence_grows(surface: np.ndarray, failures: np.ndarray) -> bool | None:
-    """Whether the size of the speed's influence rises at every step of the axial load; (loads, speeds) each."""
-    size = _influence(surface)
-    if failures.any() or not np.isfinite(size).all():
-        return None
-    return bool((np.diff(size) > 0.0).all())
-
-
-_EXPONENTS = np.linspace(0.05, 30.0, 2996)
-_CHANCE, _CHI_SQUARED = 0.975, 3.84
-#: Nearer to 2 than to 1 or 3 is roughly quadratic; a straight line has 1.
-NEAREST, _STRAIGHT = (1.5, 2.5), 1.0
-
-
-@attrs.frozen
-class _Exponent:
-    """Of a power law; ``low`` and ``high`` end its 95 % interval."""
-
-    value: float
-    low: float
-    high: float
-
-    @property
-    def roughly_quadratic(self) -> bool:
-        """Nearer to 2 than to any other whole number, and no straight line."""
-        return NEAREST[0] <= self.value <= NEAREST[1] and not self.low <= _STRAIGHT <= self.high
-
-
-def power_exponent(x: np.ndarray, y: np.ndarray, errors: np.ndarray, constant: bool) -> _Exponent | None:
-    """p of y = c x^p, or of y = a + c x^p with a ``constant``; None where the numbers are too few for an interval.
-
-    x : (n,) positive;  y : (n,), nan where a number is missing;  errors : (n,) absolute
-    """
-    finite = np.isfinite(y)
-    x, y, errors = x[finite], y[finite], errors[finite]
-    free = len(y) - 2 - constant
-    if free < 1:
-        return None
-    powers = x[None, :] ** _EXPONENTS[:, None]
-    if constant:  # about the means
-        powers, y = powers - powers.mean(axis=1, keepdims=True), y - y.mean()
-    factor = powers @ y / (powers**2).sum(axis=1)
-    sums = ((y - factor[:, None] * powers) ** 2).sum(axis=1)
-    best = int(np.argmin(sums))
-    limit = sums[best] * (1.0 + stdtrit(free, _CHANCE) ** 2 / free) + _CHI_SQUARED * float((errors**2).mean())
-    inside = _EXPONENTS[sums <= limit]
-    # No interval is narrower than the step of the grid.
-    value, step = _EXPONENTS[best], _EXPONENTS[1] - _EXPONENTS[0]
-    low, high = min(inside.min(initial=np.inf), value - step), max(inside.max(initial=0.0), value + step)
-    return _Exponent(float(value), float(low), float(high))
 
 
 _ORDER = ("friction", "tilt", "inertia", "bodies", "speed", "load")
@@ -288,7 +187,7 @@ def _unidirectional(curves: Curves) -> list[_Row]:
         for model, surface in curves.surfaces(ONE_WAY):
             for curve in surface.curves:
                 values = curve.values(measure)
-                falls = _is("falls", _course(values, curve.errors, curve.failed))
+                falls = _is("falls", course(values, curve.errors, curve.failed))
                 why = curve.missing if falls is None else ""
                 findings.append(Finding({**model, "load": curve.load}, falls, _ratio(values), why))
         claim = f"Under a unidirectional force {measure} falls with speed."
@@ -306,11 +205,11 @@ def _ratio(values: np.ndarray) -> float | None:
     return float(ratio) if np.isfinite(ratio) else None
 
 
-def _in_speed(_w: np.ndarray, speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> _Exponent | None:
+def _in_speed(_w: np.ndarray, speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Exponent | None:
     return power_exponent(speeds / speeds[-1], values / values[0], errors * values / values[0], constant=True)
 
 
-def _above_lowest(w: np.ndarray, _speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> _Exponent | None:
+def _above_lowest(w: np.ndarray, _speeds: np.ndarray, values: np.ndarray, errors: np.ndarray) -> Exponent | None:
     star = values / values[0]
     return power_exponent(w[1:], star[1:] - 1.0, (errors * star)[1:], constant=False)
 
@@ -326,12 +225,12 @@ def _hardening(curves: Curves, measure: str) -> list[_Row]:
         )
         # Outcomes for every model and load, and the exponents where k rises
         findings: list[Finding] = []
-        rising: dict[str, list[_Exponent]] = {}
+        rising: dict[str, list[Exponent]] = {}
         for model, surface in curves.surfaces(ROTATING):
             speeds, w = np.array(surface.speeds), np.array(curves.design.relative(surface.speeds))
             for curve in surface.curves:
                 values, errors = curve.values(measure), curve.errors
-                rises = _is("rises", _course(values, errors, curve.failed))
+                rises = _is("rises", course(values, errors, curve.failed))
                 power = fit(w, speeds, values, errors) if rises else None
                 quadratic = rises if not rises else None if power is None else power.roughly_quadratic
                 why = "" if quadratic is not None else curve.missing or "too few speeds for an exponent's interval"
@@ -370,9 +269,9 @@ def _axial(curves: Curves, measure: str) -> list[_Row]:
         w = np.array(curves.design.relative(surface.speeds))
         values, failures, missing = surface.values(measure), surface.failed, surface.missing
         for load, k, failure_of_load in zip(surface.loads, values, failures, strict=True):
-            low_change = _change_within(w, k, failure_of_load, *_LOW_ZONE)
+            low_change = change_within(w, k, failure_of_load, *_LOW_ZONE)
             for reading, begin in (("5a", _HIGH_ZONE[0]), ("5b", 0.0)):
-                high_change = _change_within(w, k, failure_of_load, begin, _HIGH_ZONE[1])
+                high_change = change_within(w, k, failure_of_load, begin, _HIGH_ZONE[1])
                 effects[reading].append(_Effect({**model, "load": load}, low_change, high_change, missing))
         for reading, k in (("5c", values), ("5d", values / values[:, :1])):
             low_change, high_change = (load_effect(w, k, failures, *zone) for zone in (_LOW_ZONE, _HIGH_ZONE))
@@ -400,7 +299,7 @@ def _axial(curves: Curves, measure: str) -> list[_Row]:
 def _as_claimed(effect: _Effect) -> bool | None:
     if effect.low is None or effect.high is None:
         return None
-    return _about(effect.low, _LOW_EFFECT) and _about(effect.high, _HIGH_EFFECT)
+    return is_about(effect.low, _LOW_EFFECT) and is_about(effect.high, _HIGH_EFFECT)
 
 
 def _joint_effect(curves: Curves, measure: str) -> list[_Row]:
@@ -408,17 +307,17 @@ def _joint_effect(curves: Curves, measure: str) -> list[_Row]:
     with_load, with_speed, grows, together = [], [], [], []
     for model, surface in curves.surfaces(ROTATING):
         values, errors, failures, why = surface.values(measure), surface.errors, surface.failed, surface.missing
-        rising = _rises_with_load(values, errors, failures)
+        rising = rises_with_load(values, errors, failures)
         with_load += [
             Finding({**model, "speed": speed}, rises, _ratio(column), why)
             for speed, rises, column in zip(surface.speeds, rising, values.T, strict=True)
         ]
-        courses = [_is("rises", _course(*curve)) for curve in zip(values, errors, failures, strict=True)]
+        courses = [_is("rises", course(*curve)) for curve in zip(values, errors, failures, strict=True)]
         with_speed += [
             Finding({**model, "load": load}, rises, _ratio(k), why)
             for load, rises, k in zip(surface.loads, courses, values, strict=True)
         ]
-        more, change = _influence_grows(values, failures), _influence(values)
+        more, change = influence_grows(values, failures), influence(values)
         growth = float(change[-1] - change[0]) if np.isfinite(change[[0, -1]]).all() else None
         grows.append(Finding(model, more, growth, why))
         parts = [*rising, *courses, more]

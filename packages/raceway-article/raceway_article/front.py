@@ -80,8 +80,8 @@ def article(
     command = _command(scene, {"bodies": None if bodies == "both" else bodies, **given, "processes": None}, changes, files)
     compute: Callable[..., Answer]
     if elastic:
-        from raceway_article.elastic import SCENE, TURNS, elastic_article, elastic_workload
-        from raceway_article.elastic import design as elastic_design
+        from raceway_article.elastic import elastic_article, elastic_workload
+        from raceway_article.elastic_design import SCENE, TURNS, design as elastic_design
 
         tables = plain_tables(SCENE if scene is None else scene, *changes, registry=registry)
         runs = elastic_design(tables, friction, TURNS if turns is None else turns)

@@ -10,8 +10,8 @@ import tomllib
 
 import attrs
 import pytest
-from raceway_article import elastic
-from raceway_article.elastic import SCENE, ElasticDesign, design
+from raceway_article import elastic, elastic_design, elastic_rows
+from raceway_article.elastic_design import SCENE, ElasticDesign, design
 from raceway_article.elastic_page import drawings, page
 from raceway_article.remaining_time import RemainingTime
 
@@ -43,7 +43,7 @@ def tables(**more):
 def short(monkeypatch):
     """One load case, one excitation, a dozen steps: seconds."""
     monkeypatch.setattr(ElasticDesign, "load_cases", property(lambda _: [(1000.0, 500.0)]))
-    monkeypatch.setattr(elastic, "CLAIMED", elastic.CLAIMED[:1])
+    monkeypatch.setattr(elastic_design, "CLAIMED", elastic_design.CLAIMED[:1])
     monkeypatch.setattr(elastic, "STEPS", 12)
 
 
@@ -60,7 +60,7 @@ def test_the_scene_is_the_article_s_mesh_of_the_examples():
 
 @pytest.mark.slow
 def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_runs(tmp_path, short, monkeypatch):
-    done, real = [], elastic._row_of
+    done, real = [], elastic.row_of
 
     def stop(*given):
         if len(done) == 4:
@@ -133,7 +133,7 @@ def test_explicit_steps_of_the_scene_are_a_fourth_way_under_the_same_settings():
     steps = {"integrator": {"kind": "central_difference", "least_step": 3e-9}}
     made = design(read_toml(SCENE) | steps, turns=1)
     explicit = [run for run in made.runs() if run.explicit]
-    assert [run.excitation for run in explicit] == list(elastic.CLAIMED) and len(made.runs()) == 20
+    assert [run.excitation for run in explicit] == list(elastic_design.CLAIMED) and len(made.runs()) == 20
     for run in explicit:
         point, implicit = (made.point(each, default_registry()) for each in (run, attrs.evolve(run, explicit=False)))
         assert point.pop("integrator") == {"kind": "central_difference", "least_step": 3e-9, "turns": 1}
@@ -203,7 +203,7 @@ def test_a_scene_that_the_study_cannot_use_is_refused(change, path):
 def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_is_tried_again(tmp_path, monkeypatch):
     monkeypatch.setattr(ElasticDesign, "load_cases", property(lambda _: [(1000.0, 500.0), (2000.0, 0.0)]))
     monkeypatch.setattr(elastic, "CLAIMED", ())
-    real, wrong, tried = elastic.run, [MemoryError(), ConvergenceError("no equilibrium")], []
+    real, wrong, tried = elastic_rows.run, [MemoryError(), ConvergenceError("no equilibrium")], []
 
     def fail(scene, *given):
         if scene.bodies.name == "elastic":
@@ -253,16 +253,16 @@ def test_deviations_are_those_of_rows_made_by_hand():
     """Pressures of elastic bodies are 2 % above Hertz's, of the ball with the least load 3 %; K 1 % above that of condensed bodies."""
     study = elastic_study()
     row, other = (study.row("static", "1000 N axial + 500 N radial", kind) for kind in ("elastic", "condensed"))
-    hertz = elastic._pressures(row["balls"], "inner")
+    hertz = elastic_rows.pressures_of(row["balls"], "inner")
     assert hertz["most_loaded"] == pytest.approx(0.02) and hertz["largest"] == pytest.approx(0.03)
     assert hertz["ball"] == 0 and hertz["loaded_balls"] == 3  # of four, one of which carries nothing
-    off = elastic._at_rest(row, other)
+    off = elastic_rows.difference_at_rest(row, other)
     assert off["x"] == pytest.approx(-0.01) and off["kyy"] == pytest.approx(0.004) and off["y"] is not None
     assert off["ball_loads"] == pytest.approx(0.005)
     axial = [study.row("static", "400 N axial", kind) for kind in ("elastic", "condensed")]
-    assert elastic._at_rest(*axial)["y"] is None
+    assert elastic_rows.difference_at_rest(*axial)["y"] is None
     moving = [study.row("motion", "bidirectional unbalance force", kind) for kind in ("elastic", "condensed")]
-    off = elastic._in_motion(*moving)
+    off = elastic_rows.difference_in_motion(*moving)
     assert off["k"] == pytest.approx(0.01) and off["c"] == pytest.approx(0.5)
     # w 50 N s/m over |Z|
     assert off["wc"] == pytest.approx(

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from raceway_article import claims
-from raceway_article.claims import power_exponent, region_of, verdict_of, verdicts
+from raceway_article.claims import region_of, verdict_of, verdicts
+from raceway_article.courses import power_exponent
 from raceway_article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding
 
 from checks.validation.article_study import curves, static

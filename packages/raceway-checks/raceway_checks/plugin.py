@@ -66,5 +66,5 @@ def raceway_commands() -> dict[str, tuple[rw.Command, ...]]:
 
 @rw.hookimpl
 def raceway_names() -> dict[str, str]:
-    precision = dict.fromkeys(("Precision", "precision"), "raceway_checks.precision.study")
+    precision = {"Precision": "raceway_checks.precision.answer", "precision": "raceway_checks.precision.study"}
     return precision | dict.fromkeys(("LawCurves", "law"), "raceway_checks.law")

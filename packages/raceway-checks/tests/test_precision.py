@@ -10,8 +10,8 @@ import attrs
 import numpy as np
 import pytest
 from raceway_checks.precision import study as module
+from raceway_checks.precision.answer import THRESHOLDS
 from raceway_checks.precision.settings import find_reference, make_design
-from raceway_checks.precision.study import THRESHOLDS
 from raceway_checks.precision.timing import measured
 from rich.console import Console
 

@@ -65,6 +65,6 @@ def raceway_names() -> dict[str, str]:
     return {
         "fit": "raceway_measure.fit.fit",
         "Fitted": "raceway_measure.fit.fitted",
-        "Identified": "raceway_measure.fit.identify",
+        "Identified": "raceway_measure.fit.identified",
         "identify": "raceway_measure.fit.identify",
     }

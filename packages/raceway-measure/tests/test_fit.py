@@ -6,16 +6,9 @@ import attrs
 import numpy as np
 import pytest
 from raceway_measure.fit.estimate import Free, estimate, free_keys, judged
-from raceway_measure.fit.linear import (
-    LinearResiduals,
-    aliasing_error,
-    free_parts,
-    largest_tone,
-    spectra_of,
-    spectrum_of,
-    uneven_block,
-)
+from raceway_measure.fit.linear import LinearResiduals, free_parts
 from raceway_measure.fit.signals import signals_of, write_recording
+from raceway_measure.fit.spectra import aliasing_error, largest_tone, spectra_of, spectrum_of, uneven_block
 from raceway_measure.fit.table import TableResiduals, measurements_in
 from raceway_measure.rig.signals import record as rig_record
 from raceway_measure.rig.signals import response, slow_roll_record, white_noise

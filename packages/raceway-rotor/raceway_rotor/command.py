@@ -10,7 +10,8 @@ import attrs
 
 from raceway import Answer, SceneError
 from raceway.extend import Fact, Part, Tables, Words, file_lines, writable
-from raceway_rotor.export import CoefficientFile, export_coefficients, export_ross, kind_of, point_rows
+from raceway_rotor.coefficient_file import CoefficientFile, point_rows
+from raceway_rotor.export import export_coefficients, export_ross, kind_of
 from raceway_rotor.ross_file import check_name, installed_generation
 
 

@@ -38,8 +38,8 @@ def raceway_commands() -> dict[str, tuple[rw.Command, ...]]:
 @rw.hookimpl
 def raceway_names() -> dict[str, str]:
     return {
-        "CoefficientFile": "raceway_rotor.export",
-        "RossTable": "raceway_rotor.export",
+        "CoefficientFile": "raceway_rotor.coefficient_file",
+        "RossTable": "raceway_rotor.coefficient_file",
         "export_coefficients": "raceway_rotor.export",
         "export_ross": "raceway_rotor.export",
         "ross.RollingBearing": "raceway_rotor.bearing",

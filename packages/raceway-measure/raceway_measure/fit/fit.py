@@ -12,7 +12,8 @@ from raceway import SceneError, door
 from raceway.extend import PATHS, TEXTS, SceneSource, ShowProgress, as_scene, registry_with, telling
 from raceway_measure.fit.column_headers import FORCED, ORBIT, over_time
 from raceway_measure.fit.fitted import Fitted
-from raceway_measure.fit.identify import Identified, identify
+from raceway_measure.fit.identified import Identified
+from raceway_measure.fit.identify import identify
 from raceway_measure.fit.linear import fit_record
 from raceway_measure.fit.response import FrequencyResponse, is_response, response_of
 from raceway_measure.fit.rig import fit_rig

@@ -9,11 +9,6 @@ themselves.  Tones in them (hum) are fitted beside T, with amplitudes that may g
 but for a polynomial that T has.  Where residuals are not white then, each frequency's score determines the covariance (White's sandwich, with
 leverages: HC3), and a force that is not over at half the sampling rate widens it.
 
-Power of residuals over their variance is exponential with the mean 1 at each frequency, independent from one to the next, where noise is
-stationary.  A peak far above its neighbours is a tone; blocks of frequencies whose means differ by more than that allows are not white.
-A force sampled at fs has at each frequency w its true spectrum at fs - w added.  What its upper half would add at half the rate, with
-signs of lobes and times of pulses, stands for that: spectra of pulses without jumps fall with 1 / w^2 beyond their first lobe.
-
 Pintelon, Schoukens, System Identification: A Frequency Domain Approach, Wiley 2012, chapters 6 (leakage), 9 (errors in variables).
 MacKinnon, White, J. Econometrics 29 (1985) 305: covariance where variances differ.
 """
@@ -28,69 +23,8 @@ from raceway_measure.fit.estimate import Estimate, Free, estimate, judged
 from raceway_measure.fit.fitted import Fitted, Series, refuse_few
 from raceway_measure.fit.response import FrequencyResponse
 from raceway_measure.fit.signals import Signals
+from raceway_measure.fit.spectra import TONES, Spectra, aliasing_error, largest_tone, spectra_of, spectrum_of, uneven_block
 
-#: A tone's power over the median of its neighbours, which lie within this many frequencies; frequencies of a tone to either side; tones at most.
-_FAR, _NEIGHBOURS, _WIDTH, TONES = 30.0, 16, 2, 6
-#: Blocks of frequencies whose powers are compared, and probability below which they are not alike.
-_BLOCKS, _UNLIKELY = 16, 1e-3
-#: Part of the frequencies below half the sampling rate whose mean power is compared with noise, and the factor by which it is more.
-_TOP, _LOUDER = 0.1, 4.0
-
-
-def spectrum_of(signal: np.ndarray) -> np.ndarray:
-    """Discrete Fourier transform of real signals (N, ...) less their means, over N."""
-    return np.asarray(np.fft.rfft(signal - signal.mean(axis=0), axis=0) / len(signal))
-
-
-def largest_tone(residuals: np.ndarray, variance: np.ndarray, omega: np.ndarray) -> float | None:
-    """Frequency [rad/s] of the largest tone in complex residuals (n, d) at even frequencies (n,); None without one."""
-    power = np.abs(residuals) ** 2 / variance
-    peak, axis = np.unravel_index(int(np.argmax(power)), power.shape)
-    power, residual = power[:, axis], residuals[:, axis]
-    distance = np.abs(np.arange(len(power)) - peak)
-    near = power[(distance <= _NEIGHBOURS) & (distance > _WIDTH)]
-    if len(near) < _NEIGHBOURS or power[peak] < _FAR * np.median(near) / np.log(2.0):
-        return None
-    beside = max((k for k in (peak - 1, peak + 1) if 0 <= k < len(power)), key=lambda k: float(power[k]))
-    # The components of a tone fall with the distance from it, their phases alternate.
-    index = float(((peak * residual[peak] - beside * residual[beside]) / (residual[peak] - residual[beside])).real)
-    return float(omega[0] + (omega[1] - omega[0]) * np.clip(index, peak - 1, peak + 1))
-
-
-def uneven_block(power: np.ndarray) -> tuple[int, float] | None:
-    """Index amid the block of power (n, d) over variance that is farthest from the mean, and its factor; None for white residuals."""
-    from scipy.stats import chi2
-
-    blocks = np.array_split(power, min(_BLOCKS, len(power)))
-    factors = np.array([block.mean() for block in blocks]) / power.mean()
-    deviations = np.array([block.size for block in blocks]) * (factors - 1.0) ** 2
-    if chi2.sf(deviations.sum(), max(len(blocks) - 1, 1)) > _UNLIKELY:
-        return None
-    worst = int(np.argmax(deviations))
-    return sum(len(block) for block in blocks[:worst]) + len(blocks[worst]) // 2, float(factors[worst])
-
-
-def aliasing_error(signal: np.ndarray, noise: np.ndarray) -> tuple[np.ndarray, float]:
-    """Standard error (N / 2 + 1, d), with its phase, of a force (N, d) by its spectrum beyond half the sampling rate.
-
-    noise : (d,) variance at a frequency, at most
-    Returns as well : largest amplitude just below half the rate over that of all frequencies; 0 where noise hides it
-    """
-    count = len(signal)
-    quiet = signal - np.median(signal, axis=0)
-    # A window removes what beginning and end of a record add everywhere, and leaves 3 / 8 of the noise; pulses are rare, noise is not.
-    window_power = np.abs(spectrum_of(np.hanning(count)[:, None] * quiet)) ** 2
-    noise = np.minimum(noise, (1.4826 * np.median(np.abs(quiet), axis=0)) ** 2 / count)
-    level = window_power[-int(_TOP * len(window_power)) :].mean(axis=0)
-    visible = level > _LOUDER * 0.375 * noise
-    share = np.linspace(0.0, 1.0, count // 2 + 1)[:, None]  # frequency over half the rate
-    alias = spectrum_of((-1.0) ** np.arange(count)[:, None] * quiet) * ((1.0 - share) / (2.0 - share)) ** 2
-    part = float(np.sqrt(np.where(visible, level / window_power.max(axis=0), 0.0).max()))
-    return np.where(visible, alias, 0.0) / np.sqrt(2.0), part
-
-
-#: Part of the force's power below and above the band of frequencies that are used, and how far these reach beyond it.
-_OUTSIDE, _WIDER = 5e-4, 0.5
 #: Powers of j w in T; iterations of weights and estimate, of them with all frequencies; steps of variances, and the change that ends them;
 #: powers of 1 / w in noise.
 _LEAKAGE, _ITERATIONS, _ALL, _STEPS, _CONVERGED, _COLOURS = 5, 5, 2, 50, 1e-6, 3
@@ -99,70 +33,12 @@ _ABOVE = 9.0
 #: Part of the force's power at tones from which these are the force's; noise at the lowest frequencies over its white part that is
 #: reported; least part of a residual that its leverage leaves.
 _TONAL, _COLOURED, _LEVER = 0.25, 2.0, 0.1
-#: Intervals of a record may differ by this part: transforms need even ones.
-_EVEN = 1e-3
 #: Part of a record's force above which the residual of the model is reported.
 _RESIDUAL = 0.1
 _UNITS = {"K": "N/m", "C": "N s/m", "mass": "kg"}
-_TWO = (("y", "force_y"), ("z", "force_z"))
-#: Derivatives of the displacement that stand for it, by order.
-_ORDERS = {"velocity": 1, "acceleration": 2}
-_ONE = (("y", "force"), *_TWO, *((name, "force") for name in _ORDERS))
 
 
-@attrs.frozen(eq=False)
-class _Spectra:
-    """Spectra of a record: ``omega`` (n,) [rad/s]; force [N] and displacement [m], (n, d) each; ``axes``: the directions.
-
-    A frequency response has a force of 1, and no samples over time.
-    ``indices`` (n,) of the frequencies in the full transform;  ``time`` (N,) [s] and ``signal`` (N, d) of the force [N].
-    ``order`` of the measured derivative of the displacement.
-    """
-
-    omega: np.ndarray
-    force: np.ndarray
-    displacement: np.ndarray
-    axes: tuple[str, ...]
-    indices: np.ndarray
-    time: np.ndarray
-    signal: np.ndarray
-    order: int = 0
-
-
-def spectra_of(signals: Signals) -> _Spectra:
-    """Spectra in the excited band; force and displacement along one axis, even intervals and a force that changes are needed."""
-    columns, source = signals.columns, signals.source
-    present = [pair for pair in _ONE if columns.keys() >= {*pair}]
-    pairs = _TWO if columns.keys() >= {*_TWO[0], *_TWO[1]} else present[:1]
-    if not pairs or columns.keys() >= {"force", "y", "z"}:
-        missing = "displacement along its axis" if any(name.startswith("force") for name in columns) else "force"
-        raise SceneError.at(
-            source, None,
-            "force and displacement along the same axis are needed: time_s, force_n, x_um, or force_y_n, force_z_n, y_um, z_um of two axes. "
-            f"It was read ({signals}), missing is {missing}; --map \"HEADER=ignore\" leaves a column out, --map \"HEADER=force_n\" names one. The signals of "
-            "a rig, without a force, need --scene",
-        )  # fmt: skip
-    steps = np.diff(columns["time"])
-    if np.ptp(steps) > 2.0 * _EVEN * steps.mean():
-        text = f"intervals from {steps.min():.6g} to {steps.max():.6g} s: a Fourier transform needs even ones. Record at a fixed rate"
-        raise SceneError.at(source, None, text)
-    for name in (*(force for _, force in pairs), *(of_axis for of_axis, _ in pairs)):
-        if np.ptp(columns[name]) <= 1e-12 * np.abs(columns[name]).max():
-            raise SceneError.at(source, None, f"'{name}' is constant. Check its connection")
-    displacement, force = (np.column_stack([columns[name] for name in names]) for names in zip(*pairs, strict=True))
-    count, interval = len(force), float(steps.mean())
-    omega = 2.0 * np.pi * np.fft.rfftfreq(count, interval)
-    of_force, of_displacement = spectrum_of(force), spectrum_of(displacement)
-    power = np.cumsum((np.abs(of_force) ** 2).sum(axis=1))
-    low, high = (omega[int(np.searchsorted(power, part * power[-1]))] for part in (_OUTSIDE, 1.0 - _OUTSIDE))
-    band = (omega > 0.0) & (omega >= (1.0 - _WIDER) * low) & (omega <= (1.0 + _WIDER) * high) & (omega < omega[-1])
-    order, time = _ORDERS.get(pairs[0][0], 0), interval * np.arange(count)
-    axes = ("y",) if order else tuple(name for name, _ in pairs)
-    of_axis = of_displacement[band] / (1j * omega[band, None]) ** order
-    return _Spectra(omega[band], of_force[band], of_axis, axes, np.flatnonzero(band), time, force, order)
-
-
-def free_parts(names: Sequence[str], spectra: _Spectra, mass: float | None) -> list[Free]:
+def free_parts(names: Sequence[str], spectra: Spectra, mass: float | None) -> list[Free]:
     """Free numbers of the linear model, by words K, C and mass; in two directions K stands for its four parts, or they by name.
 
     A mass that is None is free, too.
@@ -196,7 +72,7 @@ def _word(part: str) -> str:
 class LinearResiduals:
     """Weighted residuals of the spectra, ``raceway_measure.fit.estimate.Residuals``: free numbers, then the parts of T."""
 
-    spectra: _Spectra
+    spectra: Spectra
     free: Sequence[Free]
     mass: float  # where it is not free [kg]
     noise: np.ndarray  # variances (2, k, d) of displacement and force at the lowest frequency, by power of 1 / w
@@ -283,7 +159,7 @@ def _real_and_imaginary(columns: np.ndarray) -> np.ndarray:
     return np.concatenate([columns.real, columns.imag]).reshape(-1, columns.shape[2])
 
 
-def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, LinearResiduals, np.ndarray]:
+def _fit_spectra(spectra: Spectra, free: Sequence[Free], mass: float) -> tuple[Estimate, LinearResiduals, np.ndarray]:
     """Free numbers with their intervals, the model with its noise, and its residuals e (n, d) [N]."""
     without_tones = answer, problem = _iterate(spectra, free, mass, ())
     while len(spectra.time) and (
@@ -303,7 +179,7 @@ def _fit_spectra(spectra: _Spectra, free: Sequence[Free], mass: float) -> tuple[
 
 
 def _iterate(
-    spectra: _Spectra, free: Sequence[Free], mass: float, tones: tuple[float, ...]
+    spectra: Spectra, free: Sequence[Free], mass: float, tones: tuple[float, ...]
 ) -> tuple[Estimate, LinearResiduals]:
     """Estimate and variances by turns, beside tones of known frequencies [rad/s]."""
     d = len(spectra.axes)
@@ -379,7 +255,7 @@ def fit_record(record: Signals | FrequencyResponse, names: list[str], mass: floa
         spectra = spectra_of(record)
     else:
         omega, receptance, empty = 2.0 * np.pi * record.hz, record.receptance[:, None], np.empty(0)
-        spectra = _Spectra(omega, np.ones_like(receptance), receptance, ("y",), np.arange(len(omega)), empty, empty)
+        spectra = Spectra(omega, np.ones_like(receptance), receptance, ("y",), np.arange(len(omega)), empty, empty)
     free = free_parts(names, spectra, mass)
     refuse_few(2 * spectra.force.size, len(free) + len(spectra.axes), record.source)
     answer, model, residuals = _fit_spectra(spectra, free, mass or 0.0)

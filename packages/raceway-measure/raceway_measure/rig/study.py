@@ -19,7 +19,8 @@ from raceway.extend import (
     K_ERROR, C, Fact, Item, K, Line, Page, Part, Plot, ReadTables, Registry, Tables, Words, Workload, draw_panels, label_axes, local, new_figure,
     registry_with, row_key, rows_table, run_times, save_figure, stored_rows, without_nan, work_through, written,
 )  # fmt: skip
-from raceway_measure.fit.identify import Identified, identify_recording
+from raceway_measure.fit.identified import Identified
+from raceway_measure.fit.identify import identify_recording
 from raceway_measure.fit.picture import figures
 from raceway_measure.fit.shaft_angle import rotation_of
 from raceway_measure.fit.signals import Recording, write_recording
