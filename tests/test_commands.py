@@ -575,9 +575,7 @@ def test_the_light_key_is_the_one_that_kernels_are_kept_under():
 
 
 def test_verify_fails_with_code_1(monkeypatch):
-    from raceway_checks.verify import study as module
-
-    true = module.verify
+    from raceway_checks.verify.study import verify as true
 
     @wraps(true)
     def off(*given, **named):
@@ -586,7 +584,7 @@ def test_verify_fails_with_code_1(monkeypatch):
 
     content = json.loads(invoke("verify", "--only", "seed-unbalance", "--json").stdout)
     assert all(row["ok"] for row in content["rows"])
-    monkeypatch.setattr(module, "verify", off)
+    monkeypatch.setattr("raceway_checks.verify.study.verify", off)
     found = invoke("verify", "--only", "seed-unbalance")
     assert found.exit_code == 1 and "0 of" in found.stdout
 

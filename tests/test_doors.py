@@ -155,10 +155,10 @@ def test_linearised_bearings_go_with_their_iteration():
     import gc
     import weakref
 
-    from raceway.core.fem.elastic import superelement_solver as linearised
+    from raceway.core.fem.elastic.superelement_solver import LinearisedContacts
     from tests.test_elastic_scene import scene as elastic_scene
 
-    alive, most, plain = weakref.WeakSet(), [0], linearised.LinearisedContacts.__init__
+    alive, most, plain = weakref.WeakSet(), [0], LinearisedContacts.__init__
 
     def counted(self, *given):
         alive.add(self)
@@ -166,8 +166,8 @@ def test_linearised_bearings_go_with_their_iteration():
         most[0] = max(most[0], len(alive))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(linearised, "_FACTORED", 0)
-        patch.setattr(linearised.LinearisedContacts, "__init__", counted)
+        patch.setattr("raceway.core.fem.elastic.superelement_solver._FACTORED", 0)
+        patch.setattr(LinearisedContacts, "__init__", counted)
         gc.disable()
         try:
             rw.run(elastic_scene())

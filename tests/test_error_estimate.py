@@ -12,7 +12,6 @@ from checks.validation.scenes import rotating
 from checks.validation.series_errors import SERIES, series
 from raceway import run
 from raceway.extend import number_within
-from raceway.pipeline import transient_error
 from raceway.pipeline.error import equilibria_of_second_series
 from raceway.pipeline.simulate import model_at_speed, settles_elsewhere
 from raceway.planning.resolve import recorded_per_turn, samples_per_turn
@@ -128,7 +127,7 @@ def test_the_error_of_k_is_that_of_z_where_the_inertia_cancels_it():
 def _with_and_without_the_steady_motion(monkeypatch, tables):
     """A result that knows no steady motion, and its true error."""
     wanted = run({**tables, "integrator": {"kind": "periodic"}}).identification.dynamic_stiffness
-    monkeypatch.setattr(transient_error, "settled_value", lambda *_: None)
+    monkeypatch.setattr("raceway.pipeline.transient_error.settled_value", lambda *_: None)
     found = run(tables)
     return found, abs(found.identification.dynamic_stiffness - wanted) / abs(wanted)
 

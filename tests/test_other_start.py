@@ -9,9 +9,9 @@ import attrs
 import pytest
 
 from raceway import ConvergenceError, make_plan, run, scene_from_dict
-from raceway.pipeline import transient_error as other_start
 from raceway.pipeline.error import window_misses_transient
 from raceway.pipeline.transient_error import Clean
+from raceway.testing import simulate
 
 
 def rubbing(start="ramp", friction=0.3, kind="newmark", **tables):
@@ -52,7 +52,7 @@ def test_without_another_start_no_error_is_stated(monkeypatch):
     def none(*_, **__):
         raise ConvergenceError("no step is found")
 
-    monkeypatch.setattr(other_start, "simulate", none)
+    monkeypatch.setattr("raceway.pipeline.transient_error.simulate", none)
     found = solved()
     assert found.error["transient"] is None and found.error["total"] is None
     assert any(
@@ -71,8 +71,7 @@ def test_the_next_start_stands_in_for_one_that_fails(monkeypatch):
             raise ConvergenceError("no step is found")
         return simulate(model, *args, **words)
 
-    simulate = other_start.simulate
-    monkeypatch.setattr(other_start, "simulate", some)
+    monkeypatch.setattr("raceway.pipeline.transient_error.simulate", some)
     assert solved().error["total"] > 1e-3 and tried == ["orbit", "static"]
 
 

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from checks.validation.several import article, by_integration, heavy
 from raceway import ConvergenceError, extend, run, scene_from_dict
-from raceway.core.periodic import branches, search, steady
+from raceway.core.periodic.search import HIGHEST
 from raceway.extend import differentiation
 
 
@@ -142,7 +142,7 @@ def test_turns_that_do_not_repeat_after_a_failed_search_have_no_error(monkeypatc
     def none(*_):
         raise ConvergenceError("none is found")
 
-    monkeypatch.setattr(steady, "starting_orbit", none)
+    monkeypatch.setattr("raceway.core.periodic.steady.starting_orbit", none)
     result = run(heavy(82.0))
     assert result.simulation.start.kind == "ramp"
     assert result.error["total"] is None and "do not repeat" in result.error["how"]["total"]
@@ -193,8 +193,8 @@ def test_an_error_estimate_lets_no_force_grow_on_a_mesh_of_thousands_of_interval
         meshes.append(first.intervals)
         raise ConvergenceError("not found")
 
-    monkeypatch.setattr(search, "solve", newton)
-    monkeypatch.setattr(branches, "solve", newton)
+    monkeypatch.setattr("raceway.core.periodic.search.solve", newton)
+    monkeypatch.setattr("raceway.core.periodic.branches.solve", newton)
     run(tables)
     assert meshes, "the motion is searched for directly"
-    assert max(meshes) <= 1.5 * search.HIGHEST, "but not on twice the mesh, share by share"
+    assert max(meshes) <= 1.5 * HIGHEST, "but not on twice the mesh, share by share"

@@ -7,7 +7,7 @@ import pytest
 from checks.validation.command_line import ARTICLE
 from checks.validation.plan_time import LEAST, MOST, SCENE, SCENES
 from raceway import load_scene, make_plan
-from raceway.planning import parts
+from raceway.planning.parts import slowness
 
 #: Processor times [s] of whole runs on the reference machine, as report cost measures them: what a test can
 #: hold a prediction against without a clock.  All but start-up, 1.2 s, is what the predictions tell apart.
@@ -32,8 +32,8 @@ def test_every_step_costs():
 
 
 def test_the_time_is_the_work_at_the_machine_s_own_speed(monkeypatch):
-    parts.slowness.cache_clear()
-    monkeypatch.setattr(parts, "timed", lambda: 3.0)
+    slowness.cache_clear()
+    monkeypatch.setattr("raceway.planning.parts.timed", lambda: 3.0)
     plan = make_plan(load_scene(ARTICLE))
-    parts.slowness.cache_clear()
+    slowness.cache_clear()
     assert plan.predicted_wall_s == pytest.approx(3.0 * plan.predicted_work_s)

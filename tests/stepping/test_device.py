@@ -20,7 +20,7 @@ from raceway import (
     make_plan,
     scene_from_dict,
 )
-from raceway.core.fem.elastic import device, device_steps
+from raceway.core.fem.elastic import device
 from raceway.core.fem.elastic.device_steps import DeviceSteps
 from raceway.extend import Schedule, integrate, three_halves
 from tests.test_elastic_scene import EXCITED, scene
@@ -33,7 +33,7 @@ SAME = 1e-12
 @pytest.fixture(autouse=True)
 def several_steps_at_a_time(monkeypatch):
     """However slow Python is, the host looks at the device after 1, 2, 4, ... steps."""
-    monkeypatch.setattr(device_steps, "_LOOK_S", 1e3)
+    monkeypatch.setattr("raceway.core.fem.elastic.device_steps._LOOK_S", 1e3)
 
 
 def moved(where: str, steps: int, stride: int = 1, share: float = 0.5, facets: float = 1.0, on_chunk=None, **changes):

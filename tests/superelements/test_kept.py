@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from raceway import MeshError
-from raceway.core.fem.elastic import interface as kept
 from raceway.core.fem.elastic.bearing import ElasticBearing
 from raceway.core.fem.elastic.interface import touchable
 from raceway.core.fem.elastic.superelement import Part
@@ -21,7 +20,7 @@ TIGHT = 1e-9
 def small_parts_too(tmp_path, monkeypatch):
     """An empty cache, in which small parts are kept as well."""
     monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path))
-    monkeypatch.setattr(kept, "LEAST_CELLS", 0)
+    monkeypatch.setattr("raceway.core.fem.elastic.interface.LEAST_CELLS", 0)
 
 
 def entries():

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from raceway_app import picture
+from raceway_app.picture import Curves, axes_of, form, titles_of
 from raceway_app.session import Session, groups
 from raceway_app.worker import Job, News, Worker
 
@@ -35,8 +35,8 @@ def application(tmp_path_factory):
 def curves(scene, drawn=None, few=True):
     """Of a scene by axis and panel, with the numbers of its run."""
     result = rw.run(scene)
-    parts = scene, picture.form(scene), picture.titles_of(result), picture.axes_of(scene, {})
-    panels = (drawn or picture.Curves()).draw(parts, lambda: None, few=few)
+    parts = scene, form(scene), titles_of(result), axes_of(scene, {})
+    panels = (drawn or Curves()).draw(parts, lambda: None, few=few)
     return {(panel["axis"], panel["panel"]): panel for panel in panels}, result
 
 
@@ -60,7 +60,7 @@ def test_condensed_bodies_have_all_curves_and_the_stiffness_of_their_run():
     ],
 )
 def test_curves_after_a_change_are_those_of_the_changed_scene(change):
-    drawn, changed = picture.Curves(), rw.load_scene(SCENE, [change])
+    drawn, changed = Curves(), rw.load_scene(SCENE, [change])
     before = curves(rw.load_scene(SCENE), drawn, few=False)[0]
     for _ in range(2):  # a function is built for the number that has changed, then used again
         (after, _), (fresh, result) = (curves(changed, one, few=False) for one in (drawn, None))

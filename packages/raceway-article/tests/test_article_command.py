@@ -17,7 +17,7 @@ from raceway_article.page import page
 from checks.validation.article_study import SMALL, curves, row, study
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway import ConvergenceError
-from raceway.core.periodic import branches
+from raceway.core.periodic.branches import chosen
 from raceway.extend import FAILED, Attractor, default_registry, read_toml
 
 
@@ -160,8 +160,7 @@ def test_friction_on_balls_that_stand_reverses_the_trend_at_a_heavy_load_with_ti
 def test_motions_far_from_linear_are_continued_from_the_next_speed_not_searched_for(monkeypatch):
     """800 N, tilt free: the same motions as without a neighbour, with one search for all of them instead of one each."""
     searched, made, registry = [], design(article_tables()), default_registry()
-    chosen = branches.chosen
-    monkeypatch.setattr(branches, "chosen", lambda *given: searched.append(1) or chosen(*given))
+    monkeypatch.setattr("raceway.core.periodic.branches.chosen", lambda *given: searched.append(1) or chosen(*given))
     setting = Setting("unidirectional", "constant", "free", True, "rigid")
     points = [made.point(setting, 800.0, speed, registry) for speed in made.speeds[3:5]]
     first, last = driver.rows_of_curve(points, registry)
@@ -174,8 +173,7 @@ def test_motions_far_from_linear_are_continued_from_the_next_speed_not_searched_
 def test_the_orbit_that_another_start_with_friction_is_on_is_searched_for_once(monkeypatch):
     """1000 N, tilt free: found without friction, it is what the runs with friction compare their start with."""
     searched, made, registry = [], design(article_tables()), default_registry()
-    chosen = branches.chosen
-    monkeypatch.setattr(branches, "chosen", lambda *given: searched.append(1) or chosen(*given))
+    monkeypatch.setattr("raceway.core.periodic.branches.chosen", lambda *given: searched.append(1) or chosen(*given))
     settings = [Setting("unidirectional", "constant", "free", True, "rigid", friction) for friction in FRICTIONS]
     points = [made.point(setting, 1000.0, 15000.0, registry) for setting in settings]
     rows = driver.rows_of_curve(points, registry)

@@ -7,7 +7,6 @@ from typing import ClassVar
 
 import attrs
 import pytest
-from raceway_checks.verify import study as module
 from raceway_checks.verify.reference import reference_cases
 from raceway_checks.verify.study import COMPUTED, Verification, verify
 
@@ -73,7 +72,7 @@ def test_a_case_that_is_unknown_or_for_information_is_refused(name, said):
 def test_a_number_outside_its_tolerance_fails_and_nothing_computed_is_no_pass(monkeypatch):
     case = reference_cases()["masta-dgbb-1"]
     wrong = attrs.evolve(case, outputs={"dr_um": case.outputs["dr_um"] * 1.001})
-    monkeypatch.setattr(module, "reference_cases", lambda: {case.id: wrong})
+    monkeypatch.setattr("raceway_checks.verify.study.reference_cases", lambda: {case.id: wrong})
     found = verify()
     assert not found.passed and not Verification(()).passed
     # 0.1 % of the reference, less our own 7e-6.
