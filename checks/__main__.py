@@ -1,7 +1,5 @@
 """``python -m checks [NAME...]``: the rows of these checks, or of all; exit code 1 where one does not hold."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys

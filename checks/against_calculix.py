@@ -8,8 +8,6 @@ With ``--scene`` the deck of a scene's bearing is written instead (``--deck`` sa
 ``ccx`` by hand: a bearing of 60 000 elements takes it some six minutes of CPU time.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import resource

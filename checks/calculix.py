@@ -1,7 +1,5 @@
 """Decks for CalculiX, and what its answers come to.  Lengths are written in mm, forces in N, stresses in MPa."""
 
-from __future__ import annotations
-
 import resource
 import shutil
 import subprocess

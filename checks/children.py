@@ -1,7 +1,5 @@
 """A function in a child of this process, so that a signal or an endless loop in it is an answer as well."""
 
-from __future__ import annotations
-
 import multiprocessing
 import signal
 from collections.abc import Callable

@@ -10,8 +10,6 @@ A row that misses its limits says why (``misses=``), and fails once it holds, so
 the machine (``machine=True``: processor times and their ratios) the reason is left out where the row holds.
 """
 
-from __future__ import annotations
-
 import ast
 import math
 import os

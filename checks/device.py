@@ -5,8 +5,6 @@ With one the same tests run on it; then the article's mesh of a million elements
 runs, and with ``--turn`` a whole turn at 15 000 r/min with ``integrator.least_step`` = 3 ns and its K against implicit steps.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import os

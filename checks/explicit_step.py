@@ -3,8 +3,6 @@
 CPU times are minima over steps; the forces of the elements alone are measured in the same run.
 """
 
-from __future__ import annotations
-
 import json
 import time
 from typing import Any

@@ -3,8 +3,6 @@
 A process of its own for each: it loads no kernel before its children do, each of which reads one damaged cache.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import random

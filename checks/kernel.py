@@ -4,8 +4,6 @@ Each row is one mesh, a sector of a thick ring.  Times are minima of CPU time, s
 little.
 """
 
-from __future__ import annotations
-
 import json
 import time
 from collections.abc import Callable

@@ -3,8 +3,6 @@
 ``make wheel`` puts them into the wheel; ``raceway.core.wheel_kernels`` reads them.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

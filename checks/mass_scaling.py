@@ -6,8 +6,6 @@ that a run would state is the kinetic energy of the added mass beyond that of th
 The bearing of 63 120 elements has a penalty of 3e15 N/m3: with that of 1 % of Hertz's approach the contacts allow 2.2 ns, less than its elements.
 """
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

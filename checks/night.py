@@ -4,8 +4,6 @@ Its message lists the verdicts that changed, and the values that changed by more
 what is edited meanwhile changes nothing.
 """
 
-from __future__ import annotations
-
 import argparse
 import datetime
 import shutil

@@ -1,7 +1,5 @@
 """Presets made from what a maker prints: ``python -m checks.presets`` writes raceway/data/series, a file a series."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Iterable
 from contextlib import suppress

@@ -5,8 +5,6 @@ README.md and docs is a report's table; nothing in a table is typed by hand.  As
 the pages before they are read, and a link to a report's JSON leads to its page.
 """
 
-from __future__ import annotations
-
 import datetime
 import itertools
 import json

@@ -1,7 +1,5 @@
 """Work of a sweep that kills the process which computes the number 3; light, so that processes start fast."""
 
-from __future__ import annotations
-
 import os
 
 import attrs

@@ -1,7 +1,5 @@
 """The environment of a machine without libraries for drawing, a browser or CalculiX."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 #: What dlopen finds first, and cannot load: a file without content.

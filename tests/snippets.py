@@ -1,7 +1,5 @@
 """Listings and commands of the documents, as a reader copies them."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Arrays kept on disk: found again, never mistaken, whole or made anew, by several processes, within a size."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """integrator.kind = "auto": what planning chooses, what a run does where no steady orbit lasts, one method for a comparison."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Every way to hand in something wrong: one message with path, value, rule and remedy, and the right exit code."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

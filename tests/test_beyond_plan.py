@@ -1,7 +1,5 @@
 """Runs far beyond their plan are stopped, say so, and leave what they have."""
 
-from __future__ import annotations
-
 import inspect
 import json
 

@@ -1,7 +1,5 @@
 """Sweeps of points that a compiled loop computes: blocks of columns in the store, the same numbers as runs of their own."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """Presets: each one is a scene, each number has a source, and what no document states says so."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from math import sin
 

@@ -1,7 +1,5 @@
 """Interpolation between Chebyshev nodes: exact where it is used, and used where it saves something."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

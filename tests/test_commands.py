@@ -1,7 +1,5 @@
 """Every command, by a table of quick scenes: help, screen, JSON, files, interruption, full disk, wrong options, plug-ins."""
 
-from __future__ import annotations
-
 import errno
 import io
 import json

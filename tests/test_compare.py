@@ -1,7 +1,5 @@
 """`raceway compare`: axes, kinds that are swapped, failed points, and words that say what the numbers say."""
 
-from __future__ import annotations
-
 import json
 import math
 

@@ -1,7 +1,5 @@
 """Geometry of a bearing and its contacts: lengths, elliptic Hertz against quadrature, pressures, stiffness of sticking contacts."""
 
-from __future__ import annotations
-
 from math import acos, cos, pi, radians, sin
 
 import numpy as np

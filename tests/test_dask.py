@@ -1,7 +1,5 @@
 """A sweep on a real dask scheduler with worker processes of their own, all on 127.0.0.1."""
 
-from __future__ import annotations
-
 import socket
 import warnings
 

@@ -1,7 +1,5 @@
 """Small linear algebra of the compiled loops, against LAPACK; block products against scipy."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 import scipy.sparse as sp

@@ -1,7 +1,5 @@
 """Makers' designations: what their parts say is used or named as ignored."""
 
-from __future__ import annotations
-
 import pytest
 
 import raceway as rw

@@ -1,7 +1,5 @@
 """Docstrings of the package name what is there."""
 
-from __future__ import annotations
-
 import builtins
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Every command and listing of README and docs is run in its order, or made by the program; every link leads somewhere."""
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

@@ -1,7 +1,5 @@
 """Doors of ``import raceway`` and of the command line: what is wrong is told by its name, once, and nothing is lost in silence."""
 
-from __future__ import annotations
-
 import inspect
 import itertools
 import json

@@ -1,7 +1,5 @@
 """The factorial analysis against functions whose effects are known."""
 
-from __future__ import annotations
-
 import math
 from itertools import product
 

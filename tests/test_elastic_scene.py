@@ -1,7 +1,5 @@
 """Elastic bodies from a scene: a tiny bearing runs through plan, statics, every integrator, and is refused where it cannot."""
 
-from __future__ import annotations
-
 import copy
 import io
 import json

@@ -1,7 +1,5 @@
 """Energy of recorded motions: what is put in is kept or lost in dampers."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

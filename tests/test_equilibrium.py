@@ -1,7 +1,5 @@
 """Static equilibria against scipy's and closed forms, the consistent tangent, and what is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The error that a result states: series of equilibria, sudden starts, several speeds, and the digits of K."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numpy as np

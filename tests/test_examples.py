@@ -1,7 +1,5 @@
 """Every scene in examples/ runs to a finite, sensible result; those with a mesh alone are meshed in tests/mesh."""
 
-from __future__ import annotations
-
 import json
 from functools import cache
 from pathlib import Path

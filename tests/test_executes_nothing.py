@@ -1,7 +1,5 @@
 """A scene that was downloaded is data: checking it executes nothing that it names, starts no process and writes no file."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A series of equilibria against single ones."""
 
-from __future__ import annotations
-
 import pytest
 
 from checks.validation.expected_values import secant

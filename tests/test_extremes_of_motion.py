@@ -1,7 +1,5 @@
 """What a transient reports of its extremes: penetration, the stable limit of explicit steps, the turns that are used."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

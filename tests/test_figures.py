@@ -1,7 +1,5 @@
 """Every figure of the project shows what it draws: no point lies outside its axes, whatever the numbers are."""
 
-from __future__ import annotations
-
 import ast
 import re
 import struct

@@ -1,7 +1,5 @@
 """Branches of steady orbits: folds and backbones in closed form, harmonic balance, monodromy, special points, the command."""
 
-from __future__ import annotations
-
 import csv
 import json
 

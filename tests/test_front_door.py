@@ -1,7 +1,5 @@
 """What ``import raceway as rw`` offers: scenes in any form in, objects that show themselves out."""
 
-from __future__ import annotations
-
 import ast
 import doctest
 import inspect

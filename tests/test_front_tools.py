@@ -1,7 +1,5 @@
 """compare, sweep, precision, export_ross and view from Python: the command line's numbers, in objects that show themselves."""
 
-from __future__ import annotations
-
 import json
 import sys
 

@@ -1,7 +1,5 @@
 """The bearing as a function of columns: the same numbers as runs of their own, in the shape of the inputs."""
 
-from __future__ import annotations
-
 import pickle
 from pathlib import Path
 

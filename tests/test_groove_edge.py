@@ -1,7 +1,5 @@
 """The load at which an ellipse reaches the groove's edge: its semi-major axis at that load is the way to the edge."""
 
-from __future__ import annotations
-
 import pytest
 
 from raceway.scene.growth import load_at_edge

@@ -1,7 +1,5 @@
 """Known K, m, C recovered from synthetic signals; against independent periodic motion: evidence/test_integrators.py."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """What stays out of memory until it is needed."""
 
-from __future__ import annotations
-
 import json
 import resource
 

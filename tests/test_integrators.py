@@ -1,7 +1,5 @@
 """Time integrators: agreement, restart, failure, those of third parties, states of another shape; order: evidence/test_integrators.py."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 import attrs

@@ -1,7 +1,5 @@
 """Ctrl-C, SIGTERM and SIGHUP are answered wherever they arrive, in one line, and leave no process behind."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

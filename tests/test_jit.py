@@ -1,7 +1,5 @@
 """The one decorator: where compiled kernels are kept, what happens when they cannot be, what a kernel may not do."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

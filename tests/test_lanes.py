@@ -1,7 +1,5 @@
 """Lanes: every operation against single numbers, in whole blocks and in rests of one to three."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Lives from contact loads: published cases, the standard's equations, limits."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Life as a quantity of scenes: of one point, of columns, of sets, along a motion; bad input."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Static solutions and natural frequencies of elastic bodies against closed forms, and what is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.sparse.linalg import eigsh

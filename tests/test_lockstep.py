@@ -1,7 +1,5 @@
 """Four points in lockstep: what the trust region finds for each alone, of which it is the readable reference."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """``error.model``: what hypotheses left at their defaults change in K and kyy, against runs under them."""
 
-from __future__ import annotations
-
 import pytest
 
 import raceway as rw

@@ -1,7 +1,5 @@
 """Disturbances over a span, from samples, against what is known of them in other ways."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

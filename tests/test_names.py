@@ -1,7 +1,5 @@
 """One name, one meaning: kyy with the tilts held, kyy_tilts_follow with tilts that follow; the largest load is that of both races."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """``raceway dev new-scene``: what it writes is right for every bearing of the catalogue, and overwrites nothing."""
 
-from __future__ import annotations
-
 import json
 import re
 

@@ -1,7 +1,5 @@
 """What a run computed is neither lost nor taken for another's; numbers that mean nothing are told as such."""
 
-from __future__ import annotations
-
 import json
 
 import attrs

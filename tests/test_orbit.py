@@ -1,7 +1,5 @@
 """The steady orbit by collocation against the periodic motion by shooting; multipliers in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

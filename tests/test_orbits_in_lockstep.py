@@ -1,7 +1,5 @@
 """Steady orbits of four points in lockstep, against balls that are found in each sample, and extremes against dense samples."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

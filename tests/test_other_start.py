@@ -1,7 +1,5 @@
 """With friction an answer depends on the start of the motion: the stated error covers what another start gives."""
 
-from __future__ import annotations
-
 from itertools import combinations
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """The package as a user installs it: names, extras, data files; folders of the repository: what they import, what they list."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

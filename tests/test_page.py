@@ -1,7 +1,5 @@
 """The HTML page that studies end in: one file, escaped, nothing fetched, no script."""
 
-from __future__ import annotations
-
 import re
 from html.parser import HTMLParser
 

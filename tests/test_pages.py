@@ -1,7 +1,5 @@
 """Every page that the program writes, opened from its file in headless chromium, as wide as a screen and as a telephone."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Steady orbits solved for directly: against collocation in Fourier series, symmetry, multipliers, folds, refusals."""
 
-from __future__ import annotations
-
 import json
 from itertools import islice
 

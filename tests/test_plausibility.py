@@ -1,7 +1,5 @@
 """Long runs, motions that cannot be, and small parts of Z that are not resolved: what a user is told."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

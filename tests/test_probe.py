@@ -1,7 +1,5 @@
 """The probe at plan time refuses laws and excitations that would corrupt a run, by name and with the contract's words."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

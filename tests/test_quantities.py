@@ -1,7 +1,5 @@
 """Numbers of plug-ins: in results and functions, of one point and of columns, along a motion; what breaks a duty is named."""
 
-from __future__ import annotations
-
 import json
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """Load ratings of scenes' bearings: keys, catalogue, geometry."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from raceway_catalogue.printed import printed_by

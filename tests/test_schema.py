@@ -1,7 +1,5 @@
 """The JSON schema accepts what the loader accepts, and refuses what it can know to be wrong."""
 
-from __future__ import annotations
-
 import tomllib
 
 import pytest

@@ -1,7 +1,5 @@
 """Several steady motions under one force: the stable one is taken, all are told, by every integrator alike."""
 
-from __future__ import annotations
-
 from io import StringIO
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Stores of sweeps: what is chosen of them, what is drawn, what ``raceway sweep`` and ``raceway export`` write."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

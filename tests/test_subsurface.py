@@ -1,7 +1,5 @@
 """Stresses below Hertz's contacts against quadrature of Boussinesq's point loads and the limits of textbooks."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """`raceway sweep`: designs, the store, what it survives, executors, continuation."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import os

@@ -1,7 +1,5 @@
 """The thermal network of a bearing, and its correlations."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose

@@ -1,7 +1,5 @@
 """Threads that share work: how many, what they leave behind, and what becomes of a failure."""
 
-from __future__ import annotations
-
 import os
 import threading
 

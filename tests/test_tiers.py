@@ -1,7 +1,5 @@
 """Every test is in a tier that some command runs: quick, night, release, or under ROSS."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import tomllib

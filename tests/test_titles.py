@@ -1,7 +1,5 @@
 """What `--set` changes stands in the second line of the title and in the folder's name."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

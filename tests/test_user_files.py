@@ -1,7 +1,5 @@
 """Files without an end, too large ones and those that unpack to gigabytes are refused in one message, before memory goes."""
 
-from __future__ import annotations
-
 import base64
 import os
 import resource

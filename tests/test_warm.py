@@ -1,7 +1,5 @@
 """Scenes with [heat]: their steady temperatures, limits, runaway, and the same in runs and functions."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -11,8 +11,6 @@ drawing   docs/pictures/parameters.svg: what the keys of [bearing] mean
 promises  docs/pictures/stability.svg: from its report
 """
 
-from __future__ import annotations
-
 import re
 import tempfile
 from pathlib import Path

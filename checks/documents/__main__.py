@@ -1,7 +1,5 @@
 """``python -m checks.documents``: write every document that is made from the program."""
 
-from __future__ import annotations
-
 from checks import documents
 from checks import reports as files
 from checks.documents import commands, drawing, packages, promises, reading, versions

@@ -1,7 +1,5 @@
 """docs/command_line.md: what every command says of itself, with completion and what all commands share."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator

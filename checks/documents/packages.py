@@ -1,7 +1,5 @@
 """What packages declare: raceway/data/packages.json, by which one that is missing is named, and the typed stub of ``raceway``."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from importlib.metadata import entry_points

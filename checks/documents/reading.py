@@ -1,7 +1,5 @@
 """How a scene becomes K: the files that ``raceway run examples/minimal.toml`` enters, in their order, as docs/pictures/reading.svg."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """docs/installation.md: the table of Python versions and of the oldest packages, from pyproject.toml."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from pathlib import Path

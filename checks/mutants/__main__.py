@@ -4,8 +4,6 @@ Two at a time, each in a copy of its own.  Exit code 1 when a fault survives, or
 compares the table with the sources.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from concurrent.futures import ThreadPoolExecutor

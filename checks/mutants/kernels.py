@@ -4,8 +4,6 @@ The cache has a folder for each state of the core's sources, and a fault is anot
 longer than the tests.  What a kernel was compiled from is its file and what that imports; the rest is carried over.
 """
 
-from __future__ import annotations
-
 import ast
 import subprocess
 import sys

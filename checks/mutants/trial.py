@@ -1,7 +1,5 @@
 """A fault in a copy of the sources, and what its tests say."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -14,8 +14,6 @@ uncertainty           elastic bodies without a mesh against condensed ones; defa
 extremes              what runs at the edges say of errors that are not estimated, or larger than Z
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from math import isfinite

@@ -1,7 +1,5 @@
 """Random calls of all public functions and of the methods of their answers, from their signatures, some arguments wrong."""
 
-from __future__ import annotations
-
 import inspect
 import itertools
 import json

@@ -3,8 +3,6 @@
 A line of JSON is written before each scene and after it; a line without its second one names the scene that ended the process.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os

@@ -3,8 +3,6 @@
 A key is drawn from the day that the schema has it: the first seeds draw each key once, alone, in a small scene.
 """
 
-from __future__ import annotations
-
 import copy
 import math
 import os

@@ -3,8 +3,6 @@
 Large elastic meshes are left out: their equilibria are found by conjugate gradients, whose last three digits differ from run to run.
 """
 
-from __future__ import annotations
-
 #: Base trees integrate where a scene says no kind.
 _NEWMARK = "integrator.kind=newmark"
 _QUICK = f"{_NEWMARK} integrator.turns=3 integrator.steps_per_turn=72"

@@ -1,7 +1,5 @@
 """``raceway app`` in headless chromium: time from a change to its picture, start, whole pages, memory, and numbers beside those of runs."""
 
-from __future__ import annotations
-
 import os
 import statistics
 import tempfile

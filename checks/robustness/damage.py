@@ -1,7 +1,5 @@
 """Damaged stores of sweeps, gone on with; damaged kernels and compliances, used: the same numbers or one message."""
 
-from __future__ import annotations
-
 import json
 import random
 import shutil

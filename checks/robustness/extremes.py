@@ -1,7 +1,5 @@
 """Extreme scenes, of sets, rollers and heat, too: what is raised, and said of errors that are not estimated or larger than Z."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from contextlib import redirect_stdout

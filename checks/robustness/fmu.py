@@ -1,7 +1,5 @@
 """Exported FMUs: the map against runs, time of a step."""
 
-from __future__ import annotations
-
 import tempfile
 from pathlib import Path
 

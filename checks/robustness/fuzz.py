@@ -1,7 +1,5 @@
 """Ten thousand random scenes through check and plan, fifteen hundred of them through run, and calls of all fronts, each watched."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

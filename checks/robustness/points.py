@@ -1,7 +1,5 @@
 """Millions of points: processor time of a point in the compiled loops, and the same numbers by runs of their own."""
 
-from __future__ import annotations
-
 import resource
 import time
 from collections.abc import Callable

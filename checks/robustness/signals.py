@@ -1,7 +1,5 @@
 """Commands that are asked to end at random moments, by each of three signals."""
 
-from __future__ import annotations
-
 import json
 import os
 import random

@@ -1,7 +1,5 @@
 """Processor time of what is done most, against the times that were asked for: least of repeats, kernels compiled unless a row says so."""
 
-from __future__ import annotations
-
 import os
 import resource
 import subprocess

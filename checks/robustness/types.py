@@ -3,8 +3,6 @@
 Needs ``pip install "pyright[nodejs]" jedi``, which no extra installs.
 """
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

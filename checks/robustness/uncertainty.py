@@ -1,7 +1,5 @@
 """Parts of the uncertainty: elastic bodies without a mesh against condensed ones, default hypotheses inside the range of the others."""
 
-from __future__ import annotations
-
 import numpy as np
 
 import raceway as rw

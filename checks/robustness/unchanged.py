@@ -3,8 +3,6 @@
 The base commit's results stay in the user's cache folder, so that only the first comparison with a commit computes them.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math

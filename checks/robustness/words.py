@@ -1,7 +1,5 @@
 """Length and language of what people read: Markdown, help of commands, sentences of the package."""
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """A study of the article with invented numbers, which costs no run."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

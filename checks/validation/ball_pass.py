@@ -1,7 +1,5 @@
 """Ball pass of orbiting balls: a series of equilibria under a static radial load, its frequency and amplitude by other ways."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

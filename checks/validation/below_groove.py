@@ -1,7 +1,5 @@
 """The largest shear stress below the quarter model of a ball on a groove, in ball and groove, beside Hertz's."""
 
-from __future__ import annotations
-
 import time
 
 import attrs

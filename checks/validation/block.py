@@ -1,7 +1,5 @@
 """A small elastic block on a rigid plane z = 0, with a penalty and Coulomb friction at its lowest nodes: a stepped system."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A dask scheduler and worker processes on 127.0.0.1, as a user starts them, and a sweep with a plug-in to put on them."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """The command line in tests: in this process, or as a user starts it, with plug-ins that look installed."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Condensed bodies: the scene of the reports ``condensed``, ``nodal`` and ``elastic``, its quantities, and the cost of a first use."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Random scenes, each for two integrators, and how far apart their answers are."""
 
-from __future__ import annotations
-
 import copy
 from contextlib import suppress
 from typing import Any

@@ -5,8 +5,6 @@ scene has an equilibrium.  Where the loaded balls leave a motion free at it (few
 refuses it by name; those refusals are counted apart and each is checked by the rank of the loaded balls' directions.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from itertools import product

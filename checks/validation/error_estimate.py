@@ -5,8 +5,6 @@ matters): no time integration, no transient.  Scenes whose question is not the s
 over several speeds), or where collocation finds none, are held against the same run with finer steps.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import attrs

@@ -4,8 +4,6 @@ Static scenes: pure axial load for the table; for the trends the rig's rotating 
 towards ball 0 with fixed balls.  Secant stiffness is that force over the displacement along it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from checks.validation.scenes import rig_force, static

@@ -1,7 +1,5 @@
 """Whether everything that a figure draws lies inside its axes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

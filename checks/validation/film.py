@@ -3,8 +3,6 @@
 Nothing here uses ``raceway.core.contact.film``.
 """
 
-from __future__ import annotations
-
 from math import atan, cos, exp, hypot, pi, sin
 from typing import Any
 
@@ -159,7 +157,7 @@ def preload_by_hand(preload: float, factors: tuple[float, float], films: tuple[f
     return force(mounted, sum(films))
 
 
-def springs(model: rw.Model | Any, equilibrium: Any) -> float:
+def springs(model: Any, equilibrium: Any) -> float:
     """kyy of the contacts' springs alone [N/m], of weightless balls: the tangent without the turn of the balls' forces.
 
     Notes

@@ -1,7 +1,5 @@
 """What several test files share: scenes as plain tables, built models."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

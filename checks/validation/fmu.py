@@ -1,7 +1,5 @@
 """Exported FMUs under fmpy: a call of the instance, the force of a bearing in a rotor's motion, time of a step."""
 
-from __future__ import annotations
-
 import ctypes
 import subprocess
 import tempfile

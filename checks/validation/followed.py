@@ -1,7 +1,5 @@
 """The article's bearing with folds and Neimark-Sacker points, and its orbits by methods of their own."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import attrs

@@ -5,8 +5,6 @@ rolling radius of 18.25 mm.  The block's base is held, its outer sides are free.
 contact ellipse at the load.
 """
 
-from __future__ import annotations
-
 import time
 
 import attrs

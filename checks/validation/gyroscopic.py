@@ -1,7 +1,5 @@
 """A ball with centrifugal force and gyroscopic moment between its races, by Harris' equations and another root finder."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import brentq, root
 

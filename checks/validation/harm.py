@@ -1,7 +1,5 @@
 """What disks, power cuts and foreign programs do to a file: each is given the file, another whole one of its kind, and chance."""
 
-from __future__ import annotations
-
 import random
 import shutil
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Distorted boxes of hexahedra, and a manufactured solution with the elements' errors from it."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import cg

@@ -4,8 +4,6 @@ The reference integrates the same equations with scipy's DOP853 and closes the o
 (``checks.validation.reference.shooting``); nothing of the program's kernels is in it.
 """
 
-from __future__ import annotations
-
 from itertools import product
 
 import attrs

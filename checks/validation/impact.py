@@ -1,7 +1,5 @@
 """A steel ball that falls on a clamped elastic block: a quarter of it, x = 0 and y = 0 being planes of symmetry."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import attrs

@@ -1,7 +1,5 @@
 """Contact laws as third parties write them, for comparisons of the compiled loops with runs."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 import attrs

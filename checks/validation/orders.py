@@ -4,8 +4,6 @@ Linear oscillator: closed form.  Bearing under a suddenly applied turning force:
 solution; with heavily damped contacts (where the balls' own rates matter) the same integrator with a much smaller step.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import attrs

@@ -4,8 +4,6 @@ The mass moves along x against one contact of the law below, which acts to both 
 of x, beside a linear spring and a dashpot, under F cos(w t).
 """
 
-from __future__ import annotations
-
 import math
 
 import attrs

@@ -4,8 +4,6 @@ Each scene runs in a process of its own, which times the machine before and afte
 both.  Times are processor times, the least of some repeats; kernels are compiled, and compliances made, in a run before.
 """
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -4,8 +4,6 @@ x runs across the groove, y along the rolling direction, z from the race to the 
 symmetry and the origin is the ball's centre.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from raceway.core.fem.mesh.part_meshes import CUBE, ball_mesh

@@ -1,7 +1,5 @@
 """Records of a turning shaft, made up from known lines."""
 
-from __future__ import annotations
-
 from math import pi
 
 import numpy as np

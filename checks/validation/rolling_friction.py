@@ -1,7 +1,5 @@
 """Friction of balls term by term, in arrays over points, races and balls: what the compiled loop of the core does in one pass."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 

@@ -8,8 +8,6 @@
    response against that.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import json

@@ -3,8 +3,6 @@
 They know nothing of the writers in packages/raceway-rotor/raceway_rotor/files.py: the tests and the report ``ross`` read the files with them.
 """
 
-from __future__ import annotations
-
 import csv
 import re
 

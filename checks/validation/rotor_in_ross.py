@@ -3,8 +3,6 @@
 Both stand on the tangent stiffness of the rig's bearings, deflection and tilt with their coupling.
 """
 
-from __future__ import annotations
-
 from math import pi
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Scenes that several reports share."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A ball between two sectors of rings, with cage, frame, penalty and friction: some dozen elements with all that a bearing's step has."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

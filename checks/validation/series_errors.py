@@ -3,8 +3,6 @@
 The true value is a series of 4999 a turn, whose harmonics beyond the samples are below 1e-8.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from checks.validation.scenes import rotating

@@ -1,7 +1,5 @@
 """Processes of a session: what a command that was ended has left."""
 
-from __future__ import annotations
-
 import time
 from pathlib import Path
 

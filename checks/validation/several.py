@@ -1,7 +1,5 @@
 """Scenes with several steady motions, and one of their turns by an integration of its own."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Records of a shaker on a mass, spring and dashpot in one direction or two, in closed form."""
 
-from __future__ import annotations
-
 import numpy as np
 
 #: Samples, their rate [Hz], and the band of the force [Hz].

@@ -1,7 +1,5 @@
 """One ball on one race of a B7206C, without the bearing around it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import attrs

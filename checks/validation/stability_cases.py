@@ -1,7 +1,5 @@
 """Cases that misbehave, for processes of their own: nothing heavy is imported."""
 
-from __future__ import annotations
-
 import os
 import time
 

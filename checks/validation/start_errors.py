@@ -5,8 +5,6 @@ collocation in time, which shares neither equations nor search with it.  Where s
 those that the result lists.  Starts without a steady motion are drawn anew: nothing is true of them.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import attrs

@@ -1,7 +1,5 @@
 """Results of a sweep made up from formulas, in the layout that a sweep gives: known numbers for plots and tables."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Sweeps as a user runs them: how long, how much memory, what they survive."""
 
-from __future__ import annotations
-
 import os
 import random
 import signal

@@ -3,8 +3,6 @@
 ``@pytest.mark.needs("ccx")`` names a key of ``NEEDS``.  With ``CI=true`` or ``RACEWAY_TEST_ALL=1`` a missing one is a failure.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

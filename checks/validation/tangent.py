@@ -1,7 +1,5 @@
 """The consistent tangent: symmetric for conservative scenes, and equal to central differences of the force."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

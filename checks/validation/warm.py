@@ -1,7 +1,5 @@
 """Warm bearings against hand calculations and published measurements."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A claim asserts, its row stands in the report, and reports are made of whole modules without a failure."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Documents made from the program are what it says now."""
 
-from __future__ import annotations
-
 import re
 
 from click.testing import CliRunner

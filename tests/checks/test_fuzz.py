@@ -1,7 +1,5 @@
 """The fuzz: some of its scenes are checked here, and it sees the faults that it looks for."""
 
-from __future__ import annotations
-
 import math
 import signal
 import subprocess

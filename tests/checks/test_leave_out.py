@@ -1,7 +1,5 @@
 """What the plan leaves out is neither imported nor compiled, and the answer is the same with it."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

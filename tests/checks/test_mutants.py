@@ -1,7 +1,5 @@
 """The table of deliberate faults fits the sources; ``make mutants`` tries all of them, here only one is."""
 
-from __future__ import annotations
-
 import ast
 from functools import lru_cache
 from pathlib import Path

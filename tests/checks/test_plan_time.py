@@ -1,7 +1,5 @@
 """The plan's predicted time: the work of whole runs within a factor of two of what was measured, and the machine's own speed."""
 
-from __future__ import annotations
-
 import pytest
 
 from checks.validation.command_line import ARTICLE

@@ -1,7 +1,5 @@
 """The series of the catalogue are written by the program."""
 
-from __future__ import annotations
-
 import re
 from contextlib import suppress
 

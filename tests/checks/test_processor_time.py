@@ -1,7 +1,5 @@
 """A quick test beyond its budget of processor time fails, whatever the clock on the wall says."""
 
-from __future__ import annotations
-
 import os
 from contextlib import suppress
 

@@ -1,7 +1,5 @@
 """The tables in README and docs are those of the reports' files, and every row holds or says why not."""
 
-from __future__ import annotations
-
 import json
 from types import SimpleNamespace
 

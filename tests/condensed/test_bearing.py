@@ -1,7 +1,5 @@
 """Whole condensed bearings: published answers, what a result tells, what is refused."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

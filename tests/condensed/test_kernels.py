@@ -1,7 +1,5 @@
 """Kernels of condensed bodies with chosen compliances: zero is rigid, tangents are exact, loops keep their energy."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline

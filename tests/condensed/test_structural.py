@@ -1,7 +1,5 @@
 """Structural compliances of rings and balls against closed forms, symmetry and the published split of one contact."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Coulomb friction: stick, slip and hysteresis of a driven contact, energy, convergence, preload untouched."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

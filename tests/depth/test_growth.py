@@ -1,7 +1,5 @@
 """Growth of the inner raceway: finite elements and the closed form of the turning disc, and what it does to the balls."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

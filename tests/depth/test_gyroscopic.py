@@ -1,7 +1,5 @@
 """Gyroscopic moments: of the balls by tangents, size and random equilibria; of ring and rotor by a linear model."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """A force from a CSV file: same answer as the formula that made it; every bad file gives one clear message."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -4,8 +4,6 @@ A DB pair under a turning force with locked tilts stays in its middle plane by s
 axial displacement that was built in.
 """
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

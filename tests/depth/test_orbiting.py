@@ -1,7 +1,5 @@
 """Orbiting balls: kinematic frequencies, inertia, rates of the moving groove centres, lines of the result."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Pairs of rows: DB and DF braced by a preload, DT sharing a load; against single rows and a maker's tables."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

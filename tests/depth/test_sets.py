@@ -1,7 +1,5 @@
 """Sets of rows: names, equal and different rows against independent rings, preloads of every kind, bad input."""
 
-from __future__ import annotations
-
 from math import radians
 
 import attrs

@@ -1,8 +1,6 @@
 """Rows on a spring: stiffness and damping with these rows following against slopes of whole runs and a condensation in numpy,
 with them held as in a motion, and the preload in three states: before mounting, mounted, running."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from raceway_rotor.node_bearing import node_bearing

@@ -1,7 +1,5 @@
 """Several speeds: K and C by a fit, a run-up with order tracking."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Growth of grooves and balls by speed, fits and temperatures, against elasticity solved here and an independent ring."""
 
-from __future__ import annotations
-
 from math import radians
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Stresses below contacts at points: a ball on a groove against Hertz, a bearing's table, its picture and its file."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

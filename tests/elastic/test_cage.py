@@ -1,7 +1,5 @@
 """What an ideal cage holds of a ball, its energy, and the inverse with whole contacts and a cage against a dense one."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Compiled explicit steps against steps from Python, and mass that is added to small elements for a larger step."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

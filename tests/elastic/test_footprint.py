@@ -1,7 +1,5 @@
 """Where a whole contact presses on a mesh, and which motions of the body it does not feel."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Whole contacts on a mesh: Hertz's law in series with what it replaces, tangents, energy, momentum, and where it ends."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Elastic bodies with one calibrated force a contact, from a scene: coarse meshes run, balance, agree with condensed bodies."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Compliance of a mesh under a contact, split into what depends on its cells and what the body is; weights of nodes inside."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

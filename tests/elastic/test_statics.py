@@ -1,7 +1,5 @@
 """Newton's method for elastic bodies in contact: starts from equilibria, and line searches past points that close."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

@@ -3,8 +3,6 @@
 Verdicts and tables are the study's own output, in its page and its JSON; docs/article_runs.md tells them.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """The article's mesh of a million hexahedra."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -1,7 +1,5 @@
 """The article's study on unstable orbits."""
 
-from __future__ import annotations
-
 import pytest
 from raceway_article.design import Setting, article_tables, design
 from raceway_article.rows import rows_of_curve

@@ -1,7 +1,5 @@
 """Inferred geometry, presets and ball-pass frequencies."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections import defaultdict

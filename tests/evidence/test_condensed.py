@@ -4,8 +4,6 @@ The bodies themselves equal full three-dimensional solves to rounding in tests/r
 for the calibration of B7206C.
 """
 
-from __future__ import annotations
-
 import time
 from itertools import product
 

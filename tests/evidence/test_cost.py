@@ -3,8 +3,6 @@
 Times are least processor times of repeats by turns, ratios inside one process: other programs on the machine meet both.
 """
 
-from __future__ import annotations
-
 import json
 import time
 from functools import cache

@@ -1,7 +1,5 @@
 """Derivatives by scene keys and tolerance bands."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

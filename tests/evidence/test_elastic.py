@@ -4,8 +4,6 @@ What each formulation of the hexahedron fulfils is in tests/hexahedron, the grow
 the stiffness of a sticking contact in tests/test_stick_stiffness.py.
 """
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Elastic bodies in motion."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -5,8 +5,6 @@ periodic solver, or shooting on independent equations (``validation``).  A facto
 steps change an error of second order, so that nobody who chooses steps by what is stated is a halving off.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import pytest

@@ -1,7 +1,5 @@
 """Comparisons and the map of excitations."""
 
-from __future__ import annotations
-
 import os
 import runpy
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Oil films and damping."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

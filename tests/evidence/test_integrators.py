@@ -3,8 +3,6 @@
 They start suddenly; stated errors and K are in the report ``error``.
 """
 
-from __future__ import annotations
-
 import pytest
 
 from checks.validation.identified_stiffness import INTEGRATORS

@@ -1,7 +1,5 @@
 """Hypotheses, warnings and small forces."""
 
-from __future__ import annotations
-
 import time
 from itertools import product
 

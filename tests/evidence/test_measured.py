@@ -4,8 +4,6 @@ A stated half-width of 95 % is 1.96 standard errors: the root mean square of err
 within a factor of 2 of that.  A bound of what is not random may hold all.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from math import pi
 from pathlib import Path

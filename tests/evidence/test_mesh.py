@@ -1,7 +1,5 @@
 """The article's mesh: size, quality, cost."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

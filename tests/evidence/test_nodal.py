@@ -3,8 +3,6 @@
 Resultants and points of the same bodies are two methods: what they share are the compliances.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import attrs

@@ -1,7 +1,5 @@
 """Periodic orbits and branches."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

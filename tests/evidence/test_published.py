@@ -3,8 +3,6 @@
 Frames and normalisations stand with each case in packages/raceway-checks/raceway_checks/data/cases.json, how each is computed in raceway/studies/verify.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import pytest

@@ -3,8 +3,6 @@
 The 4 and 8 % of its screen are rows of ``published``; the screen itself is held by tests/test_documents.py.
 """
 
-from __future__ import annotations
-
 import re
 import resource
 import subprocess

@@ -3,8 +3,6 @@
 The other solver's numbers are printed with three or four digits: half a unit of the last is at most 0.5 % or 0.05 %.
 """
 
-from __future__ import annotations
-
 from contextlib import suppress
 from itertools import product
 

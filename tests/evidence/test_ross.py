@@ -4,8 +4,6 @@ Each number is the worst of the versions of ROSS that are there (checks/validati
 spreadsheets are read back by the fields of their formats: neither program is there.
 """
 
-from __future__ import annotations
-
 import pytest
 
 from checks.validation.ross_rotor import in_ross

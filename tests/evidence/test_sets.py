@@ -1,7 +1,5 @@
 """Sets of rows, mounted and running."""
 
-from __future__ import annotations
-
 from math import radians
 
 import numpy as np

@@ -3,8 +3,6 @@
 The limits are those of the cases themselves; a row here is the worst of theirs.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

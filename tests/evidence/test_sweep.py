@@ -1,7 +1,5 @@
 """Sweeps: speed, memory and failures."""
 
-from __future__ import annotations
-
 import os
 
 import pytest

@@ -1,7 +1,5 @@
 """Every formulation: constant strain, rigid motion, energy, mass, stable step, rates of convergence, locking."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.linalg import eigh

@@ -1,7 +1,5 @@
 """The kernels against their readable references, and against each other."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

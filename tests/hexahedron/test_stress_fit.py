@@ -1,7 +1,5 @@
 """Stresses between the centres of elements: polynomials exactly, Hertz's field to what the documents say."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

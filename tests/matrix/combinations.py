@@ -1,7 +1,5 @@
 """The combinations: names from the registry, so that whatever is installed takes part; and one scene for each."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from functools import cache

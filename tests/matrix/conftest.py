@@ -1,7 +1,5 @@
 """Counts what the matrix ran and what was refused, and prints it at the end."""
 
-from __future__ import annotations
-
 from collections import Counter
 
 KEY = "raceway_matrix"

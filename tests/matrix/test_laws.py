@@ -5,8 +5,6 @@ Each is held against the same scene with Hertz' dry contacts: a film moves K of 
 inertia and 3 % for a series of equilibria, as in ``test_matrix``, come on top.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from functools import cache

@@ -13,8 +13,6 @@ another law: a factor 1.6 more, up or down: a law calibrated at the load has Her
     4/3 of Hertz's for the penalty's square.
 """
 
-from __future__ import annotations
-
 import pytest
 
 from raceway import SceneError, make_plan, scene_from_dict

@@ -4,8 +4,6 @@ Tolerances on Z against Newmark under the same force: 0.5 % for methods with ine
 equilibria has K of the load F0, not of F0 + m w^2 r: 3 %.
 """
 
-from __future__ import annotations
-
 import json
 from functools import cache
 

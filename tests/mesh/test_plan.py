@@ -1,7 +1,5 @@
 """What `raceway plan` tells and refuses of meshes; sizes of bodies against the bearing's own."""
 
-from __future__ import annotations
-
 import json
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """Whole bearings on coarse patches: equilibrium, tangents, widening, edges, reports, and what is refused."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import attrs

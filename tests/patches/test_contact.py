@@ -1,7 +1,5 @@
 """Single contacts: Hertz, complementarity, tangents, laws at points, warm starts, ends of a patch."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """Friction at surface points: Cattaneo and Mindlin, tangents, history, energy; inertia of balls."""
 
-from __future__ import annotations
-
 from functools import cache
 from types import SimpleNamespace
 

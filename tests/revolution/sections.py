@@ -1,7 +1,5 @@
 """Small sections for the tests of bodies of revolution."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import attrs

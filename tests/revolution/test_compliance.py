@@ -1,7 +1,5 @@
 """Compliances and frequencies by harmonics against full three-dimensional solves, their symmetries, and what is kept on disk."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.sparse import diags_array

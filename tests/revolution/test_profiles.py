@@ -1,7 +1,5 @@
 """Sections of rings and balls: where their nodes lie, what a polygon gives, what is refused."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

@@ -1,7 +1,5 @@
 """A rigid bearing that is stepped from Python moves as in the compiled loops."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import attrs

@@ -1,7 +1,5 @@
 """Explicit steps by the kernels of CUDA devices, run as Python, against those of the processor; what a device refuses, and what it leaves."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

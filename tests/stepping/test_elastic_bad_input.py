@@ -1,7 +1,5 @@
 """What elastic bodies refuse: motions that nothing holds, surfaces that overlap; what a failure keeps."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Explicit steps of elastic bodies by several threads, and the forces of a step against readable sums."""
 
-from __future__ import annotations
-
 import threading
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Coulomb friction at points, and of a block on a plane against closed forms."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """A tiny bearing whose rings are equal sectors, also without superelements; elimination of a dense matrix, written to be read."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import attrs

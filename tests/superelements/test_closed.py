@@ -1,7 +1,5 @@
 """A ring of sectors, closed harmonic by harmonic, against the same ring as a whole, and its turned and mirrored answers."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

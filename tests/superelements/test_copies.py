@@ -1,7 +1,5 @@
 """Balls and sectors that are the same mesh, turned, or not by the tenth digit of one node; forces of equal parts by one matrix."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

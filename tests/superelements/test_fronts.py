@@ -1,7 +1,5 @@
 """Order of elimination, and multifrontal factors against dense elimination of the assembled matrix."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Superelements kept on disk: read again under other loads, never for another mesh; and nodes that contacts come to later."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

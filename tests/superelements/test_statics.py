@@ -1,7 +1,5 @@
 """Equilibria by superelements against the unreduced system: every node, iterated to eleven digits; linearised, put back into its equations."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Steps in time by superelements against the unreduced system: mass, dashpots, and friction that sticks and slips."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The application in a process of its own, and a tab of a browser that uses it as a person does."""
 
-from __future__ import annotations
-
 import ast
 import json
 import os

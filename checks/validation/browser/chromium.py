@@ -1,7 +1,5 @@
 """Debian's chromium without a window: what a page shows, says on its console and asks the network for."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Every page that the program writes, made as cheaply as it comes: name -> a function that writes it into a folder."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Nodal contact written to be read: one point at a time, a sphere's point against a torus, no derivatives."""
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -1,7 +1,5 @@
 """Fully integrated hexahedra, written to be read: stiffness, consistent mass, and a few regular meshes."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

@@ -7,8 +7,6 @@ References
 Johnson, Contact Mechanics (1985), equations 3.19; written with 1 / (R (R + z)), which has no 0 / 0 below the load (Love 1929).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 

@@ -4,8 +4,6 @@ q(theta) is a Fourier series with H harmonics.  The balance of forces w^2 M q'' 
 and projected back on the series (Cameron, Griffin, J. Appl. Mech. 56 (1989) 149); Newton's iteration with the tangents at these times.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

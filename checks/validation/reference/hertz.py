@@ -1,7 +1,5 @@
 """Exact elliptic Hertz contact by quadrature: the integrals are done numerically, the ellipse found by brentq."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.integrate import quad
 from scipy.optimize import brentq

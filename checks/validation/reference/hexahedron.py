@@ -4,8 +4,6 @@ Nothing here is shared with the package.  ``one_point_force`` is plain enough fo
 that ``checks/kernel.py`` compares speeds with.
 """
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

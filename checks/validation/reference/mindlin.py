@@ -16,8 +16,6 @@ Mindlin, J. Appl. Mech. 16 (1949) 259; Mindlin, Deresiewicz, J. Appl. Mech. 20 (
 sections 3.6, 7.2 and 7.4.
 """
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 

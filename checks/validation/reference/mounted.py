@@ -1,7 +1,5 @@
 """Rows of a B7206C at a given axial displacement: preload, secant stiffness on an orbit; in plain numpy, with scipy's brentq."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import brentq
 

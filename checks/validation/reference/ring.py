@@ -1,7 +1,5 @@
 """Rigid-ring bearing from physics.md sections 1 to 3: force and tangent of the inner ring, in plain numpy."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 import numpy as np

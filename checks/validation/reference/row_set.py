@@ -4,8 +4,6 @@ A row at the place X that faces ``side`` meets the motion q of the set as
 q' = (side x + shift, y + X tilt_z, z - X tilt_y, side tilt_y, side tilt_z).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

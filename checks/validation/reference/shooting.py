@@ -3,8 +3,6 @@
 M q'' + C q' + f(q) = load + F(t); balls follow quasi-statically.  The 1x dynamic stiffness comes from the dense output.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

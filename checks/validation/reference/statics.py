@@ -1,7 +1,5 @@
 """Equilibrium of the rigid ring by scipy's root finders, and checks on a claimed equilibrium."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import root
 

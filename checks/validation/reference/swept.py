@@ -1,7 +1,5 @@
 """A profile swept into a full mesh of a body, assembled and solved in three dimensions: what its harmonics must equal."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """``raceway app`` in headless chromium, used as a person does."""
 
-from __future__ import annotations
-
 import json
 import re
 import time

@@ -1,7 +1,5 @@
 """What a hostile page, name, title or connection can do to ``raceway app``: nothing."""
 
-from __future__ import annotations
-
 import asyncio
 import http.client
 import json

@@ -1,7 +1,5 @@
 """``raceway study article``: files, resumption, failures and bad input, on small grids."""
 
-from __future__ import annotations
-
 import csv
 import json
 import re

@@ -1,7 +1,5 @@
 """``raceway study article --bodies elastic``: files, resumption, refused options, failures, and numbers of single runs, on tiny meshes."""
 
-from __future__ import annotations
-
 import copy
 import csv
 import json

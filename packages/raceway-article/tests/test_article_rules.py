@@ -1,7 +1,5 @@
 """Rules and verdicts of the article's claims on invented numbers: every verdict can be reached."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from raceway_article import claims

@@ -1,7 +1,5 @@
 """Balls and grooves from printed numbers: known bearings, standards, what is refused."""
 
-from __future__ import annotations
-
 import json
 
 import attrs

@@ -5,8 +5,6 @@ Tolerances: 1e-5 for the closed formulas (six printed digits); 1e-3 for each tra
 which the largest sample takes up to 1e-4 (it is not interpolated) and second-order methods a few 1e-4.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from raceway_checks.verify.reference import reference_cases

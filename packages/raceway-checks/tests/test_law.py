@@ -1,7 +1,5 @@
 """One contact of a bearing in the laboratory: laws against Hertz' and their own formulas, cycles against closed forms."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`raceway precision`: the design, rows that survive, references with a bound, fronts, orders; and the estimates of errors."""
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any

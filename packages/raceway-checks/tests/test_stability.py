@@ -3,8 +3,6 @@
 All quick cases are run by tests/evidence/test_stability.py at night; here those of seconds, and deliberate faults.
 """
 
-from __future__ import annotations
-
 import json
 import math
 

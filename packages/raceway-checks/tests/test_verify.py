@@ -1,7 +1,5 @@
 """The ``verify`` study itself: what it computes, refuses and reports."""
 
-from __future__ import annotations
-
 import json
 from typing import ClassVar
 

@@ -1,7 +1,5 @@
 """``raceway export --fmu``: FMUs under fmpy, against the functions and kernels that they stand for."""
 
-from __future__ import annotations
-
 import ctypes
 import json
 import shutil

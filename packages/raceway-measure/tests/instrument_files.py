@@ -18,8 +18,6 @@ matlab : writetimetable, mathworks.com/matlabcentral/answers/801181: "Time,Var1,
 tds : TDS oscilloscopes: "Record Length,2.5e+03,,-0.5,0.02", settings beside the samples of one channel.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

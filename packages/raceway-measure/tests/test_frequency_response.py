@@ -1,7 +1,5 @@
 """Frequency responses and time histories in universal files: K within its interval, round trips bit for bit, units right or refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from instrument_files import DAMPING, MASS, NEWTONS_PER_VOLT, STIFFNESS, record, write

@@ -1,7 +1,5 @@
 """Instruments' own files: K lies within its interval, without a script; what cannot be read is refused with line, rule and remedy."""
 
-from __future__ import annotations
-
 import json
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Rig less shaft is the bearing: exact without noise, and with it `fit` holds K and C within their intervals."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from raceway_measure.fit.linear import fit_record

@@ -1,7 +1,5 @@
 """Our beam against ROSS on the test rig's rotor: natural frequencies and the response to unbalance."""
 
-from __future__ import annotations
-
 import pytest
 
 from checks.validation.rotor_in_ross import compared

@@ -3,8 +3,6 @@
 ROSS itself reads them in tests/evidence/test_ross.py: it is not in the extra ``all``.
 """
 
-from __future__ import annotations
-
 import json
 import tomllib
 

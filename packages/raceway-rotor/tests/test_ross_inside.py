@@ -1,7 +1,5 @@
 """Rolling bearings inside ROSS: what of them needs no ROSS, and what is said where it is missing; with ROSS the rest, too."""
 
-from __future__ import annotations
-
 import importlib
 import subprocess
 import sys

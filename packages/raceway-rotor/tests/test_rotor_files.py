@@ -1,7 +1,5 @@
 """Coefficients for Nastran and Ansys, and as tables: read by the fields of their formats, compared with the sweep's numbers."""
 
-from __future__ import annotations
-
 import json
 import re
 

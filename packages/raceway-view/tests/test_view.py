@@ -1,7 +1,5 @@
 """raceway view and mesh: what the surfaces measure, what is drawn of a state, numbers and files of meshes, refusals."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

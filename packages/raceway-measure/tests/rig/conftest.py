@@ -1,7 +1,5 @@
 """One rig and its bearing under 2000 N, shared by the tests: linear enough to be solved in a few runs."""
 
-from __future__ import annotations
-
 import pytest
 from raceway_rotor.rig_table import Rig
 from raceway_rotor.shaft import balance, bearing, rotor

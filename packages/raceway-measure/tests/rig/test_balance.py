@@ -1,7 +1,5 @@
 """Shaft and bearing together, and the way back."""
 
-from __future__ import annotations
-
 import attrs
 import numpy as np
 import pytest

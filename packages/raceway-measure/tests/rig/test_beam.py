@@ -1,7 +1,5 @@
 """The shaft against closed forms, and its correction as the article prints it."""
 
-from __future__ import annotations
-
 from math import pi, sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Records as other programs write them: every header gives the numbers of our own, or one message that mends it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from raceway_measure.fit.column_headers import columns_of

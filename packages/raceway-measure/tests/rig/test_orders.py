@@ -1,7 +1,5 @@
 """Angles and 1x lines of made-up records."""
 
-from __future__ import annotations
-
 from cmath import exp
 from math import pi
 

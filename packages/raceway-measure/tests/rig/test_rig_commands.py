@@ -1,7 +1,5 @@
 """``raceway study rig`` and ``raceway identify``: the whole way from a scene to K, and everything that can be wrong with it."""
 
-from __future__ import annotations
-
 import json
 import re
 
