@@ -1,15 +1,35 @@
 """Lanes: every operation against single numbers, in whole blocks and in rests of one to three."""
 
 import math
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from numba import float64, void
 
 from raceway import jit
-from raceway.core.lanes import WIDTH, any_of, column_of, larger, live_of, put, root, smaller, spread, sum_of, take, where
+from raceway.core.contact.line import ninth_root
+from raceway.core.lanes import (
+    WIDTH,
+    any_of,
+    column_of,
+    larger,
+    live_of,
+    multiply_add,
+    put,
+    root,
+    rough_power,
+    row_of,
+    smaller,
+    spread,
+    sum_of,
+    take,
+    where,
+)
 from raceway.core.ring.kernels.rolling import angle_of
 
+#: Relative errors: angles and roots are rounded otherwise than by the C library.
+ROUNDED = {"angle": 4.5e-16, "rough power": 0.06, "ninth root": 4.5e-16}
 #: What ``_operations`` writes into its rows, of two rows of numbers x and y.
 ROWS = {
     "sum": lambda x, y: x + y, "difference": lambda x, y: x - y, "product": lambda x, y: x * y, "quotient": lambda x, y: x / y,
@@ -19,7 +39,8 @@ ROWS = {
     "not less": lambda x, y: 1.0 * (x >= y), "equal": lambda x, y: 1.0 * (x == y), "both": lambda x, y: 1.0 * ((x > 0.0) & (y > 0.0)),
     "not": lambda x, _: 1.0 * ~(x > 0.0), "added to": lambda x, y: x + y, "number": lambda x, _: np.full_like(x, 7.0),
     "angle": np.vectorize(math.atan2), "either": lambda x, y: 1.0 * ((x > 0.0) | (y > 0.0)),
-    "chosen": lambda x, y: np.where(x < y, x, y + 1.0),
+    "chosen": lambda x, y: np.where(x < y, x, y + 1.0), "rounded once": np.vectorize(lambda x, y: float(Fraction(x) * Fraction(y) - Fraction(x * y))),
+    "rough power": lambda x, _: np.abs(x) ** -0.3, "ninth root": lambda x, _: np.abs(x) ** (1.0 / 9.0), "of a vector": lambda x, _: x,
 }  # fmt: skip
 
 
@@ -53,6 +74,10 @@ def _operations(given, columns, out, single):
         put(out, 19, k, live, angle_of(x, y))
         put(out, 20, k, live, where((x > 0.0) | (y > 0.0), 1.0, 0.0))
         put(out, 21, k, live, where(x < y, x, y + 1.0))
+        put(out, 22, k, live, multiply_add(x, y, -(x * y)))
+        put(out, 23, k, live, rough_power(larger(x, -x), -0.3))
+        put(out, 24, k, live, ninth_root(larger(x, -x)))
+        put(out, 25, k, live, take(row_of(given[0]), 0, k, live))
         total += where(live, column_of(columns, k, 1, live), 0.0)
         if any_of(live & (x > 1e3)):
             single[1] += 1.0
@@ -67,8 +92,8 @@ def test_every_lane_is_the_arithmetic_of_its_numbers(n):
     out, columns = np.zeros((len(ROWS) + 1, n)), np.arange(3.0 * n).reshape(n, 3)
     single = np.zeros(2)
     _operations(np.array([x, y, np.full(n, 1e6)]), columns, out, single)
-    for row, (name, expected) in zip(out, ROWS.items(), strict=False):  # angles are rounded otherwise than by the C library
-        np.testing.assert_allclose(row, expected(x, y), rtol=4.5e-16 if name == "angle" else 0.0, atol=0.0, err_msg=name)
+    for row, (name, expected) in zip(out, ROWS.items(), strict=False):
+        np.testing.assert_allclose(row, expected(x, y), rtol=ROUNDED.get(name, 0.0), atol=0.0, err_msg=name)
     assert not out[-1].any()
     assert single[0] == columns[:, 1].sum() and single[1] == 0.0
 
@@ -80,6 +105,17 @@ def test_angles_all_around():
     out = np.zeros((len(ROWS) + 1, len(x)))
     _operations(np.array([x, y]), np.zeros((len(x), 2)), out, np.zeros(2))
     np.testing.assert_allclose(out[list(ROWS).index("angle")], np.arctan2(x, y), rtol=4.5e-16)
+
+
+def test_ninth_roots_of_small_and_large_numbers():
+    """Half a unit in the last place, 1.1e-16, would be the rounding of the exact root; 0 has the root 0."""
+    x = np.concatenate([np.geomspace(1e-280, 1e280, 4001), np.geomspace(1e-6, 1.5e-6, 4001)])
+    out = np.zeros((len(ROWS) + 1, len(x) + 1))
+    _operations(np.array([[0.0, *x], np.ones(len(x) + 1)]), np.zeros((len(x) + 1, 2)), out, np.zeros(2))
+    found = out[list(ROWS).index("ninth root")]
+    assert found[0] == 0.0
+    exact = x.astype(np.longdouble) ** (np.longdouble(1) / 9)
+    assert np.abs(found[1:] / exact - 1.0).max() < 1.9e-16
 
 
 def test_no_number_is_less_more_or_equal():

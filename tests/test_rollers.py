@@ -157,6 +157,57 @@ def test_laminae_are_those_of_the_standard(misalignment, laminae):
     assert state.stiffness == pytest.approx(state.stiffness.T, rel=1e-9, abs=1e-6 * np.abs(state.stiffness).max())
 
 
+@rw.jit(rw.LAW)
+def soft_start(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Q = k delta^2, as a third party may have it."""
+    for i in range(gap.size):
+        approach = max(-gap[i], 0.0)
+        force[i], d_gap[i], d_rate[i] = params[i, 0] * approach**2, -2.0 * params[i, 0] * approach, 0.0
+
+
+def on_rollers(q, model, push, exponent):
+    """(5,) force [N, N m] of rollers that lie where Q_o(p) = Q_i(d - p) + F_c, roller by roller by bisection."""
+    bearing, factor = model.scene.bearing, model.system.law_params[0, 0]
+    x = ((np.arange(30) + 0.5) / 30 - 0.5) * LENGTH
+    drop = -0.00035 * bearing.ball_diameter * np.log(1.0 - (2.0 * x / LENGTH) ** 2)
+    total = np.zeros(5)
+    for c, s in zip(np.cos(model.azimuth), np.sin(model.azimuth), strict=True):
+        d, u = q[1] * c + q[2] * s - 0.5 * bearing.radial_clearance, q[3] * s - q[4] * c
+
+        def load(approach, lean=0.5 * u * x):
+            return factor * np.maximum(approach - lean - drop, 0.0) ** exponent / 30
+
+        place = brentq(lambda p, d=d: (load(d - p) - load(p)).sum() + push, -1e-4, 1e-4, xtol=1e-19, rtol=1e-15)
+        force, moment = load(d - place).sum(), (x * load(d - place)).sum()
+        total += [0.0, force * c, force * s, -moment * s, moment * c]
+    return total
+
+
+@pytest.mark.parametrize("exponent", [10.0 / 9.0, 2.0])
+@pytest.mark.parametrize("count", [7, 12, 13])
+def test_every_roller_finds_its_place(exponent, count):
+    """The law's own force and another one, by its pointer; rollers in whole blocks of lanes and in rests."""
+    moving = {"ball_inertia": True, "spin_speed_rpm": 9000.0}
+    bearing, bodies = {"ball_count": count}, {"kind": "cylindrical_rollers", "roller_length": LENGTH}
+    model, equilibrium = found(10e-6, bearing=bearing, kinematics=moving, bodies=bodies, contact={"kind": "line"})
+    inner, outer = np.split(equilibrium.contact_force, 2)
+    push = (outer - inner).mean()  # the same at all rollers, see above
+    if exponent == 2.0:
+        model.system.law, model.system.law_params = soft_start, np.full_like(model.system.law_params, 1e14)
+    q, scale = np.array([0.0, 15e-6, -4e-6, 1e-4, 3e-4]), np.array([0.0, 1.0, 1.0, 0.01, 0.01])
+    state, expected = model.system.evaluate(q), on_rollers(q, model, push, exponent)
+    assert state.force == pytest.approx(expected, rel=1e-11, abs=1e-11 * expected[1])
+    again = model.system.evaluate(q, ball=state.ball)
+    assert np.abs(again.stiffness - state.stiffness).max() <= 1e-9 * state.stiffness[1, 1]
+    for i in range(1, 5):
+        step = 1e-10 * np.eye(5)[i] / scale[i]
+        slope = (on_rollers(q + step, model, push, exponent) - on_rollers(q - step, model, push, exponent)) / (2 * step[i])
+        # Laminae that open within the step: a share of 1e-5 of the slope.
+        assert np.abs(slope - state.stiffness[:, i])[1:] * scale[1:] * scale[i] == pytest.approx(
+            np.zeros(4), abs=2e-5 * state.stiffness[1, 1]
+        )
+
+
 def test_a_moment_tilts_the_ring_on_its_rollers():
     tables = {
         "bearing": {"preset": "NU206"},

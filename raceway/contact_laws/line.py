@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, ClassVar
 import attrs
 import numpy as np
 
-from raceway.core.deferred import deferred
 from raceway.errors import PluginError
 from raceway.framework.options import option, positive, word_or
 
@@ -18,15 +17,6 @@ if TYPE_CHECKING:
 #: c of delta = c Q^0.9 / L^0.8 of one contact [m^1.8 / N^0.9], for steel: half of what c_L = 35948 L^(8/9) of both races leaves
 #: (ISO/TS 16281), and 3.84e-5 mm^1.8 / N^0.9 (Palmgren).
 _COEFFICIENTS = {"iso_16281": 0.5 * 35948.0**-0.9 * 1e-3 * 1e-3**0.8, "palmgren": 3.84e-5 * 1e-3 * 1e-3**0.8}
-
-
-@deferred("LAW")
-def ten_ninths(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
-    """Q = k delta^(10/9)."""
-    for i in range(gap.size):
-        approach = max(-gap[i], 0.0)
-        slope = params[i, 0] * approach ** (1.0 / 9.0)
-        force[i], d_gap[i], d_rate[i] = slope * approach, -10.0 / 9.0 * slope, 0.0
 
 
 @attrs.frozen
@@ -75,4 +65,6 @@ class Line:
         return np.asarray((length ** (8.0 / 9.0) / self.coefficient ** (10.0 / 9.0))[:, None].copy())
 
     def kernel(self) -> Kernel:
-        return ten_ninths()
+        from raceway.core.contact.line import ten_ninths
+
+        return ten_ninths

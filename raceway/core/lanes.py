@@ -34,8 +34,9 @@ from numba.core import cgutils
 from numba.core.datamodel.models import PrimitiveModel
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import lower_builtin, register_model
+from numba.np.arrayobj import populate_array
 
-from raceway.core.signatures import MATRIX
+from raceway.core.signatures import MATRIX, VECTOR
 
 #: A part of numba's compiler, which types some of itself only.
 _Numba = Any
@@ -130,6 +131,28 @@ def root(builder: _Numba, x: _Numba) -> _Numba:
     return _call(builder, f"sqrt.v{WIDTH}f64", _NUMBERS, x)
 
 
+@_lanewise(LANES, (LANES, LANES, LANES), (LANES, LANES, float64))
+def multiply_add(builder: _Numba, x: _Numba, y: _Numba, z: _Numba) -> _Numba:
+    """x y + z of each lane, rounded once."""
+    return _call(builder, f"fma.v{WIDTH}f64", _NUMBERS, x, y, z)
+
+
+@_lanewise(LANES, (LANES, float64))
+def rough_power(builder: _Numba, x: _Numba, exponent: _Numba) -> _Numba:
+    """Positive numbers to a power between -1 and 1, within 6 %: exponent and mantissa are near a logarithm, which the power multiplies.
+
+    The upper halves of numbers suffice, which vector units convert.
+    """
+    upper, whole = ir.VectorType(ir.IntType(32), WIDTH), ir.VectorType(_INTEGER, WIDTH)
+    half = ir.Constant(whole, [32] * WIDTH)
+    bits = builder.sitofp(builder.trunc(builder.lshr(builder.bitcast(x, whole), half), upper), _NUMBERS)
+    one = ir.Constant(
+        _NUMBERS, [0x3FF00000 - 54000.0] * WIDTH
+    )  # the upper half of 1.0, less what makes errors of both signs alike
+    power = builder.fadd(builder.fmul(exponent, builder.fsub(bits, one)), one)
+    return builder.bitcast(builder.shl(builder.zext(builder.fptosi(power, upper), whole), half), _NUMBERS)
+
+
 @_lanewise(LANES, *_TWO)
 def larger(builder: _Numba, x: _Numba, y: _Numba) -> _Numba:
     """The larger one in each lane; the second one beside NaN."""
@@ -181,6 +204,16 @@ def _place(context: _Numba, builder: _Numba, matrix: _Numba, row: _Numba, column
     array = context.make_array(MATRIX)(context, builder, matrix)
     columns = builder.extract_value(array.shape, 1)
     return builder.gep(array.data, [builder.add(builder.mul(row, columns), column)])
+
+
+@_machine_code(MATRIX, (VECTOR,))
+def row_of(context: _Numba, builder: _Numba, vector: _Numba) -> _Numba:
+    """A vector as the only row of a matrix."""
+    array, matrix = context.make_array(VECTOR)(context, builder, vector), context.make_array(MATRIX)(context, builder)
+    size = builder.extract_value(array.shape, 0)
+    shape, strides = [_INTEGER(1), size], [builder.mul(size, array.itemsize), array.itemsize]
+    populate_array(matrix, array.data, shape, strides, array.itemsize, None)
+    return matrix._getvalue()
 
 
 _ENTRIES = MATRIX, int64, int64, MASK

@@ -88,11 +88,11 @@ def _gaps(system: System, record: Record) -> Iterator[tuple[float, np.ndarray]]:
         return
     from raceway.core.ring.kernels import rollers
 
-    count, (length, profile) = int(table[0, rollers.LAMINAE]), table[0, [rollers.LENGTH, rollers.PROFILE]]
+    drops = table[0, rollers.DROP :]
     azimuth = np.arctan2(table[:, layout.SINE], table[:, layout.COSINE]) + system.scalars[layout.CAGE] * record.time[:, None]
     turn = record.displacement[:, 3:4] * np.sin(azimuth) - record.displacement[:, 4:5] * np.cos(azimuth)
-    for x in ((np.arange(count) + 0.5) / count - 0.5) * length:
-        yield 1.0 / count, record.gap + 0.5 * x * np.tile(turn, 2) - profile * np.log(1.0 - (2.0 * x / length) ** 2)
+    for x, drop in zip(rollers.places(table[0, rollers.LENGTH], len(drops)), drops, strict=True):
+        yield 1.0 / len(drops), record.gap + 0.5 * x * np.tile(turn, 2) + drop
 
 
 def energy_balance(system: System, record: Record) -> _EnergyBalance:

@@ -154,10 +154,11 @@ def roller_parts(problem: Problem, plan: ScenePlan, basis: Basis, radii: tuple[N
     out[..., ring.DAMPING] = problem.contact.dashpot
     if problem.kinematics.orbiting:
         out[..., ring.CAGE] = geometry.cage_speed(problem.spin_speed)
-    table = np.zeros((*problem.points, problem.bearing.ball_count, lines.ROLLER_COLUMNS))
+    table = np.zeros((*problem.points, problem.bearing.ball_count, lines.DROP + kind.laminae))
     table[..., ring.COSINE], table[..., ring.SINE], table[..., ring.SIDE] = np.cos(azimuth), np.sin(azimuth), 1.0
-    table[..., lines.LENGTH], table[..., lines.LAMINAE] = length, kind.laminae
-    table[..., lines.PROFILE] = kind.crown * per_ball(geometry.ball_diameter)
+    table[..., lines.LENGTH] = length
+    profile = -np.log(1.0 - (2.0 * lines.places(length, kind.laminae) / length) ** 2)
+    table[..., lines.DROP :] = np.multiply.outer(kind.crown * per_ball(geometry.ball_diameter), profile)
     if plan.centrifugal:
         mass = problem.bearing.balls.density * 0.25 * pi * geometry.ball_diameter**2 * length
         table[..., ring.CENTRIFUGAL] = per_ball(

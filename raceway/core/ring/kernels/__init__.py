@@ -24,7 +24,7 @@ rolling            moments and friction of four balls, in lanes
 structural         each of these on elastic rings and balls: contacts and structural compliances in series
 between            balls that act on each other through elastic rings
 layout             constants of a model, columns of ``ball``, rows of ``work``; a ball's seat on the ring;  tensors: vectors of its meridian plane
-rollers            cylindrical rollers: line contacts cut into laminae
+rollers            cylindrical rollers: line contacts cut into laminae, four rollers at a time
 impact             one mass against one contact, for the published impacts and the integrators' tests
 """
 

@@ -7,17 +7,18 @@ Each of n laminae carries 1 / n of what the law gives the full contact at the la
 """
 
 import numpy as np
-from numba import float64, int64, void
+from numba import boolean, float64, int64, void
 
 from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
-from raceway.core.ring.kernels import CONTACT_FORCE, FORCE_BY_GAP, FORCE_BY_RATE, GAP, GAP_RATE, SHIFT, STORED
-from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, COLUMNS, DAMPING, place
+from raceway.core.lanes import LANES, MASK, WIDTH, any_of, column_of, larger, live_of, put, smaller, spread, take, where
+from raceway.core.ring import kernels as rows
+from raceway.core.ring.kernels import layout as ring
+from raceway.core.ring.kernels.tensors import Pair, Tensor, pair_of, put_pair
 from raceway.core.signatures import CONTACTS, MATRIX, SYSTEM, VECTOR
 
-#: Columns of ``table`` beyond those of balls: length of the contacts [m], factor A of the profile [m], number of laminae.
-LENGTH, PROFILE, LAMINAE = range(COLUMNS, COLUMNS + 3)
-ROLLER_COLUMNS = COLUMNS + 3
+#: Columns of ``table`` beyond those of balls: length of the contacts [m], then the profile's drop at each lamina [m].
+LENGTH, DROP = ring.COLUMNS, ring.COLUMNS + 1
 _ITERATIONS = 80
 #: Rows of ``work`` between the law's five and those that stay zero here: azimuth, radial approach of the races, its speed,
 #: bracket of the outer approach, outer approach with its rate, misalignment u with its rate; then of every contact, summed over the
@@ -26,84 +27,115 @@ _DIRECTION, _APPROACH, _SPEED, _BRACKET, _OUTER, _TURN = range(5, 11)
 _LOAD, _MOMENT, _STIFF, _STIFF_1, _STIFF_2, _VISCOUS, _VISCOUS_1, _VISCOUS_2 = range(11, 19)
 
 
+def places(length, count):
+    """(count,) middles of the laminae along a roller [m]."""
+    return ((np.arange(count) + 0.5) / count - 0.5) * length
+
+
 @jit(void(float64, MATRIX), inline=True)
 def _add_energies(share, work):
     """Add the share of each contact's energy [J] to STORED: Q delta / (1 + m) of a law that goes with delta^m.
 
     Energies of systems are the law's at the gaps in ``work``, those of the middle, and STORED: what the laminae have beyond it.
     """
-    for i in range(work.shape[1]):
-        load, approach = work[CONTACT_FORCE, i], -work[GAP, i]
-        if load > 0.0 and approach > 0.0:
-            work[STORED, i] += share * load * approach / (1.0 - work[FORCE_BY_GAP, i] * approach / load)
+    for k in range(0, work.shape[1], WIDTH):
+        live = live_of(k, work.shape[1])
+        load, approach = take(work, rows.CONTACT_FORCE, k, live), -take(work, rows.GAP, k, live)
+        energy = load * load * approach / (load - take(work, rows.FORCE_BY_GAP, k, live) * approach)
+        pressed = (load > 0.0) & (approach > 0.0)
+        put(work, rows.STORED, k, live, take(work, rows.STORED, k, live) + where(pressed, share * energy, 0.0))
 
 
-@jit(void(CONTACTS, VECTOR, MATRIX, MATRIX))
-def _sum_laminae(contacts, scalars, table, work):
-    """Sums over the laminae from the places of the rollers; gaps are then those of the middle."""
-    law, law_params, law_old, law_new, dt = contacts
-    z, n, length = table.shape[0], int(table[0, LAMINAE]), table[0, LENGTH]
-    gap, rate, force = work[GAP], work[GAP_RATE], work[CONTACT_FORCE]
-    d_gap, d_rate = work[FORCE_BY_GAP], work[FORCE_BY_RATE]
+@jit(void(float64, float64, CONTACTS, MATRIX))
+def _evaluate(x, drop, contacts, work):
+    """Forces of whole contacts with the gaps of the lamina at x [m], which the profile drops by so much [m]."""
+    law, params, old, new, dt = contacts
+    z = work.shape[1] // 2
+    for k in range(0, z, WIDTH):
+        live = live_of(k, z)
+        (outer, own), (turn, turning) = pair_of(work, _OUTER, k, live), pair_of(work, _TURN, k, live)
+        lean, leaning = 0.5 * x * turn, 0.5 * x * turning
+        put_pair(work, rows.GAP, k, live, outer - take(work, _APPROACH, z + k, live) + lean + drop, lean - outer + drop)
+        put_pair(work, rows.GAP_RATE, k, live, own - take(work, _SPEED, z + k, live) + leaning, leaning - own)
+    force, by_gap, by_rate = work[rows.CONTACT_FORCE], work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE]
+    law(work[rows.GAP], work[rows.GAP_RATE], params, old, new, dt, force, by_gap, by_rate)
+
+
+@jit(void(MATRIX, int64, int64, MASK, LANES), inline=True)
+def _accumulate(work, row, k, live, x):
+    """Add x (lanes) to the contacts from k on of a row of sums."""
+    put(work, row, k, live, take(work, row, k, live) + x)
+
+
+@jit(void(boolean, CONTACTS, VECTOR, MATRIX, MATRIX))
+def _sum_laminae(tangents, contacts, scalars, table, work):
+    """Sums over the laminae from the places of the rollers; without tangents of loads, their moments and what moves the rollers."""
+    count, length = table.shape[1] - DROP, table[0, LENGTH]
+    gap, rate, force = work[rows.GAP], work[rows.GAP_RATE], work[rows.CONTACT_FORCE]
     work[_LOAD : _VISCOUS_2 + 1] = 0.0
-    work[STORED] = 0.0
-    share = 1.0 / n
-    for lamina in range(n):
+    work[rows.STORED] = 0.0
+    share = 1.0 / count
+    for lamina in range(count):
         x = ((lamina + 0.5) * share - 0.5) * length
-        drop = -table[0, PROFILE] * np.log(1.0 - (2.0 * x / length) ** 2)
-        for k in range(z):
-            lean, lean_rate = 0.5 * x * work[_TURN, k], 0.5 * x * work[_TURN, z + k]
-            outer, own = work[_OUTER, k], work[_OUTER, z + k]
-            gap[k], gap[z + k] = outer - work[_APPROACH, z + k] + lean + drop, lean - outer + drop
-            rate[k], rate[z + k] = own - work[_SPEED, z + k] + lean_rate, lean_rate - own
-        law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
-        _add_energies(share, work)
-        add_damping(scalars[DAMPING], gap, rate, force, d_gap, d_rate)
-        for i in range(2 * z):
-            load, stiff, viscous = share * force[i], -share * d_gap[i], -share * d_rate[i]
-            work[_LOAD, i] += load
-            work[_MOMENT, i] += x * load
-            work[_STIFF, i] += stiff
-            work[_STIFF_1, i] += x * stiff
-            work[_STIFF_2, i] += x * x * stiff
-            work[_VISCOUS, i] += viscous
-            work[_VISCOUS_1, i] += x * viscous
-            work[_VISCOUS_2, i] += x * x * viscous
-    for k in range(z):
-        gap[k], gap[z + k] = work[_OUTER, k] - work[_APPROACH, z + k], -work[_OUTER, k]
-    law(gap, rate, law_params, law_old, law_new, dt, force, d_gap, d_rate)
-    _add_energies(-1.0, work)
-    for k in range(z):
-        force[k], force[z + k] = work[_LOAD, k], work[_LOAD, z + k]
+        _evaluate(x, table[0, DROP + lamina], contacts, work)
+        if tangents:
+            _add_energies(share, work)
+        add_damping(scalars[ring.DAMPING], gap, rate, force, work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE])
+        for k in range(0, gap.size, WIDTH):
+            live = live_of(k, gap.size)
+            load, stiff = share * take(work, rows.CONTACT_FORCE, k, live), -share * take(work, rows.FORCE_BY_GAP, k, live)
+            viscous = -share * take(work, rows.FORCE_BY_RATE, k, live)
+            _accumulate(work, _LOAD, k, live, load)
+            _accumulate(work, _MOMENT, k, live, x * load)
+            _accumulate(work, _STIFF, k, live, stiff)
+            if tangents:
+                _accumulate(work, _STIFF_1, k, live, x * stiff)
+                _accumulate(work, _STIFF_2, k, live, x * x * stiff)
+            if any_of(~(viscous == 0.0)):
+                _accumulate(work, _VISCOUS, k, live, viscous)
+                _accumulate(work, _VISCOUS_1, k, live, x * viscous)
+                _accumulate(work, _VISCOUS_2, k, live, x * x * viscous)
 
 
-@jit(void(int64, int64, float64, MATRIX, MATRIX), inline=True)
-def _add_tangent(k, row, gain, work, tangent):
-    """Add roller k's derivatives by d and u, or by their rates, to a tangent (5, 5) of the ring.
+@jit(MASK(int64, MASK, float64, MATRIX, MATRIX), inline=True)
+def _moving(k, live, ball_gain, table, work):
+    """Move the rollers from k on by Newton's method within their brackets; returns those that moved."""
+    (outer, own), (low, high) = pair_of(work, _OUTER, k, live), pair_of(work, _BRACKET, k, live)
+    push, (inner_load, outer_load) = column_of(table, k, ring.CENTRIFUGAL, live), pair_of(work, _LOAD, k, live)
+    (stiff_i, stiff_o), (damped_i, damped_o) = pair_of(work, _STIFF, k, live), pair_of(work, _VISCOUS, k, live)
+    excess = inner_load + push - outer_load
+    active = live & ~(larger(excess, -excess) <= 1e-13 * (inner_load + outer_load + push))
+    low, high = where(active & (excess > 0.0), outer, low), where(active & ~(excess > 0.0), outer, high)
+    put_pair(work, _BRACKET, k, live, low, high)
+    stiff = stiff_i + stiff_o + ball_gain * (damped_i + damped_o)
+    trial = where(stiff > 0.0, outer + excess / stiff, np.inf)
+    # Beyond all brackets the contact is followed from first touch, where its stiffness is none.
+    halfway = where(high < np.inf, 0.5 * (low + high), 2.0 * larger(outer, 0.0) + 1e-9)
+    trial = where((low < trial) & (trial < high), trial, halfway)
+    active = active & ~(trial == outer)
+    put_pair(work, _OUTER, k, active, trial, own + ball_gain * (trial - outer))
+    return active
+
+
+@jit(ring.TANGENTS(ring.TANGENTS, ring.SEATS, int64, MASK, int64, float64, MATRIX), inline=True)
+def _with_rollers(total, seat, k, live, row, gain, work):
+    """With the derivatives of the rollers from k on by d and u, or by their rates.
 
     row : of the sums that act directly, the stiffnesses or the dashpots
 
     With S the sum of both races' stiffness against p, dp = (k_i dd - (k_i1 - k_o1) du / 2) / S; dQ = k_i dd - k_i1 du / 2 - S_i dp and
     dM = k_i1 dd - k_i2 du / 2 - S_i1 dp; the ring feels Q along d and -M along u.
     """
-    z = work.shape[1] // 2
-    inner = work[_STIFF, k] + gain * work[_VISCOUS, k]
-    total = inner + work[_STIFF, z + k] + gain * work[_VISCOUS, z + k]
-    if not total > 0.0:
-        return
-    along = work[_STIFF_1, k] + gain * work[_VISCOUS_1, k]
-    by_d, by_u = work[row, k] / total, -0.5 * (work[row + 1, k] - work[row + 1, z + k]) / total
-    c, s = work[_DIRECTION, k], work[_DIRECTION, z + k]
-    pairs = (
-        (work[row, k] - inner * by_d, -0.5 * work[row + 1, k] - inner * by_u),
-        (along * by_d - work[row + 1, k], 0.5 * work[row + 2, k] + along * by_u),
-    )
-    by = ((c, s, 0.0, 0.0), (0.0, 0.0, s, -c))
-    for i in range(2):
-        for j in range(2):
-            for m in range(4):
-                for n in range(4):
-                    tangent[1 + m, 1 + n] += by[i][m] * pairs[i][j] * by[j][n]
+    (inner, outer), (damped_i, damped_o) = pair_of(work, _STIFF, k, live), pair_of(work, _VISCOUS, k, live)
+    inner, outer = inner + gain * damped_i, outer + gain * damped_o
+    pressed = live & (inner + outer > 0.0)
+    along = take(work, _STIFF_1, k, pressed) + gain * take(work, _VISCOUS_1, k, pressed)
+    own, (first, first_o) = take(work, row, k, pressed), pair_of(work, row + 1, k, pressed)
+    second, by_p, none = take(work, row + 2, k, pressed), where(pressed, 1.0 / (inner + outer), 0.0), spread(0.0)
+    by_d, by_u = own * by_p, -0.5 * (first - first_o) * by_p
+    radial = Tensor(none, none, none, own - inner * by_d)
+    by_turn, by_centre = Pair(none, -0.5 * first - inner * by_u), Pair(none, along * by_d - first)
+    return ring.with_tangent(total, seat, radial, by_turn, by_centre, 0.5 * second + along * by_u)
 
 
 @jit(SYSTEM)
@@ -115,59 +147,52 @@ def rollers(t, q, v, balls, contacts, constants, response):
     ball, ball_gain, ball_history = balls
     scalars, table = constants
     f, K, C, work = response
-    z, reach, cage = table.shape[0], 0.5 * table[0, LENGTH], scalars[CAGE]
-    place(t, q, v, constants, work, (_DIRECTION, _APPROACH, _SPEED))
-    for k in range(z):
-        approach, push = work[_APPROACH, z + k], table[k, CENTRIFUGAL]
-        c, s = work[_DIRECTION, k], work[_DIRECTION, z + k]
-        work[_TURN, k] = q[3] * s - q[4] * c
-        work[_TURN, z + k] = (v[3] + cage * q[4]) * s - (v[4] - cage * q[3]) * c
-        edge = 0.5 * reach * abs(work[_TURN, k])
-        low, high = min(0.0, approach) - edge, np.inf if push > 0.0 else max(0.0, approach) + edge
-        in_contact = approach + 2.0 * edge > 0.0 or push > 0.0
-        # Without any load a roller lies in the middle; a pushed one as deep as its outer contact asks for.
-        outer = ball[k, 1] if in_contact and ball[k, 1] != 0.0 and low < ball[k, 1] < high else 0.5 * approach
-        work[_OUTER, k], work[_OUTER, z + k] = outer, ball_gain * outer + ball_history[k, 1]
-        work[_BRACKET, k], work[_BRACKET, z + k] = low, high
-        work[SHIFT, k] = work[SHIFT, z + k] = 0.0
-    moving = 1
+    z, reach, cage = table.shape[0], 0.5 * table[0, LENGTH], scalars[ring.CAGE]
+    ring.place(t, q, v, constants, work, (_DIRECTION, _APPROACH, _SPEED))
+    tilt_y, tilt_z, turn_y, turn_z = q[3], q[4], v[3] + cage * q[4], v[4] - cage * q[3]
+    for k in range(0, z, WIDTH):
+        live = live_of(k, z)
+        (c, s), approach = pair_of(work, _DIRECTION, k, live), take(work, _APPROACH, z + k, live)
+        turn, before, pushed = (
+            tilt_y * s - tilt_z * c,
+            column_of(ball, k, 1, live),
+            column_of(table, k, ring.CENTRIFUGAL, live) > 0.0,
+        )
+        edge = 0.5 * reach * larger(turn, -turn)
+        low, high = smaller(approach, 0.0) - edge, where(pushed, np.inf, larger(approach, 0.0) + edge)
+        # A loaded roller lies near the middle; another one that is pushed comes up from deeper than its outer contact asks for.
+        kept = ((approach + 2.0 * edge > 0.0) | pushed) & ~(before == 0.0) & (low < before) & (before < high)
+        outer = where(kept, before, where(pushed & (approach <= 0.0), 1e-4 * reach, 0.5 * approach))
+        put_pair(work, _TURN, k, live, turn, turn_y * s - turn_z * c)
+        put_pair(work, _OUTER, k, live, outer, ball_gain * outer + column_of(ball_history, k, 1, live))
+        put_pair(work, _BRACKET, k, live, low, high)
+    work[rows.SHIFT] = 0.0
+    moving = True
     for _ in range(_ITERATIONS):
-        _sum_laminae(contacts, scalars, table, work)
-        moving = 0
-        for k in range(z):
-            outer, push = work[_OUTER, k], table[k, CENTRIFUGAL]
-            inner_load, outer_load = work[_LOAD, k], work[_LOAD, z + k]
-            if inner_load == 0.0 and outer_load == 0.0 and push == 0.0:
-                continue
-            excess = inner_load + push - outer_load
-            stiff = work[_STIFF, k] + work[_STIFF, z + k] + ball_gain * (work[_VISCOUS, k] + work[_VISCOUS, z + k])
-            if abs(excess) <= 1e-13 * (inner_load + outer_load + push):
-                continue
-            work[_BRACKET, k if excess > 0.0 else z + k] = outer
-            low, high = work[_BRACKET, k], work[_BRACKET, z + k]
-            trial = outer + excess / stiff if stiff > 0.0 else np.inf
-            if not low < trial < high:
-                # Beyond all brackets the contact is followed from first touch, where its stiffness is none.
-                trial = 0.5 * (low + high) if high < np.inf else 2.0 * max(outer, 0.0) + 1e-9
-            if trial == outer:
-                continue
-            moving += 1
-            work[_OUTER, k] = trial
-            work[_OUTER, z + k] += ball_gain * (trial - outer)
-        if moving == 0:
+        _sum_laminae(K.size > 0, contacts, scalars, table, work)
+        moving = False
+        for k in range(0, z, WIDTH):
+            moving |= any_of(_moving(k, live_of(k, z), ball_gain, table, work))
+        if not moving:
             break
-    f[:] = 0.0
+    force, stiffness, damping, none = ring.no_force(), ring.no_tangent(), ring.no_tangent(), spread(0.0)
     for k in range(z):
         ball[k, 0], ball[k, 1] = 0.0, work[_OUTER, k]
-        c, s, load, moment = work[_DIRECTION, k], work[_DIRECTION, z + k], work[_LOAD, k], work[_MOMENT, k]
-        f[1] += load * c
-        f[2] += load * s
-        f[3] -= moment * s
-        f[4] += moment * c
+    for k in range(0, z, WIDTH):
+        live = live_of(k, z)
+        seat = ring.seats_of(k, live, 0.0, table, work, _DIRECTION)
+        force = ring.with_force(force, seat, none, take(work, _LOAD, k, live), -take(work, _MOMENT, k, live))
+        if K.size > 0:
+            stiffness = _with_rollers(stiffness, seat, k, live, _STIFF, ball_gain, work)
+            damping = _with_rollers(damping, seat, k, live, _VISCOUS, ball_gain, work)
+    ring.put_force(force, f)
     if K.size > 0:
-        K[:] = 0.0
-        C[:] = 0.0
-        for k in range(z):
-            _add_tangent(k, _STIFF, ball_gain, work, K)
-            _add_tangent(k, _VISCOUS, ball_gain, work, C)
-    return 1 if moving > 0 else 0
+        ring.put_tangent(stiffness, K)
+        ring.put_tangent(damping, C)
+    # Gaps are those of the middle, loads those of the laminae.
+    _evaluate(0.0, 0.0, contacts, work)
+    if K.size > 0:
+        _add_energies(-1.0, work)
+    for i in range(work.shape[1]):
+        work[rows.CONTACT_FORCE, i] = work[_LOAD, i]
+    return 1 if moving else 0
