@@ -42,7 +42,8 @@ def short(monkeypatch):
     """One load case, one excitation, a dozen steps: seconds."""
     monkeypatch.setattr(ElasticDesign, "load_cases", property(lambda _: [(1000.0, 500.0)]))
     monkeypatch.setattr(elastic_design, "CLAIMED", elastic_design.CLAIMED[:1])
-    monkeypatch.setattr(elastic, "STEPS", 12)
+    for module in (elastic, elastic_design):
+        monkeypatch.setattr(module, "STEPS", 12)
 
 
 def test_the_scene_is_the_article_s_mesh_of_the_examples():
@@ -66,13 +67,13 @@ def test_the_command_goes_on_where_it_stopped_and_tells_the_numbers_of_single_ru
         done.append(1)
         return real(*given)
 
-    monkeypatch.setattr(elastic, "_row_of", stop)
+    monkeypatch.setattr(elastic, "row_of", stop)
     words = (*WORDS, "--turns", "1", "--no-pictures", "--out", tmp_path)
     found = invoke(*words)
     assert found.exit_code == 130
     assert found.stderr.count("the same command continues") == 1
     assert (tmp_path / "points.sqlite").is_file()
-    monkeypatch.setattr(elastic, "_row_of", real)
+    monkeypatch.setattr(elastic, "row_of", real)
     found = invoke(*words, "--json")
     assert found.exit_code == 0, found.output
     content = json.loads(found.stdout)
@@ -200,7 +201,7 @@ def test_a_scene_that_the_study_cannot_use_is_refused(change, path):
 @pytest.mark.slow
 def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_is_tried_again(tmp_path, monkeypatch):
     monkeypatch.setattr(ElasticDesign, "load_cases", property(lambda _: [(1000.0, 500.0), (2000.0, 0.0)]))
-    monkeypatch.setattr(elastic, "CLAIMED", ())
+    monkeypatch.setattr(elastic_design, "CLAIMED", ())
     real, wrong, tried = elastic_rows.run, [MemoryError(), ConvergenceError("no equilibrium")], []
 
     def fail(scene, *given):
@@ -210,7 +211,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason_and_what_the_machine_refused_
                 raise wrong.pop(0)
         return real(scene, *given)
 
-    monkeypatch.setattr(elastic, "run", fail)
+    monkeypatch.setattr(elastic_rows, "run", fail)
     found = invoke(*WORDS, "--out", tmp_path)
     assert found.exit_code == 0, found.output
     content = json.loads((tmp_path / "article-elastic.json").read_text(encoding="utf-8"), parse_constant=pytest.fail)
@@ -280,7 +281,7 @@ def test_a_missing_reference_leaves_differences_out():
 
 def test_progress_tells_the_run_and_when_all_of_them_end(monkeypatch):
     now, told = [0.0], []
-    monkeypatch.setattr("raceway.answers.progress.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("raceway_article.remaining_time.time.monotonic", lambda: now[0])
     kinds = {1: "static", 3: "static", 4: "motion"}
     progress = RemainingTime({1: 120.0, 3: 120.0, 4: 480.0}, kinds, lambda *given: told.append(given))
     progress.begin(1, "elastic at rest", "400 N axial")

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from raceway_article import claims
+from raceway_article import courses
 from raceway_article.claims import region_of, verdict_of, verdicts
 from raceway_article.courses import power_exponent
 from raceway_article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding
@@ -143,41 +143,41 @@ def test_each_reading_of_claim_5_can_hold(number, k):
 
 
 def test_about_takes_a_quarter_and_no_more():
-    assert claims._about(0.0601, 0.08) and claims._about(0.0999, 0.08)
-    assert not claims._about(0.0599, 0.08) and not claims._about(0.1001, 0.08)
+    assert courses.is_about(0.0601, 0.08) and courses.is_about(0.0999, 0.08)
+    assert not courses.is_about(0.0599, 0.08) and not courses.is_about(0.1001, 0.08)
 
 
 def test_courses():
     for expected, values in {
         "rises": 1.0 + W, "falls": 2.0 - W, "level": 1.0 + 0.004 * W, "not monotonic": 1.0 + 0.1 * np.sin(6.0 * W)
     }.items():  # fmt: skip
-        assert claims._course(values, SMALL, NONE) == expected
+        assert courses.course(values, SMALL, NONE) == expected
     # A dent within the runs' own errors is none.
     dent = 1.0 + W + np.where(np.arange(9) == 4, -0.2, 0.0)
-    assert claims._course(dent, SMALL, NONE) == "not monotonic" and claims._course(dent, np.full(9, 0.1), NONE) == "rises"
+    assert courses.course(dent, SMALL, NONE) == "not monotonic" and courses.course(dent, np.full(9, 0.1), NONE) == "rises"
 
 
 def test_an_unstable_motion_at_an_end_leaves_no_judgement_and_one_between_is_bridged():
     values = 1.0 + W
     between, end = values.copy(), values.copy()
     between[3], end[-1] = np.nan, np.nan
-    assert claims._course(between, SMALL, NONE) == "rises"
-    assert claims._course(end, SMALL, NONE) is None
-    assert claims._change_within(W, end, NONE, 0.75, 1.0) is None
-    assert claims.load_effect(W, np.stack([values, end]), np.stack([NONE, NONE]), 0.75, 1.0) is None
+    assert courses.course(between, SMALL, NONE) == "rises"
+    assert courses.course(end, SMALL, NONE) is None
+    assert courses.change_within(W, end, NONE, 0.75, 1.0) is None
+    assert courses.load_effect(W, np.stack([values, end]), np.stack([NONE, NONE]), 0.75, 1.0) is None
 
 
 def test_nothing_is_judged_over_a_failed_run():
     values, failed = 1.0 + W**2, np.arange(9) == 4
     values[failed] = np.nan
     surface, lost = np.stack([values, 2.0 * values]), np.stack([NONE, failed])
-    assert claims._course(values, SMALL, failed) is None
+    assert courses.course(values, SMALL, failed) is None
     assert (
-        claims._change_within(W, values, failed, 0.0, 0.25) is None
-        and claims.load_effect(W, surface, lost, 0.0, 0.25) is None
+        courses.change_within(W, values, failed, 0.0, 0.25) is None
+        and courses.load_effect(W, surface, lost, 0.0, 0.25) is None
     )
-    assert claims._influence_grows(surface, lost) is None
-    assert claims._rises_with_load(np.stack([surface[0], surface[1], 3.0 * values]), np.full((3, 9), 1e-9),
+    assert courses.influence_grows(surface, lost) is None
+    assert courses.rises_with_load(np.stack([surface[0], surface[1], 3.0 * values]), np.full((3, 9), 1e-9),
                                  np.stack([NONE, failed, NONE]))[3:6] == [True, None, True]  # fmt: skip
 
 
