@@ -14,6 +14,7 @@ promises  docs/pictures/stability.svg: from its report
 import re
 import tempfile
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 import attrs
@@ -21,7 +22,6 @@ import attrs
 from checks.validation.command_line import invoke, raceway
 from raceway.cli.schema import keys
 from raceway.extend import Registry
-from raceway.framework.loading.sources import named
 from raceway.scene.structure import table_of_list
 from raceway.scene.tables import TABLES
 
@@ -109,7 +109,7 @@ def scene_page() -> str:
         path = f"quantities.{entry.name}"
         parts += [f"### [{path}]\n", *_tables(entry.plugin, path, f"[{path}]", shown)]
     for name, place in registry.mapping("raceway_tables").items():
-        parts += [f"## [{name}]\n", _NOTES[name] + "\n", *_tables(named(place), name, f"[{name}]", shown)]
+        parts += [f"## [{name}]\n", _NOTES[name] + "\n", *_tables(resolve_name(place), name, f"[{name}]", shown)]
     return "\n".join(parts)
 
 
