@@ -54,6 +54,7 @@ from .core.fem.mesh.quality import cell_quality as cell_quality
 from .core.fem.mesh.part_meshes import ring_shape as ring_shape
 from .core.quantities.ratings import BallRow as BallRow
 from .core.record import Motion as Motion
+from .core.record import Observation as Observation
 from .core.record import Record as Record
 from .core.record import Schedule as Schedule
 from .core.record import drift as drift

@@ -8,8 +8,7 @@ import scipy.sparse.linalg as solvers
 
 from checks.validation.reference import elastic
 from raceway.core.fem.elastic.friction import CoulombFriction
-from raceway.core.record import Observation
-from raceway.extend import HexOperator, Motion, State, ThreadPool
+from raceway.extend import HexOperator, Motion, Observation, State, ThreadPool
 
 YOUNG, POISSON, DENSITY = 2e9, 0.3, 7810.0
 
