@@ -26,6 +26,7 @@ from raceway.core.ring.equilibrium import NOT_CONVERGED
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import OWN_OFFSET_INNER, OWN_OFFSET_OUTER, elastic_columns
 from raceway.core.ring.kernels.rigid_inertial import rigid_inertial, rigid_tangential
+from raceway.core.ring.kernels.structural import condensed
 from raceway.core.ring.states import LOOSE, Kernels, Points, States
 from raceway.core.ring.system import System, no_force
 from raceway.core.signatures import FORCE, Linear
@@ -316,7 +317,8 @@ def assembled_columns(cls: type[C], problem: Problem, plan: ScenePlan, basis: Ba
     n = problem.points[0]
     parts["scalars"][:, ring.CAGE] = 0.0  # at rest; balls of periodic motions stand
     columns = 2 + elastic_columns(parts["scalars"][0])
-    lanes = parts["kernel"] in (rigid_inertial, rigid_tangential)
+    own, tangential = (condensed(each) if columns > 2 else each for each in (rigid_inertial, rigid_tangential))
+    lanes = parts["base_kernel"] is own and parts["kernel"] in (own, tangential) and columns < 6
     lanes &= not np.any(parts["scalars"][:, ring.FRICTION])
     kernels = Kernels(parts["kernel"], parts["base_kernel"], columns, parts["law"], lanes)
     none = np.zeros((5, 5))

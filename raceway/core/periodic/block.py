@@ -26,11 +26,12 @@ SHARED_ROWS = SPEED + 1
 
 
 class Block(NamedTuple):
-    """Arrays of four points: their law's ``params`` (W 2 Z, k) and none of its ``memory``; of each sample ``work`` (N, ..., W 2 Z) and
+    """Arrays of four points: their law's ``params`` (W 2 Z, k) and none of its ``memory``; scalars of condensed ``bodies`` (W, s), or (0, s); of each sample ``work`` (N, ..., W 2 Z) and
     ``rows`` (N, ``ROWS``, W), of level n each (N / n)th; ``basis`` (2 m + 3, 5 N, W) of a step; ``shared`` (``SHARED_ROWS``, W); ``own`` for the balls of a kernel."""
 
     params: np.ndarray
     memory: np.ndarray
+    bodies: np.ndarray
     work: np.ndarray
     rows: np.ndarray
     basis: np.ndarray
@@ -38,7 +39,7 @@ class Block(NamedTuple):
     own: np.ndarray
 
 
-BLOCK = record(Block, MATRIX, MATRIX, CUBE, CUBE, CUBE, MATRIX, MATRIX)
+BLOCK = record(Block, MATRIX, MATRIX, MATRIX, CUBE, CUBE, CUBE, MATRIX, MATRIX)
 
 
 @jit(void(float64, MATRIX, MATRIX))

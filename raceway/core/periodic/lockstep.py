@@ -80,7 +80,7 @@ def _move_with_rates(n, order, derivative, block):
     live, w, stride = live_of(0, WIDTH), take(block.shared, at.SPEED, 0, live_of(0, WIDTH)), block.rows.shape[0] // n
     total = derivative.size // 2
     for j in range(n):
-        move_balls(False, block.rows[j * stride], block.work[j * stride])
+        move_balls(False, block.rows[j * stride], block.bodies, block.work[j * stride])
     for k in range(block.work.shape[2] // (2 * WIDTH)):
         for j in range(n):
             axial, radial, follower = spread(0.0), spread(0.0), k
@@ -168,12 +168,12 @@ def forces(law, damped, sense, n, block):
         if damped:  # the balls are where their rates are known
             _damped_forces(law, r, block, work)
         else:
-            move_balls(False, r, work)
+            move_balls(False, r, block.bodies, work)
             law(
                 work[ring_rows.GAP], work[ring_rows.GAP_RATE], block.params, memory, memory, 0.0,
                 work[ring_rows.CONTACT_FORCE], work[ring_rows.FORCE_BY_GAP], work[ring_rows.FORCE_BY_RATE],
             )  # fmt: skip
-        force, tangent, _, moving = ring_forces(False, rolls, rolling, none, work)
+        force, tangent, _, moving = ring_forces(False, rolls, rolling, none, block.bodies, work)
         moves = moves | moving
         for i, part in enumerate(force):
             put(r, at.IMBALANCE + i, 0, live, part)

@@ -18,7 +18,7 @@ from raceway.core.periodic.monodromy import span_transfer
 from raceway.core.periodic.steps import COLUMNS
 from raceway.core.ring.elimination import copy_matrix
 from raceway.core.ring.kernels import CONTACT_FORCE
-from raceway.core.ring.kernels.layout import DAMPING, TILT_ARM, TIME_CONSTANT, work_rows
+from raceway.core.ring.kernels.layout import DAMPING, TILT_ARM, TIME_CONSTANT, are_condensed, work_rows
 from raceway.core.ring.lockstep import ARM, DQ, LOAD, PLACE, SHAFT, TANGENT, WORK_ROWS, Q, asks_for_rates, gather
 from raceway.core.ring.states import KERNELS, POINTS, STATES
 from raceway.core.signatures import CUBE, LINEAR, MATRIX, VECTOR, record
@@ -112,7 +112,7 @@ def _begin(kernels, alone, linear, first, points, states, turning, push, like, b
     n, sense, work, rows, shared = turning.least, turning.sense, block.work, block.rows, block.shared
     line, u, stride, moved = np.empty(10), np.empty((turning.least, 5)), block.rows.shape[0] // turning.least, np.empty(5)
     if not alone:
-        gather(first, points, block.params, work[0], rows[0])
+        gather(first, points, block.params, block.bodies, work[0], rows[0])
     for lane in range(WIDTH):
         p = min(first + lane, states.status.size - 1)
         rows[0, SHAFT, lane], rows[0, ARM, lane] = points.shaft[p], points.scalars[p, TILT_ARM]
@@ -233,7 +233,8 @@ def orbits(kernels, linear, points, states, turning, near, out):
         out.status[p] = states.status[p] if states.status[p] != 0 else fourier.NOT_SOLVED
     z, like, own = points.table.shape[1], np.empty((0, 5)), turning
     block = at.Block(
-        np.empty((2 * z * WIDTH, points.params.shape[2])), np.zeros((2 * z * WIDTH, 0)), np.zeros((most, WORK_ROWS, 2 * z * WIDTH)),
+        np.empty((2 * z * WIDTH, points.params.shape[2])), np.zeros((2 * z * WIDTH, 0)),
+        np.zeros((WIDTH * are_condensed(points.scalars[0]), points.scalars.shape[1])), np.zeros((most, WORK_ROWS, 2 * z * WIDTH)),
         np.zeros((most, at.ROWS, WIDTH)), np.zeros((2 * COLUMNS + 3, 5 * most, WIDTH)),
         np.zeros((at.SHARED_ROWS, WIDTH)), np.zeros((work_rows(points.scalars[0], points.table[0]), 2 * z)),
     )  # fmt: skip
@@ -241,7 +242,7 @@ def orbits(kernels, linear, points, states, turning, near, out):
     first, end = 0, 1 if near else count
     while first < count:
         for p in range(first, end, WIDTH):
-            for mode in range(0 if kernels.lanes else 1, 2):
+            for mode in range(0 if kernels.lanes and not are_condensed(points.scalars[0]) else 1, 2):
                 _solve_block(kernels, mode > 0, linear, p, end, points, states, own, like, block, out)
         if near and out.status[0] != fourier.SOLVED:
             break

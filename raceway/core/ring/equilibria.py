@@ -8,7 +8,16 @@ from raceway.core.lanes import WIDTH
 from raceway.core.ring.elimination import cholesky_solve, copy_matrix
 from raceway.core.ring.equilibrium import CONVERGED, SLOW, find_root, solve_equilibrium
 from raceway.core.ring.kernels import CONTACT_FORCE
-from raceway.core.ring.kernels.layout import DAMPING, GYROSCOPIC, TILT_ARM, TIME_CONSTANT, keep_slips, place, work_rows
+from raceway.core.ring.kernels.layout import (
+    DAMPING,
+    GYROSCOPIC,
+    TILT_ARM,
+    TIME_CONSTANT,
+    are_condensed,
+    keep_slips,
+    place,
+    work_rows,
+)
 from raceway.core.ring.lockstep import POINT_ROWS, lockstep
 from raceway.core.ring.lockstep import WORK_ROWS as LANES_ROWS
 from raceway.core.ring.states import KERNELS, LEAST, LOOSE, POINTS, STATES, TOLERANCE
@@ -86,11 +95,12 @@ def equilibria(kernels, linear, points, states):
     free_ball, history = np.zeros((z, kernels.columns)), np.zeros((z, columns))
     width = WIDTH if kernels.lanes else 0
     lanes, of_points = np.zeros((LANES_ROWS, 2 * z * width)), np.zeros((POINT_ROWS, width))
+    bodies = np.empty((width * are_condensed(points.scalars[0]), points.scalars.shape[1]))
     params_of_lanes, none = np.empty((2 * z * width, points.params.shape[2])), np.zeros((2 * z * width, 0))
     rates, C = True, np.empty((5, 5))
     for p in range(n):
         if width > 0 and p % width == 0:
-            rates = lockstep(kernels.law, linear, p, points, states, params_of_lanes, none, lanes, of_points)
+            rates = lockstep(kernels.law, linear, p, points, states, params_of_lanes, none, bodies, lanes, of_points)
         in_lanes = width > 0 and states.status[p] == CONVERGED
         dampers = points.scalars[p, DAMPING] != 0.0 or points.scalars[p, TIME_CONSTANT] != 0.0
         if in_lanes and not (damped and (rates or dampers)):

@@ -4,6 +4,7 @@ A ball's place p is eliminated from each step: with R its imbalance and F its fo
 sees F - P J^-1 R and the tangent E - P J^-1 X (``raceway.core.ring.kernels.rolling.Balance``).  Without gyroscopic moments the potential is
 convex in all unknowns together, so that what balances is the one equilibrium; moments are put on where that is nearly found: from the
 first guess on, or from where a point comes near.
+Elastic bodies' approaches are eliminated before it (``raceway.core.ring.compliances``).
 There is no safeguard: a point that does not balance within some steps, or is held loosely, is left to the trust region.
 """
 
@@ -12,6 +13,7 @@ from numba import boolean, int64, types, void
 
 from raceway.core.jit import jit
 from raceway.core.lanes import LANES, MASK, WIDTH, any_of, larger, live_of, put, root, smaller, spread, take, where
+from raceway.core.ring import compliances as soft
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels import rolling as at
@@ -36,18 +38,12 @@ from raceway.core.signatures import LAW_POINTER, LINEAR, MATRIX, VECTOR
 #: Rows of ``work`` behind the law's, halves of 4 Z: azimuth; side and lever [m]; reach of the tilts [m] and centrifugal force [N]; e at
 #: rest [m]; offsets [m]; of balls that nothing pushes off the line of the groove centres the outer race's share of the approach, else 0;
 #: place p [m]; its step by R [m]; its derivatives by e; directions of its contacts and 1 over their lengths [1/m].
-DIRECTION, SEAT, REACH, REST, OFFSET, SHARE, PLACE, STEP, BY_CENTRE, INNER, OUTER, BY_LENGTH = (
-    *range(5, 13),
-    13,
-    15,
-    16,
-    17,
-)
+DIRECTION, SEAT, REACH, REST, OFFSET, SHARE, PLACE, STEP, BY_CENTRE, INNER, OUTER, BY_LENGTH = (*range(5, 14), 18, 19, 20)
 #: Of damped motions: rate of the place [m/s]; gap that a contact with a time constant answers to [m].
-PLACE_RATE, AHEAD = 18, 19
+PLACE_RATE, AHEAD = 25, 26
 #: At the first guess of equilibria 1 where a ball differs in its azimuth alone from the one before.
 LIKE = AHEAD
-WORK_ROWS = 20
+WORK_ROWS = 28
 #: Rows of ``of_points``, one number of each point: q, its step, load, shaft against tilts, reach of the tilts; numbers of rolling; the tangent
 #: and its right side.
 Q, DQ, LOAD, SHAFT, ARM, ROLLS, TANGENT = 0, 5, 10, 15, 16, 17, 24
@@ -59,8 +55,8 @@ _NEAR, _SETTLED = 0.1, 1e-11
 _LONGEST = 0.1
 
 
-@jit(void(int64, POINTS, MATRIX, MATRIX, MATRIX))
-def gather(first, points, params, work, of_points):
+@jit(void(int64, POINTS, MATRIX, MATRIX, MATRIX, MATRIX))
+def gather(first, points, params, bodies, work, of_points):
     """The numbers of the block's points into lanes; behind the last point it stands again."""
     n, z = points.table.shape[:2]
     for lane in range(WIDTH):
@@ -68,6 +64,8 @@ def gather(first, points, params, work, of_points):
         scalars, table = points.scalars[p], points.table[p]
         arm, q = scalars[ring.TILT_ARM], points.guess[p]
         of_points[SHAFT, lane], of_points[ARM, lane] = points.shaft[p], arm
+        for i in range(scalars.size if bodies.shape[0] > 0 else 0):
+            bodies[lane, i] = scalars[i]
         for i in range(5):
             of_points[Q + i, lane], of_points[DQ + i, lane], of_points[LOAD + i, lane] = q[i], 0.0, points.load[p, i]
         for i, source in enumerate(at.ROLLING_SCALARS):
@@ -97,8 +95,9 @@ def gather(first, points, params, work, of_points):
             else:
                 work[PLACE, c], work[PLACE, o] = ring.first_place(k, middle.axial, middle.radial, scalars, table)
             work[rows.GAP_RATE, c] = work[rows.GAP_RATE, o] = 0.0
-            for row in range(STEP, BY_CENTRE + 2):
+            for row in range(STEP, INNER):
                 work[row, c] = work[row, o] = 0.0
+            work[soft.SHIFT, c] = work[soft.SHIFT, o] = 0.0
             for i in range(params.shape[1]):
                 params[c, i], params[o, i] = points.params[p, k, i], points.params[p, z + k, i]
 
@@ -119,19 +118,22 @@ def centre(seat, of_points, row, live):
     return Pair(axial, take(of_points, row + 1, 0, live) * c + take(of_points, row + 2, 0, live) * s - lever * turn)
 
 
-@jit(void(int64, MASK, MATRIX, MATRIX), inline=True)
-def _follow(k, live, of_points, work):
+@jit(void(int64, MASK, MATRIX, MATRIX, MATRIX), inline=True)
+def _follow(k, live, of_points, bodies, work):
     """Move balls with the ring's step and by their own, and see how far their contacts approach."""
     seat = seats(k, live, work)
     (ra, rr), (li, lo) = pair_of(work, REST, k, live), pair_of(work, OFFSET, k, live)
     (ea, er), (da, dr) = centre(seat, of_points, Q, live), centre(seat, of_points, DQ, live)
     (sa, sr), t, (pa, pr) = pair_of(work, STEP, k, live), tensors_of(work, BY_CENTRE, k, live), pair_of(work, PLACE, k, live)
     sa, sr = sa + t.aa * da + t.ar * dr, sr + t.ra * da + t.rr * dr
-    size, most = larger(sa, -sa) + larger(sr, -sr), 0.2 * lo
+    size, most, scale = larger(sa, -sa) + larger(sr, -sr), 0.2 * lo, spread(1.0)
     if any_of(size > most):
         scale = where(size > most, most / size, 1.0)
         sa, sr = scale * sa, scale * sr
     pa, pr, ea, er = pa + sa, pr + sr, ra + ea, rr + er
+    if bodies.shape[0] > 0:
+        wi, wo = soft.move_shifts(k, live, Pair(ea, er), Pair(da, dr), scale, bodies, work)
+        li, lo = li + wi, lo + wo
     share = take(work, SHARE, k, live)
     if any_of(share > 0.0):
         # The races in series; what lies outside of them begins anew, what nothing presses lies midway.
@@ -179,42 +181,47 @@ def contacts_of(k, live, work):
 
 
 @jit(
-    types.Tuple((LANES_PAIR, LANES_TENSOR, LANES, LANES_PAIR, LANES, MASK))(int64, MASK, boolean, at.ROLLING, MATRIX),
+    types.Tuple((LANES_PAIR, LANES_TENSOR, LANES, LANES_PAIR, LANES, MASK))(
+        int64, MASK, boolean, at.ROLLING, MATRIX, MATRIX
+    ),
     inline=True,
 )
-def _eliminated(k, live, rolls, rolling, work):
+def _eliminated(k, live, rolls, rolling, bodies, work):
     """What a ball does to the ring, its own place eliminated; its next step stays in ``work``.
 
     That is its force [N] with the tangent by e, its couple [N m] with that, the size of its contacts' forces, and whether it still moves.
     """
-    z, contacts, h = work.shape[1] // 2, contacts_of(k, live, work), at.no_tangential()
+    z, contacts, h, o = work.shape[1] // 2, contacts_of(k, live, work), at.no_tangential(), spread(0.0)
     (ia, ir, _, fi, ki), (oa, orr, _, fo, _) = contacts
+    by_e, by_p, by_centre = Pair(o, o), Pair(o, o), Pair(o, o)
     if rolls:
         h = at.with_gyroscopic(k, live, contacts, h, rolling, work)
-        balance = at.linear_balance(contacts, ki, spread(0.0), h)
+        balance, (by_e, by_p) = at.linear_balance(contacts, ki, o, h), at.couple_slopes(contacts, h)
     else:
-        balance = at.plain_balance(contacts, ki, spread(0.0))
+        balance = at.plain_balance(contacts, ki, o)
     force_a, force_r = fi * ia + h.inner * ir, fi * ir - h.inner * ia
     ra = force_a - fo * oa - h.outer * orr
     rr = force_r - fo * orr + h.outer * oa + take(work, REACH, z + k, live)
-    j, none = at.regular(balance.j), Pair(spread(0.0), spread(0.0))
+    ball = soft.Ball(Pair(force_a, force_r), Pair(ra, rr), h.couple, by_e, by_p, balance)
+    if bodies.shape[0] > 0:
+        ball, fall = soft.with_compliances(k, live, contacts, h, ball, bodies, work)
+    force, rest, couple, by_e, by_p, balance = ball
+    j, p = at.regular(balance.j), balance.p
     scale = 1.0 / (j.aa * j.rr - j.ar * j.ra)
     inverse = Tensor(j.rr * scale, -j.ar * scale, -j.ra * scale, j.aa * scale)
-    zero, p = Tensor(none.axial, none.axial, none.axial, none.axial), balance.p
-    step = less_column(none, inverse, Pair(ra, rr))
-    follows = less(zero, inverse, balance.x)
     minus = Tensor(-p.aa, -p.ar, -p.ra, -p.rr)
+    step, follows = less_column(Pair(o, o), inverse, rest), less(Tensor(o, o, o, o), inverse, balance.x)
     put_pair(work, STEP, k, live, step.axial, step.radial)
     put_tensors(work, BY_CENTRE, k, live, follows)
     (gap_i, gap_o), lo = pair_of(work, rows.GAP, k, live), take(work, OFFSET, z + k, live)
     least = larger(_SETTLED * at.shallower(gap_i, gap_o), 1e-14 * lo)
     moves = step.axial * step.axial + step.radial * step.radial > least * least
-    couple, by_centre = none.axial, none
+    if bodies.shape[0] > 0:
+        moves = moves | soft.put_shifts(k, live, fall, step, follows, least, work)
     if rolls:
-        by_e, by_p = at.couple_slopes(contacts, h)
-        couple = h.couple + by_p.axial * step.axial + by_p.radial * step.radial
+        couple = couple + by_p.axial * step.axial + by_p.radial * step.radial
         by_centre = less_row(by_e, Pair(-by_p.axial, -by_p.radial), follows)
-    force, stiffness = less_column(Pair(force_a, force_r), minus, step), less(balance.e, minus, follows)
+    force, stiffness = less_column(force, minus, step), less(balance.e, minus, follows)
     size = larger(fi, -fi) + 1e-4 * larger(fo, -fo)
     return force, stiffness, couple, by_centre, size, moves
 
@@ -257,8 +264,8 @@ def _put_tangent(tangent, shift, symmetric, free, of_points, live):
     return largest
 
 
-@jit(void(int64, MATRIX, MATRIX, STATES))
-def _scatter(first, work, of_points, states):
+@jit(void(int64, boolean, MATRIX, MATRIX, STATES))
+def _scatter(first, elastic, work, of_points, states):
     """The states of the block's points out of lanes."""
     n, z = states.status.size, work.shape[1] // (2 * WIDTH)
     for lane in range(min(WIDTH, n - first)):
@@ -273,6 +280,8 @@ def _scatter(first, work, of_points, states):
             for i in range(2, states.ball.shape[2]):
                 states.ball[p, k, i] = 0.0
             states.ball[p, k, 0], states.ball[p, k, 1] = work[PLACE, c], work[PLACE, o]
+            if elastic:
+                states.ball[p, k, -2], states.ball[p, k, -1] = work[soft.SHIFT, c], work[soft.SHIFT, o]
             states.force[p, k], states.force[p, z + k] = work[rows.CONTACT_FORCE, c], work[rows.CONTACT_FORCE, o]
 
 
@@ -298,24 +307,26 @@ def _like_before(alike, k, work, first, end):
     return True
 
 
-@jit(void(boolean, MATRIX, MATRIX), inline=True)
-def move_balls(alike, of_points, work):
+@jit(void(boolean, MATRIX, MATRIX, MATRIX), inline=True)
+def move_balls(alike, of_points, bodies, work):
     """Move the balls with the ring's step and by their own; gaps of their contacts.  ``alike`` : balls of a row at the first guess are."""
     live = live_of(0, WIDTH)
     for k in range(0, work.shape[1] // 2, WIDTH):
-        if not _like_before(alike, k, work, INNER, BY_LENGTH + 1):
-            _follow(k, live, of_points, work)
+        if not _like_before(alike, k, work, INNER, soft.CURVE + 1 if bodies.shape[0] > 0 else BY_LENGTH + 1):
+            _follow(k, live, of_points, bodies, work)
 
 
-@jit(types.Tuple((ring.FORCES, ring.TANGENTS, LANES, MASK))(boolean, boolean, at.ROLLING, LANES, MATRIX), inline=True)
-def ring_forces(alike, rolls, rolling, loads, work):
+@jit(
+    types.Tuple((ring.FORCES, ring.TANGENTS, LANES, MASK))(boolean, boolean, at.ROLLING, LANES, MATRIX, MATRIX), inline=True
+)
+def ring_forces(alike, rolls, rolling, loads, bodies, work):
     """Forces of the balls on the ring and the tangent, the size of contact forces on top of the loads', whether balls still move."""
     live, none = live_of(0, WIDTH), spread(0.0)
     force, tangent, size, moves = no_force(), no_tangent(), loads, ~live
     for k in range(0, work.shape[1] // 2, WIDTH):
         seat = seats(k, live, work)
-        if not _like_before(alike, k, work, STEP, BY_CENTRE + 2):
-            own, stiffness, couple, by_centre, forces, moving = _eliminated(k, live, rolls, rolling, work)
+        if not _like_before(alike, k, work, STEP, INNER if bodies.shape[0] > 0 else soft.SHIFT_STEP):
+            own, stiffness, couple, by_centre, forces, moving = _eliminated(k, live, rolls, rolling, bodies, work)
         force = with_force(force, seat, own.axial, own.radial, couple)
         tangent = with_tangent(tangent, seat, stiffness, Pair(none, none), by_centre, none)
         size, moves = size + forces, moves | moving
@@ -332,14 +343,14 @@ def asks_for_rates(work):
     return any_of(rates)
 
 
-@jit(boolean(LAW_POINTER, LINEAR, int64, POINTS, STATES, MATRIX, MATRIX, MATRIX, MATRIX))
-def lockstep(law, linear, first, points, states, params, memory, work, of_points):
+@jit(boolean(LAW_POINTER, LINEAR, int64, POINTS, STATES, MATRIX, MATRIX, MATRIX, MATRIX, MATRIX))
+def lockstep(law, linear, first, points, states, params, memory, bodies, work, of_points):
     """The states of ``WIDTH`` points from ``first`` on, without their damping; whether the law depends on rates.
 
     Their status is 0, or -1 where the iteration did not end.
     """
     live, end, free = live_of(0, WIDTH), WIDTH * points.table.shape[1], linear.free
-    gather(first, points, params, work, of_points)
+    gather(first, points, params, bodies, work, of_points)
     rolling = rolling_of(of_points, live)
     moments, near, acts, none = rolling.scale, ~live, live, spread(0.0)
     rolls = any_of(~(moments == 0.0))
@@ -352,12 +363,12 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
     for count in range(_ITERATIONS):
         put(of_points, ROLLS + 2, 0, live, where(acts, moments, 0.0))
         rolling = rolling_of(of_points, live)
-        move_balls(count == 0, of_points, work)
+        move_balls(count == 0, of_points, bodies, work)
         law(
             work[rows.GAP], work[rows.GAP_RATE], params, memory, memory, 0.0,
             work[rows.CONTACT_FORCE], work[rows.FORCE_BY_GAP], work[rows.FORCE_BY_RATE],
         )  # fmt: skip
-        force, tangent, size, moves = ring_forces(count == 0, rolls, rolling, loads, work)
+        force, tangent, size, moves = ring_forces(count == 0, rolls, rolling, loads, bodies, work)
         norm = _imbalance(force, free, of_points, live)
         done = acts & ~moves & (norm <= TOLERANCE * size)
         if not any_of(~done):
@@ -386,10 +397,14 @@ def lockstep(law, linear, first, points, states, params, memory, work, of_points
         put_pair(work, PLACE, k, live, pa + sa, pr + sr)
         closed_i = inner.force - inner.stiffness * (inner.axial * sa + inner.radial * sr)
         closed_o = outer.force + outer.stiffness * (outer.axial * sa + outer.radial * sr)
+        if bodies.shape[0] > 0:
+            (wi, wo), (si, so) = pair_of(work, soft.SHIFT, k, live), pair_of(work, soft.SHIFT_STEP, k, live)
+            put_pair(work, soft.SHIFT, k, live, wi + si, wo + so)
+            closed_i, closed_o = closed_i - inner.stiffness * si, closed_o - outer.stiffness * so
         put_pair(work, rows.CONTACT_FORCE, k, live, larger(closed_i, 0.0), larger(closed_o, 0.0))
     put(of_points, SHAFT, 0, live, where(done, 0.0, -1.0))
     for i, entries in enumerate(rows_of_tangent(tangent)):
         for j, entry in enumerate(entries):
             put(of_points, TANGENT + 5 * i + j, 0, live, entry)
-    _scatter(first, work, of_points, states)
+    _scatter(first, bodies.shape[0] > 0, work, of_points, states)
     return asks_for_rates(work)

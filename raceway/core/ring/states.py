@@ -39,7 +39,7 @@ class States(NamedTuple):
 
 class Kernels(NamedTuple):
     """``system`` (a ``SYSTEM``), ``base`` (the one whose forces have a potential, ``columns`` of ``ball``) and ``law`` (a ``LAW``);
-    ``lanes`` : whether the balls are those of ``raceway.core.ring.lockstep``, rigid."""
+    ``lanes`` : whether the balls are those of ``raceway.core.ring.lockstep``, rigid or condensed, none acting on another."""
 
     system: Any
     base: Any

@@ -19,6 +19,7 @@ from functools import cache
 
 import numpy as np
 from numba import boolean, float64, int64, types, void
+from numba.extending import register_jitable
 
 from raceway.core.jit import Kernel, jit
 from raceway.core.ring import kernels as rows
@@ -33,29 +34,39 @@ ITERATIONS = 60
 GOES_ON, SETTLED, FAILED = range(3)
 
 
+@jit(types.Tuple((int64, float64, boolean))(float64, VECTOR), inline=True)
+def knot_before(x, scalars):
+    """Which knot of the table of compliances x lies behind, in distances of knots from the first one, how far, and whether between two."""
+    last = scalars[ring.KNOTS] - 1.0
+    inside = 0.0 < x < last
+    x = x if inside else last if x > 0.0 else 0.0
+    i = min(int(x), int(last) - 1)
+    return i, x - i, inside
+
+
+@register_jitable
+def spline(u, p, q, m, n):
+    """The cubic from p with slope m to q with slope n, its slope and curvature at u of the way."""
+    a2, a3 = 3.0 * (q - p) - 2.0 * m - n, 2.0 * (p - q) + m + n
+    return p + u * (m + u * (a2 + u * a3)), m + u * (2.0 * a2 + u * 3.0 * a3), 2.0 * a2 + 6.0 * a3 * u
+
+
 @jit(void(VECTOR, MATRIX))
 def _compliances(scalars, work):
     """Angles of the lines of groove centres, with the compliances, their slopes and curvatures there."""
     z = work.shape[1] // 2
-    knots = int(scalars[ring.KNOTS])
     for k in range(z):
         a, r = work[ring.CENTRE, k] + work[rows.MOVED, k], work[ring.CENTRE, z + k] + work[rows.MOVED, z + k]
         inverse = 1.0 / max(a * a + r * r, 1e-300)
         work[ring.TURNING, k], work[ring.TURNING, z + k] = r * inverse, -a * inverse
-        x = (np.arctan2(a, r) - scalars[ring.FIRST]) / scalars[ring.DISTANCE]
-        inside = 0.0 < x < knots - 1.0
-        x = min(max(x, 0.0), knots - 1.0)
-        i = min(int(x), knots - 2)
-        u = x - i
+        distance, knots = scalars[ring.DISTANCE], int(scalars[ring.KNOTS])
+        i, u, inside = knot_before((np.arctan2(a, r) - scalars[ring.FIRST]) / distance, scalars)
         for c in (k, z + k):
             first = ring.VALUES + i + (0 if c == k else 2 * knots)
-            p, q1, m, n = scalars[first], scalars[first + 1], scalars[first + knots], scalars[first + knots + 1]
-            a2, a3 = 3.0 * (q1 - p) - 2.0 * m - n, 2.0 * (p - q1) + m + n
-            work[ring.OWN, c] = p + u * (m + u * (a2 + u * a3))
-            work[ring.SLOPE, c] = (m + u * (2.0 * a2 + u * 3.0 * a3)) / scalars[ring.DISTANCE] if inside else 0.0
-            work[ring.CURVE, c] = (
-                (2.0 * a2 + 6.0 * a3 * u) / (scalars[ring.DISTANCE] * scalars[ring.DISTANCE]) if inside else 0.0
-            )
+            p, q, m, n = scalars[first], scalars[first + 1], scalars[first + knots], scalars[first + knots + 1]
+            work[ring.OWN, c], slope, curve = spline(u, p, q, m, n)
+            work[ring.SLOPE, c] = slope / distance if inside else 0.0
+            work[ring.CURVE, c] = curve / (distance * distance) if inside else 0.0
 
 
 @jit(void(float64, VECTOR, VECTOR, CONSTANTS, MATRIX))
