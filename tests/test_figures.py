@@ -228,7 +228,7 @@ def of_measurements() -> list[Figure]:
 DRAWN: dict[str, Callable[[], list[Figure]]] = {
     "plugins/formats": of_a_run, "points/plot": of_a_sweep, "points/compare": of_a_comparison, "precision/picture": of_precision,
     "raceway_article/figures": of_the_article, "rig/study": of_a_rig, "raceway_view/pictures": of_contacts,
-    "raceway_view/stress": of_stresses, "raceway_catalogue/catalogue": of_the_catalogue, "points/law": of_laws,
+    "raceway_view/stress": of_stresses, "raceway_catalogue/catalogue": of_the_catalogue, "raceway_checks/law": of_laws,
     "points/branch": of_a_branch, "points/sensitivities": of_sensitivities, "fit/picture": of_measurements,
     "points/band": of_a_band,
 }  # fmt: skip

@@ -39,6 +39,7 @@ SCENES = {
         LOADS | SPEED,
     ),
     "condensed": (CONDENSED | {"kinematics": TURNING | {"gyroscopic": "none"}}, LOADS | SPEED),
+    "condensed, balls without mass": (CONDENSED | {"kinematics": TURNING | {"ball_inertia": False}}, LOADS),
     "condensed, moments": (CONDENSED | {"kinematics": TURNING, "supports": {"tilt": "locked"}}, LOADS | SPEED),
     "condensed, a pair with dashpots": (
         CONDENSED | {
