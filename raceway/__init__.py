@@ -64,9 +64,13 @@ def __getattr__(name: str) -> object:
         return _own(name)
     if name.startswith("_") and name != "__all__":
         raise AttributeError(f"module 'raceway' has no attribute '{name}'")
-    from raceway.framework.loading import further_name, public_names
+    if name == "__all__":
+        from raceway.framework.loading import public_names
 
-    return sorted([*_names, *public_names()]) if name == "__all__" else further_name(name)
+        return sorted([*_names, *public_names()])
+    from raceway.framework.loading.registry import further_name
+
+    return further_name(name)
 
 
 def __dir__() -> list[str]:

@@ -18,7 +18,7 @@ Examples
 230.3
 """
 
-from raceway.framework.loading import further_name
+from raceway.framework.loading.registry import further_name
 
 __all__ = ["RollingBearing", "UnbalanceResponse", "run_time_response", "run_unbalance_response"]  # noqa: F822
 

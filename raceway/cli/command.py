@@ -37,7 +37,7 @@ from raceway.cli.frame import (
 )
 from raceway.cli.interrupt import answered
 from raceway.errors import BeyondPlanError, ConvergenceError, RacewayError, SceneError
-from raceway.framework.loading.sources import named
+from raceway.framework.loading import named
 
 if TYPE_CHECKING:
     from raceway.answers.answer import Answer

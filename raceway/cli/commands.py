@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from importlib.metadata import entry_points
 from typing import NamedTuple
 
 import click
 
 from raceway.cli.command import Command, Option
-from raceway.framework.loading.sources import named
+from raceway.framework.loading import available, named, packages
 
 
 class Later(NamedTuple):
@@ -132,3 +134,17 @@ SECTIONS: dict[str, tuple[Command | Later, ...]] = {
     "Studies": (Later("study", "raceway.cli.main:study", "Whole studies that end in a page, and others' studies."),),
     "Developers": (Later("dev", "raceway.cli.main:dev", "Plug-ins: templates, conformance, laws, schema, caches."),),
 }
+
+
+def listed_commands() -> Iterator[tuple[str, str, str]]:
+    """Heading, name and summary of each command that is installed beside ``raceway``'s own; those of third parties alone are imported."""
+    for package, has in packages().items():
+        if available(package):
+            parted = ((name, text.partition(": ")) for name, text in has["commands"].items() if text)
+            yield from ((heading, name, summary) for name, (heading, _, summary) in parted)
+    if any(getattr(point.dist, "name", "") not in packages() for point in entry_points(group="raceway")):
+        from raceway.framework.loading.registry import default_registry
+
+        own = {name for has in packages().values() for name in has["commands"]}
+        for heading, commands in default_registry().mapping("raceway_commands").items():
+            yield from ((heading, about.name, about.summary) for about in commands if about.name not in own)

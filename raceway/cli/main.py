@@ -12,10 +12,9 @@ import click
 
 from raceway import __version__
 from raceway.cli.command import Command
-from raceway.cli.commands import DEVELOPERS, SECTIONS, Later
+from raceway.cli.commands import DEVELOPERS, SECTIONS, Later, listed_commands
 from raceway.cli.console import Commands
-from raceway.framework.loading import listed_commands
-from raceway.framework.loading.sources import missing_package, named
+from raceway.framework.loading import missing_package, named
 
 
 class _CommandsByName(Commands):

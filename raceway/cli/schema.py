@@ -9,8 +9,8 @@ from typing import Any, Union, get_args, get_origin
 
 import attrs
 
+from raceway.framework.loading import named
 from raceway.framework.loading.registry import Registry, default_registry
-from raceway.framework.loading.sources import named
 from raceway.scene.bearing import materials
 from raceway.scene.catalogue import catalogue
 from raceway.scene.structure import table_of_list

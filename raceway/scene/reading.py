@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import attrs
 
 from raceway.errors import Mistake, PluginError, SceneError
+from raceway.framework.loading import named, names_in
 from raceway.framework.loading.registry import Registry
-from raceway.framework.loading.sources import named, names_in
 from raceway.framework.options import nearest
 from raceway.scene.bearing import with_material
 from raceway.scene.catalogue import preset, preset_of

@@ -1,49 +1,61 @@
-"""How plug-ins are found, loaded and tried; here the commands and public names that are installed beside ``raceway``.
+"""How plug-ins are found, loaded and tried; here this project's packages beside ``raceway``, and what each adds.
 
 registry   plug-ins by kind and name
-sources    this project's packages, entry points, one-off files
+sources    entry points and one-off files
 probe      compiled kernel of a plug-in by its declared signature, and trial calls of it before a run
+
+What packages add is in data/packages.json, which they are made into: none is imported until a name is used, so that ``import raceway``
+and ``dir(raceway)`` stay light.
 """
 
-from collections.abc import Iterator
-from importlib.metadata import entry_points
+import json
+import os
+from functools import cache
+from importlib import import_module
+from importlib.resources import files
+from importlib.util import find_spec
 from typing import Any
 
-from raceway.framework.loading.sources import available, missing_package, named, packages
+
+@cache
+def packages() -> dict[str, dict[str, Any]]:
+    """Distribution -> its "names" with their modules, "commands" with heading and summary, "plugins" as "kind:name", others it "needs"."""
+    content: dict[str, dict[str, Any]] = json.loads(
+        files("raceway").joinpath("data/packages.json").read_text(encoding="utf-8")
+    )
+    return content
 
 
-def listed_commands() -> Iterator[tuple[str, str, str]]:
-    """Heading, name and summary of each command that is installed beside ``raceway``'s own; those of third parties alone are imported."""
-    for package, has in packages().items():
-        if available(package):
-            parted = ((name, text.partition(": ")) for name, text in has["commands"].items() if text)
-            yield from ((heading, name, summary) for name, (heading, _, summary) in parted)
-    if any(getattr(point.dist, "name", "") not in packages() for point in entry_points(group="raceway")):
-        from raceway.framework.loading.registry import default_registry
+def names_in(variable: str) -> set[str]:
+    """Names of distributions and entry points that an environment variable lists."""
+    return {name for word in os.environ.get(variable, "").split(",") if (name := word.strip())}
 
-        own = {name for has in packages().values() for name in has["commands"]}
-        for heading, commands in default_registry().mapping("raceway_commands").items():
-            yield from ((heading, about.name, about.summary) for about in commands if about.name not in own)
+
+def available(package: str) -> bool:
+    """Whether one of the packages is installed and not disabled."""
+    return (
+        not names_in("RACEWAY_DISABLE") & {package, package.removeprefix("raceway-")}
+        and find_spec(package.replace("-", "_")) is not None
+    )
+
+
+def missing_package(word: str, part: str) -> str:
+    """Which of the packages that are not there has a word in a part, and how to get it; "" where none has."""
+    from raceway.errors import extra
+
+    package = next((package for package, has in packages().items() if word in has[part] and not available(package)), "")
+    if package and find_spec(package.replace("-", "_")):
+        return f"in {package}, which RACEWAY_DISABLE leaves out"
+    return package and f"in {package}: {extra(*packages()[package]['needs'], package)}"
+
+
+def named(place: str) -> Any:
+    """What "module:name" says, imported."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)
 
 
 def public_names() -> list[str]:
     """Names that installed packages add to ``import raceway``."""
     there = [has for package, has in packages().items() if available(package)]
     return [name for has in there for name in has["names"] if "." not in name]
-
-
-def further_name(name: str) -> Any:
-    """What an installed package, of this project or a third party's, offers under a public name.
-
-    AttributeError: None does; of a name of this project's packages: how to install it.
-    """
-    for package, has in packages().items():
-        if name in has["names"]:
-            if not available(package):
-                raise AttributeError(f"raceway.{name} is {missing_package(name, 'names')}")
-            return named(f"{has['names'][name]}:{name.rpartition('.')[2]}")
-    from raceway.framework.loading.registry import default_registry
-
-    if (module := default_registry().mapping("raceway_names").get(name)) is None:
-        raise AttributeError(f"module 'raceway' has no attribute '{name}'")
-    return named(f"{module}:{name}")

@@ -25,15 +25,8 @@ from raceway.errors import PluginError, RacewayError
 from raceway.framework import hookspecs
 from raceway.framework.contracts import KINDS, broken_duties
 from raceway.framework.doors import reader
-from raceway.framework.loading.sources import (
-    chosen_entry_points,
-    foreign_words,
-    import_file,
-    is_foreign_fault,
-    missing_package,
-    named,
-    owner,
-)
+from raceway.framework.loading import available, missing_package, named, packages
+from raceway.framework.loading.sources import chosen_entry_points, foreign_words, import_file, is_foreign_fault, owner
 from raceway.framework.options import nearest
 
 _BUILT_IN = ("raceway.contact_laws", "raceway.integrators", "raceway.plugins")
@@ -434,3 +427,18 @@ def registry_with(files: Iterable[str | Path]) -> Registry:
     for file in files:
         registry.load_file(file)
     return registry
+
+
+def further_name(name: str) -> Any:
+    """What an installed package, of this project or a third party's, offers under a public name.
+
+    AttributeError: None does; of a name of this project's packages: how to install it.
+    """
+    for package, has in packages().items():
+        if name in has["names"]:
+            if not available(package):
+                raise AttributeError(f"raceway.{name} is {missing_package(name, 'names')}")
+            return named(f"{has['names'][name]}:{name.rpartition('.')[2]}")
+    if (module := default_registry().mapping("raceway_names").get(name)) is None:
+        raise AttributeError(f"module 'raceway' has no attribute '{name}'")
+    return named(f"{module}:{name}")

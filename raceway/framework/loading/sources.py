@@ -1,68 +1,25 @@
-"""Where plug-ins come from: this project's packages, entry points of installed distributions, and one-off files.
-
-What this project's own packages add is in data/packages.json, which they are made into: nothing of them is imported until a name is
-used, so that ``import raceway`` and ``dir(raceway)`` stay light.
-"""
+"""Sources of plug-ins: entry points of installed distributions, and one-off files."""
 
 import hashlib
-import json
 import os
 import sys
 import threading
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
-from functools import cache
-from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
-from importlib.resources import files
-from importlib.util import find_spec, module_from_spec, spec_from_file_location
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from traceback import extract_tb
 from typing import Any
 
-from raceway.errors import PluginError, RacewayError, extra
+from raceway.errors import PluginError, RacewayError
+from raceway.framework.loading import names_in, packages
 from raceway.framework.options import nearest
 from raceway.storage.files import size_of
 
 #: Bytes of a plug-in file at most.
 _LONGEST = 2**24
-
-
-@cache
-def packages() -> dict[str, dict[str, Any]]:
-    """Distribution -> its "names" with their modules, "commands" with heading and summary, "plugins" as "kind:name", others it "needs"."""
-    content: dict[str, dict[str, Any]] = json.loads(
-        files("raceway").joinpath("data/packages.json").read_text(encoding="utf-8")
-    )
-    return content
-
-
-def names_in(variable: str) -> set[str]:
-    """Names of distributions and entry points that an environment variable lists."""
-    return {name for word in os.environ.get(variable, "").split(",") if (name := word.strip())}
-
-
-def available(package: str) -> bool:
-    """Whether one of the packages is installed and not disabled."""
-    return (
-        not names_in("RACEWAY_DISABLE") & {package, package.removeprefix("raceway-")}
-        and find_spec(package.replace("-", "_")) is not None
-    )
-
-
-def missing_package(word: str, part: str) -> str:
-    """Which of the packages that are not there has a word in a part, and how to get it; "" where none has."""
-    package = next((package for package, has in packages().items() if word in has[part] and not available(package)), "")
-    if package and find_spec(package.replace("-", "_")):
-        return f"in {package}, which RACEWAY_DISABLE leaves out"
-    return package and f"in {package}: {extra(*packages()[package]['needs'], package)}"
-
-
-def named(place: str) -> Any:
-    """What "module:name" says, imported."""
-    module, _, name = place.partition(":")
-    return getattr(import_module(module), name)
 
 
 def chosen_entry_points(third_party: bool = True) -> tuple[list[EntryPoint], list[str]]:
