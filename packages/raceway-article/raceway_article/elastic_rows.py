@@ -36,10 +36,10 @@ _STABILITY = (
 _ERROR = ("total", "time_step", "transient", "mesh", "contact")
 
 
-def row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, folder: Path | None = None) -> Tables:
+def row_of(scene: Scene, registry: Registry, on_progress: OnProgress | None = None, folder: Path | None = None) -> Tables:
     """Run a scene.
 
-    tell : called as ``tell(what, done, total)`` between steps; an exception that is no fault of the run passes through
+    on_progress : called as ``on_progress(what, done, total)`` between steps; an exception that is no fault of the run passes through
     folder : where the section through the most loaded contact is drawn; None: nowhere
     Returns row : ``status`` "completed", "failed" (numbers) or "refused" (the scene, or this machine), ``reason``, ``cost``; of a completed
         run ``balls``, ``displacement``, ``kyy_n_per_m``, ``subsurface``, ``mesh``, ``identification``, ``stability``, ``error``,
@@ -47,7 +47,7 @@ def row_of(scene: Scene, registry: Registry, tell: OnProgress | None = None, fol
     """
     clocks, row = Clocks(), {"status": "completed", "reason": ""}
     try:
-        result = run(scene, registry, tell)
+        result = run(scene, registry, on_progress)
         numbers, cost = _result_numbers(result.to_dict()), _cost(clocks, result)
         if folder is not None:
             from raceway_view.stress import contact_stress_files
