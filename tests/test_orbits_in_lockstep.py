@@ -7,6 +7,7 @@ import raceway as rw
 from raceway.bodies import columns
 from raceway.core.periodic.extremes import force_extremes
 from raceway.core.periodic.orbits import Orbits, orbits
+from raceway.extend import layout
 
 SCENE = {
     "bearing": {"preset": "B7206C"},
@@ -15,6 +16,10 @@ SCENE = {
     "rotor": {"mass": 1.5},
     "kinematics": {"gyroscopic": "none"},
     "excitation": {"kind": "bidirectional", "unbalance": 3e-5, "speed_rpm": 9000.0},
+}
+CONDENSED = {
+    "bodies": {"kind": "condensed"},
+    "mesh": {"kind": "structured", "element_size": 2.5e-3, "nodes_per_semi_axis": 1},
 }
 RANGES = {"load.axial": (300.0, 2000.0), "excitation.unbalance": (1e-6, 6e-5), "excitation.speed_rpm": (3000.0, 15_000.0)}
 CHANGES = {
@@ -25,6 +30,9 @@ CHANGES = {
     "side load": {"load": {"axial": 500.0, "radial": [40.0, -20.0]}, "rotor": {"mass": 1.5, "damping": 300.0}},
     "dashpots, moments": {"contact": {"damping": 60.0}, "kinematics": {"gyroscopic": "traction"}},
     "balls without mass, dashpots": {"contact": {"damping": 60.0}, "kinematics": {"ball_inertia": False}, "load": {"axial": 500.0, "radial": [150.0, 0.0]}},
+    "condensed": CONDENSED | {"kinematics": {"gyroscopic": "traction"}, "load": {"axial": 500.0, "radial": [40.0, -20.0]}},
+    "condensed, turning": CONDENSED | {"kinematics": {"gyroscopic": "shared"}},
+    "condensed, dashpots": CONDENSED | {"contact": {"damping": 60.0}},
     "time constants": {"contact": {"time_constant": 5e-7}, "excitation": SCENE["excitation"] | {"whirl": "backward"}},
 }  # fmt: skip
 
@@ -54,11 +62,13 @@ def test_lanes_have_the_motions_of_balls_that_are_found_in_each_sample(loop):
     np.testing.assert_array_equal(together.samples, alone.samples)
     fine = alone.status == 0
     assert fine.mean() > 0.9
-    for name, tolerance in (("line", 1e-9), ("mean", 1e-9), ("peak", 1e-7), ("least", 1e-7), ("transfer", 1e-7)):
+    # Of elastic bodies kernels leave 1e-8 of the structural approaches in their tangents, which a disturbance sees.
+    seen = 1e-6 if layout.are_condensed(loop[2].scalars[0]) else 1e-7
+    for name, tolerance in (("line", 1e-9), ("mean", 1e-9), ("peak", 1e-7), ("least", 1e-7), ("transfer", seen)):
         a, b = getattr(alone, name)[fine], getattr(together, name)[fine]
         axes = tuple(range(1, a.ndim))
         assert np.all(np.abs(a - b).max(axis=axes) <= tolerance * np.abs(a).max(axis=axes)), name
-    assert np.abs(together.change - alone.change)[fine].max() < 1e-9
+    assert np.abs(together.change - alone.change)[fine].max() < 0.01 * seen
     assert np.all(together.error[fine] <= loop[4].tolerance)
 
 

@@ -7,10 +7,11 @@ from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
 from raceway.core.lanes import WIDTH, live_of, put, spread, take
+from raceway.core.ring.compliances import SHIFT, SHIFT_BY_E, SHIFT_STEP
 from raceway.core.ring.elimination import copy_matrix
 from raceway.core.ring.kernels import GAP_RATE
 from raceway.core.ring.kernels.tensors import pair_of, put_pair, tensors_of
-from raceway.core.ring.lockstep import BY_CENTRE, DIRECTION, DQ, PLACE, SHAFT, STEP, TANGENT, Q, centre, seats
+from raceway.core.ring.lockstep import BY_CENTRE, DIRECTION, DQ, INNER, PLACE, SHAFT, STEP, TANGENT, Q, centre, seats
 from raceway.core.signatures import CUBE, MATRIX, record
 
 #: Rows of a sample behind its tangent: that by the velocity, w C; imbalance; u' + G u, u'' + 2 G u' + G^2 u; the equilibrium from the frame.
@@ -48,7 +49,8 @@ def copy_balls(angle, before, after):
     c, s, live = np.cos(angle), np.sin(angle), live_of(0, WIDTH)
     for k in range(0, before.shape[1], WIDTH):
         put(after, GAP_RATE, k, live, take(before, GAP_RATE, k, live))
-        for row in range(DIRECTION + 1, BY_CENTRE + 2):
+        put(after, SHIFT, k, live, take(before, SHIFT, k, live))
+        for row in range(DIRECTION + 1, INNER):
             put(after, row, k, live, take(before, row, k, live))
     for k in range(0, before.shape[1] // 2, WIDTH):
         cosine, sine = pair_of(before, DIRECTION, k, live)
@@ -100,7 +102,8 @@ def double(n, alone, sense, span, block):
         for k in range(0, work.shape[2] // 2, WIDTH):
             ea, er = centre(seats(k, live, work[at]), rows[at], Q, live)
             fa, fr = centre(seats(k, live, work[between]), rows[between], Q, live)
-            t, (pa, pr) = tensors_of(work[at], BY_CENTRE, k, live), pair_of(work[at], PLACE, k, live)
             ea, er = fa - ea, fr - er
-            put_pair(work[between], PLACE, k, live, pa + t.aa * ea + t.ar * er, pr + t.ra * ea + t.rr * er)
-            put_pair(work[between], STEP, k, live, spread(0.0), spread(0.0))
+            for place, step, by_centre in ((PLACE, STEP, BY_CENTRE), (SHIFT, SHIFT_STEP, SHIFT_BY_E)):
+                t, (a, r) = tensors_of(work[at], by_centre, k, live), pair_of(work[at], place, k, live)
+                put_pair(work[between], place, k, live, a + t.aa * ea + t.ar * er, r + t.ra * ea + t.rr * er)
+                put_pair(work[between], step, k, live, spread(0.0), spread(0.0))

@@ -16,6 +16,7 @@ from raceway.core.periodic import fourier, lockstep
 from raceway.core.periodic.extremes import force_extremes
 from raceway.core.periodic.monodromy import span_transfer
 from raceway.core.periodic.steps import COLUMNS
+from raceway.core.ring.compliances import SHIFT
 from raceway.core.ring.elimination import copy_matrix
 from raceway.core.ring.kernels import CONTACT_FORCE
 from raceway.core.ring.kernels.layout import DAMPING, TILT_ARM, TIME_CONSTANT, are_condensed, work_rows
@@ -121,13 +122,17 @@ def _begin(kernels, alone, linear, first, points, states, turning, push, like, b
         if not alone:
             for k in range(points.table.shape[1]):
                 for c in range(2):
-                    work[0, PLACE, (c * points.table.shape[1] + k) * WIDTH + lane] = states.ball[p, k, c]
+                    column = (c * points.table.shape[1] + k) * WIDTH + lane  # the last columns are those of elastic bodies
+                    work[0, PLACE, column], work[0, SHIFT, column] = states.ball[p, k, c], states.ball[p, k, c - 2]
         for i in range(50):
             rows[0, TANGENT + i, lane] = 0.0
     if not alone:
         lockstep.forces(kernels.law, False, 1.0, 1, block)
         if asks_for_rates(work[0]):
             return False
+        for p in range(first, min(first + WIDTH, states.status.size) if len(block.bodies) > 0 else first):
+            if lockstep.dampers(points, p):  # structural approaches have no rates in lanes
+                return False
     for j in range(1, n):
         copy_matrix(rows[0], rows[j * stride])
         if not alone:
@@ -242,7 +247,7 @@ def orbits(kernels, linear, points, states, turning, near, out):
     first, end = 0, 1 if near else count
     while first < count:
         for p in range(first, end, WIDTH):
-            for mode in range(0 if kernels.lanes and not are_condensed(points.scalars[0]) else 1, 2):
+            for mode in range(0 if kernels.lanes else 1, 2):
                 _solve_block(kernels, mode > 0, linear, p, end, points, states, own, like, block, out)
         if near and out.status[0] != fourier.SOLVED:
             break
