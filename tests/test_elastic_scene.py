@@ -266,7 +266,7 @@ def test_no_run_on_a_mesh_of_unknown_size_is_stopped_for_its_time():
 
 
 def test_surfaces_that_overlap_by_more_than_an_element_are_refused():
-    with pytest.raises(RacewayError, match="inner race: the surfaces overlap by 1.4.* um before loading"):
+    with pytest.raises(RacewayError, match="inner race: the surfaces overlap by 1.4.* µm before loading"):
         run(scene(kinematics={"radial_expansion": 1.5e-3}))
 
 

@@ -309,14 +309,15 @@ def test_a_line_ends_neither_in_a_number_nor_before_its_unit():
             assert any(whole in line for line in told), (width, whole)
 
 
-#: Names of cases and quantities, which stored rows are found by, and column headers of files; screens write the former with the sign.
-NAMES_IN_ASCII = {"verify/study.py", "fit/fit.py", "fit/column_headers.py", "fit/response.py"}
+#: Units of input and of column headers, names of cases and quantities, which stored rows are found by; screens write the former with the sign.
+NAMES_IN_ASCII = {"scene/units.py", "storage/headings.py", "verify/study.py", "fit/fit.py", "fit/column_headers.py", "fit/response.py"}
 
 
-@pytest.mark.parametrize("folder", ["cli", "studies", "plugins"])
-def test_micrometres_are_written_one_way(folder):
-    written = {}
-    for path in (PACKAGE / folder).rglob("*.py"):
+@pytest.mark.parametrize("sources", ["raceway/*/**/*.py", "packages/*/raceway_*/**/*.py"])
+def test_micrometres_are_written_one_way(sources):
+    written, paths = {}, list(PACKAGE.parent.glob(sources))
+    assert len(paths) > 50
+    for path in paths:
         tree = ast.parse(path.read_text(encoding="utf-8"))
         texts = [n for n in ast.walk(tree) if isinstance(n, ast.Constant) and isinstance(n.value, str)]
         told = [n.value for n in texts if re.search(r"\bum\b", n.value) and n.value not in documented(tree)]

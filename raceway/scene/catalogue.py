@@ -198,7 +198,7 @@ def _with_designation(name: str, entry: Preset, designation: Designation) -> Pre
         source = f"ISO 5753-1, class {designation.clearance}, middle of the range; uncertainty: the range"
         scatter = (limits[1] - limits[0]) / sum(limits)
         facts["radial_clearance"] = Fact("radial_clearance", 0.5 * sum(limits), source, True, scatter)
-        why = f"clearance class {designation.clearance}: {1e6 * limits[0]:g} to {1e6 * limits[1]:g} um"
+        why = f"clearance class {designation.clearance}: {1e6 * limits[0]:g} to {1e6 * limits[1]:g} µm"
         said = {"why": why, "remedy": "`bearing.radial_clearance`"}
         data = tuple({**part, **part["of_class"], **said} if "of_class" in part else part for part in data)
     if designation.ceramic:

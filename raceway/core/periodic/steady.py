@@ -71,7 +71,7 @@ def _coexistence(motions: Sequence[PeriodicMotion]) -> tuple[str, ...]:
         f"{1e-6 * z.real:.5g} {'-' if z.imag < 0.0 else '+'} {1e-6 * abs(z.imag):.4g}j" for z in stiffnesses
     )
     return (
-        f"{len(lasting)} steady motions that are not unstable exist here, Z = {values} N/um: the history decides which one occurs. The "
+        f"{len(lasting)} steady motions that are not unstable exist here, Z = {values} N/µm: the history decides which one occurs. The "
         "first is reported; motion.orbits lists all found, others may exist",
     )
 

@@ -71,8 +71,8 @@ class ElasticSystem:
                 name, depth, size = self.contact.overlap(index)
                 if depth > size:
                     raise MeshError(
-                        f"{name}: the surfaces overlap by {1e6 * depth:.3g} um before loading, more than an "
-                        f"element there or a hundredth of a ball ({1e6 * size:.3g} um): check the places of the bodies, radial_clearance, preload and radial_expansion"
+                        f"{name}: the surfaces overlap by {1e6 * depth:.3g} µm before loading, more than an "
+                        f"element there or a hundredth of a ball ({1e6 * size:.3g} µm): check the places of the bodies, radial_clearance, preload and radial_expansion"
                     )
 
     # Forces

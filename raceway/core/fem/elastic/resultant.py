@@ -192,7 +192,7 @@ class ResultantContact(Contact):
                 self.gap, self._carried = law_gap, self.pressure.copy()
                 return law_gap
             law_gap = np.maximum(law_gap - misfit / slope, self._last)
-        raise ConvergenceError(f"the law of resultants gives no force at gaps down to {1e6 * gap.min():.3g} um.")
+        raise ConvergenceError(f"the law of resultants gives no force at gaps down to {1e6 * gap.min():.3g} µm.")
 
     def refuse(self) -> None:
         worst = int(np.argmin(self.gap - self._last))
