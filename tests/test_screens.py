@@ -310,7 +310,14 @@ def test_a_line_ends_neither_in_a_number_nor_before_its_unit():
 
 
 #: Units of input and of column headers, names of cases and quantities, which stored rows are found by; screens write the former with the sign.
-NAMES_IN_ASCII = {"scene/units.py", "storage/headings.py", "verify/study.py", "fit/fit.py", "fit/column_headers.py", "fit/response.py"}
+NAMES_IN_ASCII = {
+    "scene/units.py",
+    "storage/headings.py",
+    "verify/study.py",
+    "fit/fit.py",
+    "fit/column_headers.py",
+    "fit/response.py",
+}
 
 
 @pytest.mark.parametrize("sources", ["raceway/*/**/*.py", "packages/*/raceway_*/**/*.py"])
