@@ -441,3 +441,33 @@ def test_one_process_waits_for_what_another_compiles(tmp_path):
     done = python("-c", BESIDE, RACEWAY_CACHE_DIR=tmp_path)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == [[True, 0, 1, 0, 1, 0], [True, 0, 2, 0, 0, 0]]
+
+
+PRODUCTS = """
+import numpy as np
+from numba import float64, void
+from raceway import jit
+
+
+@jit(void(float64[:, ::1], float64[:, ::1], float64[:, ::1]), allocates=True)
+def product(a, b, out):
+    np.dot(a, b, out)
+"""
+MULTIPLY = """
+import sys
+import numpy as np
+from raceway.core.ring.elimination import copy_matrix
+copy_matrix.compile()
+assert "scipy.linalg" not in sys.modules
+sys.path.insert(0, ".")
+from products import product
+a, out = np.arange(4.0).reshape(2, 2), np.empty((2, 2))
+product(a, a, out)
+print(out.tolist())
+"""
+
+
+def test_compiling_loads_no_linear_algebra_before_a_kernel_multiplies_matrices(tmp_path):
+    (tmp_path / "products.py").write_text(PRODUCTS)
+    done = python("-c", MULTIPLY, cwd=tmp_path, RACEWAY_CACHE_DIR=tmp_path / "cache")
+    assert done.stdout.strip() == "[[2.0, 3.0], [6.0, 11.0]]", done.stderr

@@ -19,6 +19,7 @@ from numba.core import base, environment, runtime, untyped_passes
 from numba.core.bytecode import FunctionIdentity
 from numba.core.codegen import CPUCodeLibrary, JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder
+from numba.core.cpu import CPUContext
 from numba.core.registry import CPUDispatcher
 from numba.core.serialize import dumps
 from numba.core.targetconfig import ConfigStack
@@ -68,6 +69,25 @@ _size = cache(lambda target_data, kind: kind.get_abi_size(target_data))
 _resolved: dict[tuple[Numba, ...], tuple[Signature, Numba]] = {}
 
 
+@cache
+def _load_registries(context: Numba) -> None:
+    """Let numba install what it can compile, once instead of for every function.
+
+    As it is imported it asks for BLAS, which scipy would bring with 80 modules; kernels that multiply matrices ask again.
+    """
+    linalg: Numba = import_module("numba.np.linalg")
+    ensure, linalg.ensure_blas = linalg.ensure_blas, lambda: None
+    try:
+        import_module("numba.np.arraymath")
+    finally:
+        linalg.ensure_blas = ensure
+    _registries(context)
+
+
+_cpu: Numba = CPUContext
+_registries = _cpu.load_additional_registries
+
+
 @contextmanager
 def resolved_once() -> Iterator[None]:
     """numba tries some ten templates at each ``a + b`` and ``a[i]``, an eighth of the time that it compiles for; here once per types.
@@ -96,6 +116,7 @@ def resolved_once() -> Iterator[None]:
     own: tuple[tuple[Numba, str, Numba], ...] = (
         (_Function, "get_call_type", resolve), (_OverloadFunctionTemplate, "_get_jit_decorator", compiler),
         (_base, "_has_loc", _has_location), (llvm.ffi.lib._lock, "_cblist", []), (CPUCodeLibrary, "_unserialize", _Cached.read),
+        (_cpu, "load_additional_registries", _load_registries),
         (_base.BaseContext, "get_abi_sizeof", lambda context, kind: _size(context.target_data, kind)),
         (environment, "importlib", SimpleNamespace(import_module=module)),
     )  # fmt: skip
