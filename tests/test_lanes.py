@@ -8,7 +8,6 @@ import pytest
 from numba import float64, void
 
 from raceway import jit
-from raceway.core.contact.line import ninth_root
 from raceway.core.lanes import (
     WIDTH,
     any_of,
@@ -26,6 +25,7 @@ from raceway.core.lanes import (
     take,
     where,
 )
+from raceway.core.ring.kernels.rollers import ninth_root
 from raceway.core.ring.kernels.rolling import angle_of
 
 #: Relative errors: angles and roots are rounded otherwise than by the C library.

@@ -65,6 +65,6 @@ class Line:
         return np.asarray((length ** (8.0 / 9.0) / self.coefficient ** (10.0 / 9.0))[:, None].copy())
 
     def kernel(self) -> Kernel:
-        from raceway.core.contact.line import ten_ninths
+        from raceway.core.ring.kernels.rollers import ten_ninths
 
         return ten_ninths

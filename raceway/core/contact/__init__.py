@@ -2,7 +2,6 @@
 
 geometry   groove curvatures, groove centres, contact angle, cage speed; balls on springs under an axial load alone
 hertz      exact elliptic Hertz contact, the half-space around it, stresses below it
-line       forces of line contacts, a power of 10/9, in lanes
 damping    normal damping, and the energy that a contact stores
 film       thickness of an elastohydrodynamic film, entraining speed
 """

@@ -3,7 +3,7 @@
 With the radial approach of both races d = y cos + z sin + growth - clearance / 2 and u = tilt_y sin - tilt_z cos, a lamina at x along
 the roller, of profile P(x) = A ln[1 / (1 - (2 x / L)^2)], has the approaches d - p - x u / 2 - P at the inner race and p - x u / 2 - P
 at the outer one: the roller shares the misalignment evenly, as ISO/TS 16281 has it.  The roller lies where Q_o(p) = Q_i(d - p) + F_c.
-Each of n laminae carries 1 / n of what the law gives the full contact at the lamina's gap.
+Each of n laminae carries 1 / n of what the law gives the full contact at the lamina's gap; ``ten_ninths`` is that of ``contact.kind = "line"``.
 """
 
 import numpy as np
@@ -11,11 +11,27 @@ from numba import boolean, float64, int64, void
 
 from raceway.core.contact.damping import add_damping
 from raceway.core.jit import jit
-from raceway.core.lanes import LANES, MASK, WIDTH, any_of, column_of, larger, live_of, put, smaller, spread, take, where
+from raceway.core.lanes import (
+    LANES,
+    MASK,
+    WIDTH,
+    any_of,
+    column_of,
+    larger,
+    live_of,
+    multiply_add,
+    put,
+    rough_power,
+    row_of,
+    smaller,
+    spread,
+    take,
+    where,
+)
 from raceway.core.ring import kernels as rows
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.tensors import Pair, Tensor, pair_of, put_pair
-from raceway.core.signatures import CONTACTS, MATRIX, SYSTEM, VECTOR
+from raceway.core.signatures import CONTACTS, LAW, MATRIX, SYSTEM, VECTOR
 
 #: Columns of ``table`` beyond those of balls: length of the contacts [m], then the profile's drop at each lamina [m].
 LENGTH, DROP = ring.COLUMNS, ring.COLUMNS + 1
@@ -25,6 +41,39 @@ _ITERATIONS = 80
 #: laminae: load, its first moment along the roller, stiffness with first and second moment, dashpot with the same.
 _DIRECTION, _APPROACH, _SPEED, _BRACKET, _OUTER, _TURN = range(5, 11)
 _LOAD, _MOMENT, _STIFF, _STIFF_1, _STIFF_2, _VISCOUS, _VISCOUS_1, _VISCOUS_2 = range(11, 19)
+
+
+@jit(LANES(LANES), inline=True)
+def ninth_root(x):
+    """x^(1/9) of x >= 0, but for its last digit.
+
+    From z near x^(-1/9): by its series z (1 + h / 9 + ...) in h = 1 - x z^9, then by that of the root, x z^8 (1 + 8 h / 9 + ...).
+    """
+    z = rough_power(larger(x, 1e-290), -1.0 / 9.0)
+    z4 = z * z * (z * z)
+    h = multiply_add(-x * z, z4 * z4, 1.0)
+    series = multiply_add(h, multiply_add(h, spread(665.0 / 19683.0), 95.0 / 2187.0), 5.0 / 81.0)
+    z = multiply_add(z * h, multiply_add(h, series, 1.0 / 9.0), z)
+    z4 = z * z * (z * z)
+    y = x * (z4 * z4)
+    h = multiply_add(-y, z, 1.0)
+    series = multiply_add(h, multiply_add(h, spread(15470.0 / 19683.0), 1768.0 / 2187.0), 68.0 / 81.0)
+    return multiply_add(y * h, multiply_add(h, series, 8.0 / 9.0), y)
+
+
+@jit(LAW)
+def ten_ninths(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rate):
+    """Q = k delta^(10/9)."""
+    gaps, forces, by_gap, by_rate = row_of(gap), row_of(force), row_of(d_gap), row_of(d_rate)
+    for k in range(0, gap.size, WIDTH):
+        live = live_of(k, gap.size)
+        approach = larger(-take(gaps, 0, k, live), 0.0)
+        slope = spread(0.0)
+        if any_of(approach > 0.0):
+            slope = column_of(params, k, 0, live) * ninth_root(approach)
+        put(forces, 0, k, live, slope * approach)
+        put(by_gap, 0, k, live, (-10.0 / 9.0) * slope)
+        put(by_rate, 0, k, live, 0.0)
 
 
 def places(length, count):
