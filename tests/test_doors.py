@@ -277,7 +277,7 @@ def test_others_read_at_their_own_parameters_alone_and_show_plain_types():
     for arguments, words in (((1,), "`bolts` = 1: must be a whole number below 1e9, at least 2"), ((2, 0), "`grip`")):
         with pytest.raises(rw.SceneError, match=words):
             Bolts().torque(*arguments)
-    assert str(inspect.signature(Bolts.torque)) == "(self, bolts: 'int', grip: 'float | None' = None) -> 'float'"
+    assert str(inspect.signature(Bolts.torque)) == "(self, bolts: int, grip: float | None = None) -> float"
 
 
 def test_annotations_that_are_no_text_are_read_alike():

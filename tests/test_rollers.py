@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 import raceway as rw
 from checks.validation.scenes import built_in
 from raceway import SceneError, build_model, make_plan, scene_from_dict
+from raceway.core.ring.kernels.rollers import ten_ninths
 from raceway.extend import solve_equilibrium
 
 Line = built_in("contact_law", "line")
@@ -305,3 +306,10 @@ def test_numbers_of_rollers_meet_what_is_printed():
 def test_another_kind_of_bodies_is_not_overruled():
     scene = rw.scene_from_dict({"bearing": {"preset": "NU206"}, "bodies": {"kind": "rigid"}, "load": {"axial": 100.0}})
     assert scene.bodies.name == "rigid"
+
+
+def test_no_number_stays_none_through_the_force_of_line_contacts():
+    gap, out = np.array([-1e-6, np.nan, np.inf, 1e-6, 0.0]), np.zeros((3, 5))
+    ten_ninths(gap, np.zeros(5), np.full((5, 1), 2.0), np.zeros((5, 0)), np.zeros((5, 0)), 0.0, *out)
+    assert out[0, 0] == pytest.approx(2.0 * 1e-6 ** (10.0 / 9.0), rel=1e-14)
+    assert np.isnan(out[0, 1]) and not out[0, 2:].any()

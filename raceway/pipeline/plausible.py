@@ -113,7 +113,8 @@ def pressure_warnings(model: Model, force: np.ndarray) -> list[str]:
     """Where the largest contact pressure exceeds that of static load ratings; forces (2 Z,) [N]."""
     limit, rows = model.bearing.static_pressure, model.basis.row
     peaks = pressures(model, force).reshape(2, -1)
-    race, ball = np.unravel_index(np.argmax(peaks), (2, len(rows)))
+    # The first of those that are alike.
+    race, ball = np.unravel_index(np.argmax(peaks >= (1.0 - 1e-9) * peaks.max()), (2, len(rows)))
     if not peaks[race][ball] > limit:
         return []
     name = (f"row {rows[ball] + 1}, " if rows[-1] else "") + f"ball {ball - np.argmax(rows == rows[ball])}"

@@ -68,7 +68,7 @@ class Balls:
 
     Attributes
     ----------
-    kind : "weightless" (races in series), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
+    kind : "weightless" (on the line of the groove centres), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
     centrifugal, gyroscopic, friction : whether they have these loads
     """
 

@@ -40,7 +40,7 @@ class ScenePlan(Shown):
     ----------
     problem : that it was made of
     kept, left_out : each with ``part`` and ``why``
-    balls : "weightless" (races in series), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
+    balls : "weightless" (on the line of the groove centres), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
     centrifugal, gyroscopic : whether the balls have these loads
     free : (5,) of x, y, z, tilt_y, tilt_z: 1 for unknowns
     turns : turns that are integrated

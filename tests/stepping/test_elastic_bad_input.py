@@ -70,7 +70,7 @@ def test_a_rigid_motion_that_nothing_holds_is_named_with_the_support_that_would(
 
 
 def test_an_overlap_deeper_than_an_element_is_refused_with_both_lengths():
-    with pytest.raises(MeshError, match=r"upper on lower: the surfaces overlap by 1.2e\+03 um .* \(1e\+03 um\)"):
+    with pytest.raises(MeshError, match=r"upper on lower: the surfaces overlap by 1.2e\+03 µm .* \(1e\+03 µm\)"):
         cubes(gap=-1.2e-3)
 
 

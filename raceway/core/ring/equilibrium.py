@@ -26,16 +26,7 @@ from raceway.core.contact.damping import stored_energy
 from raceway.core.jit import jit
 from raceway.core.ring.elimination import cholesky_solve, copy_matrix, solve
 from raceway.core.ring.kernels import CONTACT_FORCE, GAP, STORED
-from raceway.core.ring.kernels.layout import (
-    CAGE,
-    CENTRIFUGAL,
-    OFFSET_INNER,
-    REST_AXIAL,
-    REST_RADIAL,
-    TILT_ARM,
-    keep_slips,
-    stop,
-)
+from raceway.core.ring.kernels.layout import CAGE, CENTRIFUGAL, REST_AXIAL, REST_RADIAL, TILT_ARM, keep_slips, stop
 from raceway.core.signatures import (
     CONSTANTS,
     CONTACTS,
@@ -217,7 +208,7 @@ def solve_equilibrium(forces, linear, tolerance, t, state, response, report):
     g, g_new, step, energies = np.zeros(5), np.zeros(5), np.empty(5), np.empty(work.shape[1])
     H, factor = np.empty((5, 5)), np.empty((5, 5))
     radius = 0.05 * (abs(constants.scalars[REST_AXIAL]) + abs(constants.scalars[REST_RADIAL]))
-    if radius == 0.0 or constants.scalars[OFFSET_INNER] == 0.0:  # bearings without grooves
+    if radius == 0.0:  # bearings without grooves or clearance
         radius = 1e-3 * arm
     if forces.system(t, q, still, Balls(ball, 0.0, zeros), contacts, constants, now) != 0:
         return BALLS_FAILED

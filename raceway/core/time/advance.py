@@ -1,5 +1,6 @@
 """Steps of a compiled ring, in chunks, and what a run that ends early leaves."""
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -52,7 +53,7 @@ def advance(
         count_taken = loop(now.compiled_forces, now.linear, outer, coefficients, steps, state, recording)
         step += count_taken
         if count_taken < count:
-            raise _failure(system, schedule, step, motion, ball, counters)
+            raise _failure(system, schedule, step, motion, ball, counters, loop is compiled.central_difference)
         if on_chunk is not None and (longest == _CHUNK or step == last or step % _CHUNK == 0):
             try:
                 on_chunk(step - schedule.first, schedule.steps)
@@ -93,16 +94,18 @@ def _state(schedule: Schedule, step: int, motion: np.ndarray, ball: np.ndarray) 
 
 
 def _failure(
-    system: System, schedule: Schedule, step: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray
+    system: System, schedule: Schedule, step: int, motion: np.ndarray, ball: np.ndarray, counters: np.ndarray, explicit: bool
 ) -> ConvergenceError:
     when, state = schedule.when(step - schedule.first), _state(schedule, step, motion, ball)
-    if counters[compiled.REASON] == compiled.UNBOUNDED:
-        limit = 0.0
-        if np.isfinite(motion).all():
+    reason, limit = counters[compiled.REASON], 0.0
+    if np.isfinite(motion).all() and (reason == compiled.UNBOUNDED or explicit):
+        with suppress(ConvergenceError):
             now = system.evaluate(motion[0])
             limit = system.damped_time_step(now.stiffness, now.damping)
+    # Balls lose their equilibrium where explicit steps beyond their limit have thrown the ring.
+    if reason == compiled.UNBOUNDED or 0.0 < limit < schedule.dt:
         return unbounded(schedule, when, limit, state)
-    if counters[compiled.REASON] == compiled.BALLS:
+    if reason == compiled.BALLS:
         return ConvergenceError(f"the balls have no equilibrium between the races {when}", state)
     residual = counters[compiled.RESIDUAL]
     remainder = f"residual {residual:.3g} N" if np.isfinite(residual) else "forces beyond all numbers"

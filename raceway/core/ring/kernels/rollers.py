@@ -67,7 +67,7 @@ def ten_ninths(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_
     gaps, forces, by_gap, by_rate = row_of(gap), row_of(force), row_of(d_gap), row_of(d_rate)
     for k in range(0, gap.size, WIDTH):
         live = live_of(k, gap.size)
-        approach = larger(-take(gaps, 0, k, live), 0.0)
+        approach = larger(0.0, -take(gaps, 0, k, live))  # what is no number stays none
         slope = spread(0.0)
         if any_of(approach > 0.0):
             slope = column_of(params, k, 0, live) * ninth_root(approach)
