@@ -24,7 +24,7 @@ class _CommandsByName(Commands):
 
     def heading(self, word: str) -> str:
         """Of this group's help, under which a package's commands stand, by its word for them; "" where another group has them."""
-        raise NotImplementedError
+        return "" if word == "dev" else word
 
     def _sections(self) -> dict[str, tuple[Command | Later, ...]]:
         from raceway.framework.loading.registry import default_registry
@@ -84,9 +84,6 @@ class _AllCommands(_CommandsByName):
     """``raceway``."""
 
     sections: ClassVar[dict[str, tuple[Command | Later, ...]]] = SECTIONS
-
-    def heading(self, word: str) -> str:
-        return "" if word == "dev" else word
 
     def elsewhere(self, word: str) -> str:
         commands = [about for about in self._table().values() if isinstance(about, Command)]
