@@ -26,8 +26,6 @@ from checks import reports as files
 BASES = (*files.OUTSIDE, "own other method", "regression")
 #: Units of times that a machine takes.
 _TIMES = {"s", "CPU s", "ms", "us"}
-#: Where the modules of reports are.
-FOLDER = Path(__file__).resolve().parents[1] / "tests" / "evidence"
 
 
 @attrs.frozen
@@ -160,14 +158,14 @@ class _Reports:
         self.seconds: dict[str, float] = {}
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        module = Path(report.nodeid.partition("::")[0])
-        self.seconds[module.stem] = self.seconds.get(module.stem, 0.0) + report.duration
+        module = report.nodeid.partition("::")[0]
+        self.seconds[module] = self.seconds.get(module, 0.0) + report.duration
         if report.failed or report.skipped:
-            self.failed.add(module.stem)
+            self.failed.add(module)
         if report.when == "call":
             rows = [row for key, row in report.user_properties if key == "claim"]
             line = report.location[1] or 0
-            self.rows.setdefault(module.stem, []).extend((line, report.nodeid, k, row) for k, row in enumerate(rows))
+            self.rows.setdefault(module, []).extend((line, report.nodeid, k, row) for k, row in enumerate(rows))
 
     @pytest.hookimpl(trylast=True)
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
@@ -175,11 +173,11 @@ class _Reports:
             rows = [row for *_, row in sorted(keyed, key=lambda item: item[:3])]
             if not rows or module in self.failed:
                 continue
-            name = module.removeprefix("test_")
-            path = next(FOLDER.rglob(f"{module}.py"))
-            title = (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or name).splitlines()[0].rstrip(".")
+            name = Path(module).stem.removeprefix("test_")
+            source = (files.ROOT / module).read_text(encoding="utf-8")
+            title = (ast.get_docstring(ast.parse(source)) or name).splitlines()[0].rstrip(".")
             seconds = self.seconds[module]
-            files.write(name, title, rows, seconds, f"pytest --evidence {path.relative_to(FOLDER.parents[1]).as_posix()}")
+            files.write(name, title, rows, seconds, f"pytest --evidence {module}")
             held = sum(not row["misses"] for row in rows)
             terminalreporter.write_line(f"report {name}: {held} of {len(rows)} claims hold, {seconds:.1f} s")
         files.refresh()

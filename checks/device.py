@@ -35,7 +35,7 @@ _FRICTION = ("bodies.formulation=one_point", "contact.friction=0.03")
 
 def tests(simulated: bool) -> bool:
     """Whether the tests of the kernels pass, on the device or as Python."""
-    words = [sys.executable, "-m", "pytest", "-q", "-m", "not release", "tests/stepping/test_device.py"]
+    words = [sys.executable, "-m", "pytest", "-q", "-m", "not release", "tests/core/stepping/test_device.py"]
     return subprocess.run(words, cwd=ROOT, env={**os.environ, "NUMBA_ENABLE_CUDASIM": str(int(simulated))}).returncode == 0
 
 

@@ -10,10 +10,9 @@ from checks.validation.command_line import ARTICLE, invoke
 from checks.validation.several import article
 from raceway import BeyondPlanError, SceneError, check, load_scene, make_plan, plan, scene_from_dict
 from raceway.cli.main import main
-from raceway.pipeline.run import PATIENCE, Allowance
-from raceway.testing import run
-from tests.test_elastic_scene import QUICK
-from tests.test_elastic_scene import scene as elastic_scene
+from raceway.testing import PATIENCE, Allowance, run
+from tests.core.test_elastic_scene import QUICK
+from tests.core.test_elastic_scene import scene as elastic_scene
 
 LONG = ("--set", "integrator.turns=120")  # 43 200 steps: more than one chunk
 

@@ -7,21 +7,17 @@ import os
 import re
 import time
 from collections import Counter
-from functools import wraps
 from importlib.util import find_spec
 from pathlib import Path
 
-import attrs
 import click
 import matplotlib
 import pytest
 from rich.console import Console
 
 import raceway as rw
-from checks.validation.article_study import SMALL
-from checks.validation.command_line import ARTICLE, COARSE, EXAMPLES, LAW, MINIMAL, invoke, raceway
+from checks.validation.command_line import ARTICLE, COARSE, EXAMPLES, LAW, MINIMAL, SMALL_ARTICLE, invoke, raceway
 from raceway.answers.progress import ProgressBar
-from raceway.cli import frame
 from raceway.cli.main import main
 from raceway.testing import SUITES
 
@@ -79,7 +75,7 @@ COMMANDS = {
         *("fit", "SIGNALS", "--scene", EXAMPLES / "test_rig.toml", "--set", "load.axial=2000"),
         *("--free", "load.axial", "--out", "OUT"),
     ),
-    "study article": ("study", "article", *SMALL, "--out", "OUT"),
+    "study article": ("study", "article", *SMALL_ARTICLE, "--out", "OUT"),
     "catalogue --infer, table": ("catalogue", "--infer", "nmb_deep_groove"),
     "catalogue --infer": ("catalogue", "--infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN:43 kN"),
     "catalogue": ("catalogue", "7014C"),
@@ -362,7 +358,7 @@ def test_ctrl_c_ends_a_command_with_130_one_line_and_whole_files(name, seen, fol
         assert ProgressBar._current is None, "the bar ends before anything is said"
         click.echo(text, err=True)
 
-    monkeypatch.setattr(frame, "warn", told)
+    monkeypatch.setattr("raceway.cli.frame.warn", told)
     for moment in ("__enter__", "__call__"):  # before anything is computed, and at the first step
         given = words(name, seen, folder, tmp_path / moment)
         with monkeypatch.context() as patch:
@@ -562,29 +558,6 @@ def test_cache_is_seen_and_cleared(tmp_path, monkeypatch):
     assert "current" in invoke("dev", "cache").stdout
     assert json.loads(invoke("dev", "cache", "--clear", "--json").stdout)["folders"] == []
     assert not (tmp_path / "kernels").exists() and "the next run compiles" in invoke("dev", "cache").stdout
-
-
-def test_the_light_key_is_the_one_that_kernels_are_kept_under():
-    from raceway.core.jit import kernel_folder
-    from raceway.storage.kernel_cache import current_folder
-
-    folder = kernel_folder()
-    assert folder is None or folder.path == current_folder()
-
-
-def test_verify_fails_with_code_1(monkeypatch):
-    from raceway_checks.verify.study import verify as true
-
-    @wraps(true)
-    def off(*given, **named):
-        done = true(*given, **named)
-        return attrs.evolve(done, rows=tuple(attrs.evolve(row, ok=False) for row in done.rows))
-
-    content = json.loads(invoke("verify", "--only", "seed-unbalance", "--json").stdout)
-    assert all(row["ok"] for row in content["rows"])
-    monkeypatch.setattr("raceway_checks.verify.study.verify", off)
-    found = invoke("verify", "--only", "seed-unbalance")
-    assert found.exit_code == 1 and "0 of" in found.stdout
 
 
 @pytest.mark.slow

@@ -35,10 +35,10 @@ NOT_RUN = {
     ".venv/bin/raceway run examples/minimal.toml": "needs that environment; README shows its answer",
     "pip install '.[sweep]'": _ENVIRONMENT,
     "python -m venv .venv-ross && .venv-ross/bin/pip install -e '.[sweep]' -e './packages/raceway-rotor[ross]'": _ENVIRONMENT,
-    "RACEWAY_ROSS_PYTHON=.venv-ross/bin/python .venv/bin/python -m pytest --evidence tests/evidence/test_ross.py": "writes a report of this checkout",
+    "RACEWAY_ROSS_PYTHON=.venv-ross/bin/python .venv/bin/python -m pytest --evidence packages/raceway-rotor/tests/evidence/test_ross.py": "writes a report of this checkout",
     ".venv/bin/python -m checks.documents": "writes documents of this checkout; checks/tests compare them",
     ".venv/bin/python -m pytest --evidence tests/evidence/test_NAME.py": "writes a report of this checkout",
-    "raceway stability --all": "ten minutes; tests/evidence/test_stability.py does it",
+    "raceway stability --all": "ten minutes; packages/raceway-checks/tests/evidence/test_stability.py does it",
     "raceway study article": "a quarter of an hour; its report does it",
     "raceway study article --bodies rigid --friction 0": "minutes; the same report",
     "raceway study article examples/b7206.toml --set rotor.mass=1.5 --axial 400,1000,2000 --bodies rigid --friction 0": "more than "
@@ -51,8 +51,8 @@ NOT_RUN = {
     "--grid load.axial=400:2000:17 --executor dask --scheduler tcp://127.0.0.1:8786 --out raceway-out/map": _THREE,
     "cd raceway-power && pip install -e . && pytest": "tests/test_third_party.py does it",
     "python -m checks.against_calculix --scene checks/b7206_elastic_60k.toml --deck bearing.inp": "CalculiX takes an hour",
-    "python -m checks.against_calculix": "a minute; tests/evidence/test_elastic.py does it",
-    "raceway run checks/b7206_elastic_60k.toml": "a minute; tests/evidence/test_elastic.py does it",
+    "python -m checks.against_calculix": "a minute; tests/core/evidence/test_elastic.py does it",
+    "raceway run checks/b7206_elastic_60k.toml": "a minute; tests/core/evidence/test_elastic.py does it",
 }
 #: Pages of more than some seconds; their commands run with the slow tests.
 SLOW = {

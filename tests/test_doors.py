@@ -124,56 +124,6 @@ def test_a_file_that_is_no_longer_text_or_ends_what_reads_it_is_named(tmp_path):
         rw.check(SCENE, plugins=tmp_path / "ends.py")
 
 
-def test_what_runs_away_is_not_meshed():
-    """A contact as large as a ball, and one that no mesh has room for, are failures of the numbers."""
-    from raceway.core.contact.hertz import Ellipse
-    from raceway.core.fem.patches.pressure import BeyondPatch, Reach
-    from raceway.core.fem.patches.system import Pool
-
-    far = BeyondPatch(-1.0, 0.26, 1e13, across=False)
-    reach = Reach((0.2, 0.3), (0.2, 0.3), 1e-4, 100.0, 100.0)
-    bearing = rw.build_model(rw.scene_from_dict(SCENE)).basis
-    assert isinstance(bearing.inner, Ellipse)
-    with pytest.raises(rw.ConvergenceError, match="leave the races"):
-        reach.grown(far, bearing.inner, 4e-3, 1.2)
-
-    def solve():
-        raise far
-
-    def wider(_left):
-        raise rw.MeshError("no room")
-
-    with pytest.raises(rw.ConvergenceError, match=r"leave the races.*no room"):
-        Pool((None, None), wider=wider).widened(solve)
-
-
-@pytest.mark.slow
-def test_linearised_bearings_go_with_their_iteration():
-    """Those of all iterations stayed in memory: each knew itself through what it keeps."""
-    import gc
-    import weakref
-
-    from raceway.core.fem.elastic.superelement_solver import LinearisedContacts
-    from tests.test_elastic_scene import scene as elastic_scene
-
-    alive, most, plain = weakref.WeakSet(), [0], LinearisedContacts.__init__
-
-    def counted(self, *given):
-        alive.add(self)
-        plain(self, *given)
-        most[0] = max(most[0], len(alive))
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("raceway.core.fem.elastic.superelement_solver._FACTORED", 0)
-        patch.setattr(LinearisedContacts, "__init__", counted)
-        gc.disable()
-        try:
-            rw.run(elastic_scene())
-        finally:
-            gc.enable()
-    assert most[0] == 1
-
-
 class Unlucky:
     """What a user may hand in by mistake: nothing that one asks of it has an answer."""
 

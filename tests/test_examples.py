@@ -1,4 +1,4 @@
-"""Every scene in examples/ runs to a finite, sensible result; those with a mesh alone are meshed in tests/mesh."""
+"""Every scene in examples/ runs to a finite, sensible result; those with a mesh alone are meshed in tests/core/mesh."""
 
 import json
 from functools import cache
@@ -18,7 +18,7 @@ Condensed = built_in("bodies", "condensed")
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
 #: Scenes for `raceway view --mesh`: too large to run here.
 MESHES = {"b7206_article_mesh"}
-#: Scenes that take tens of seconds: planned here; a smaller one of their kind runs in tests/test_elastic_scene.py.
+#: Scenes that take tens of seconds: planned here; a smaller one of their kind runs in tests/core/test_elastic_scene.py.
 LONG = {"b7206_elastic"}
 #: Scenes without an excitation.
 STATIC = {"b7206_elastic_coarse", "set_tbt"}

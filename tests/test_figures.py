@@ -1,67 +1,28 @@
 """Every figure of the project shows what it draws: no point lies outside its axes, whatever the numbers are."""
 
-import ast
-import re
 import struct
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 
 import attrs
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from matplotlib.text import Text
-from raceway_article import figures as article
-from raceway_catalogue.catalogue import section_drawing
-from raceway_checks.precision import picture as precision
-from raceway_measure.fit import picture as fits
-from raceway_measure.fit.shaft_angle import rotation_of
-from raceway_measure.fit.synchronous import synchronous
-from raceway_measure.rig import study as rig
-from raceway_view import pictures as view_pictures
-from raceway_view import stress
-from raceway_view.bodies import BearingSolids
-from raceway_view.view import at_rest
 
 import raceway
-from checks.validation import article_study
 from checks.validation.command_line import MINIMAL, invoke
-from checks.validation.figures import outside
-from checks.validation.records import made as a_record
+from checks.validation.figures import assert_readable, makers, outside
 from checks.validation.stores import SPEEDS, as_list, made
-from raceway import Followed, law, load_scene, scene_from_dict
+from raceway import Followed, load_scene, scene_from_dict
 from raceway.answers import picture as writer
-from raceway.extend import Attractor, below_contacts, picture, select
+from raceway.extend import Attractor, picture, select
 from raceway.points.branch import Label, Orbit
 from raceway.points.plot import draw, layout
 from raceway.testing import b7206c, run
 from tests import test_compare
-from tests.elastic.test_below_contact import TINY
 
 LOADS = np.linspace(200.0, 2000.0, 5)
-
-
-def unreadable(figure: Figure) -> list[str]:
-    """Letters below 9 pixels of 600, but in wide figures of pages; labels of axes of more than five words, or that are keys; words on words."""
-    least = min(1.05 * figure.get_figwidth(), 11.0)
-    texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
-    small = [f"{text.get_text()!r} in {text.get_fontsize():g} pt" for text in texts if text.get_fontsize() < least - 1e-6]
-    labels = [label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel())]
-    ticks = [tick for axes in figure.axes for side in axes.get_xticklabels() + axes.get_yticklabels() for tick in [side]]
-    words = [
-        text
-        for text in texts
-        if text not in ticks and text.get_text() != "\n" and (text.axes is None or text.axes.get_visible())
-    ]
-    boxes = [(text.get_text(), Text.get_window_extent(text).shrunk(0.94, 0.8)) for text in words]
-    small += [f"{a!r} lies on {b!r}" for k, (a, one) in enumerate(boxes) for b, other in boxes[:k] if one.overlaps(other)]
-    return small + [
-        label
-        for label in labels
-        if len(label.partition("[")[0].split()) > 5 or re.search(r"[a-z]\.[a-z]|_(rpm|deg|hz)", label)
-    ]
 
 
 def of_a_run() -> list[Figure]:
@@ -99,15 +60,6 @@ def of_a_comparison() -> list[Figure]:
     return [attrs.evolve(whole, rows=tuple(far)).draw(), attrs.evolve(whole, axes=axes, rows=tuple(dots)).draw()]
 
 
-def of_precision() -> list[Figure]:
-    rows = [
-        {"setting": {"integrator.steps_per_turn": n}, "family": f"order {p}", "error": n ** -float(p), "time_s": 1e-5 * n, "base": p < 4}
-        for p in (1, 2, 4) for n in (10, 100, 10000)
-    ]  # fmt: skip
-    whole = {"title": "made up", "rows": rows, "front": [0, 3, 5]}
-    return [precision.draw({**whole, "reference": {"error": bound}}) for bound in (1e-6, None)]
-
-
 def of_sensitivities() -> list[Figure]:
     answer = raceway.sensitivities(b7206c(load={"axial": 300.0, "radial": [100.0, 0.0]}))
     first = answer.rows[0]
@@ -125,67 +77,6 @@ def of_a_band() -> list[Figure]:
         name: dict.fromkeys(found.nominal, indices) for name, indices in {"total": [1.3, -0.2], "first": [1.1, -0.1]}.items()
     }
     return [one.draw() for one in (lost, attrs.evolve(found, **odd))]
-
-
-def of_the_article() -> list[Figure]:
-    """An unstable motion a hundred times as stiff as the rest."""
-
-    def k(setting, load, w):
-        return (1e10,) if setting.tilt == "free" and w > 0.9 else 1e8 * (1.0 + 0.1 * w)
-
-    found = article_study.study(article_study.curves(k))
-    return [panel.figure() for panel in article.drawings(found.curves, found.scan)]
-
-
-def of_a_rig() -> list[Figure]:
-    """The first load's K is a quarter of the second's, and one cause is ten times K."""
-    points = []
-    for axial, true in ((400.0, 30e6), (2000.0, 120e6)):
-        for speed in (1100.0, 1300.0, 1500.0):
-            state = SimpleNamespace(speed=speed, stiffness=true)
-            readings = [SimpleNamespace(correction=f"way {k}", stiffness=true * (0.2 + 0.3 * k)) for k in range(6)]
-            causes = [
-                SimpleNamespace(kind="noise", what=f"cause {k}", error=e) for k, e in enumerate((0.0, 1e-9, -0.01, 10.0))
-            ]
-            points.append(
-                SimpleNamespace(
-                    axial=axial, state=state, identified=SimpleNamespace(state=state), readings=readings, causes=causes
-                )
-            )
-    study = SimpleNamespace(points=points)
-    return [rig._procedures(study), rig._causes(study)]
-
-
-def of_a_record() -> list[Figure]:
-    rotation = rotation_of(a_record(noise=1e-6))
-    component = synchronous(rotation)
-    state = SimpleNamespace(sensor=3.0 * component.forward, deflection=9.0 * component.forward)
-    return [*fits.figures(rotation, component, state).values()]
-
-
-def of_contacts() -> list[Figure]:
-    found = run(scene_from_dict(b7206c(load={"axial": 300.0, "radial": [900.0, 0.0]})))
-    return [view_pictures.contacts(BearingSolids.of(found), at_rest(found), "made up")]
-
-
-def of_stresses() -> list[Figure]:
-    result = run(scene_from_dict(TINY))
-    return [stress._drawn(result, below_contacts(result.model.bearing, result.model, result.equilibrium))[0]]
-
-
-def of_the_catalogue() -> list[Figure]:
-    """Large and small, light and heavy, with few and with many balls."""
-    return [
-        section_drawing(name, scene_from_dict({"bearing": {"preset": name}}).bearing)
-        for name in ("7000C", "7014A", "7930A5")
-    ]
-
-
-def of_laws() -> list[Figure]:
-    """Dry, damped, opening on the way, and carried by a film before the surfaces touch."""
-    film = ("contact.viscosity=0.03", "kinematics.spin_speed_rpm=10000")
-    found = [law("penalty"), law("hertz", None, "contact.damping=3000", amplitude=1.5), law("film", None, *film)]
-    return [one.draw() for one in found]
 
 
 def of_a_branch() -> list[Figure]:
@@ -206,47 +97,16 @@ def of_a_branch() -> list[Figure]:
     return [branch.draw()]
 
 
-def of_fits() -> list[Figure]:
-    """One number, two numbers, none that is determined; a second quantity that is scattered over decades."""
-    data = {"axial [N]": [400.0, 1000.0, 2000.0, 3000.0], "kxx [N/um]": [39.0, 68.0, 98.0, 124.0]}
-    names = "bearing.contact_angle_deg,bearing.conformity_inner"
-    one, two = (raceway.fit(data, b7206c(), free).to_dict() for free in (names.split(",")[0], names))
-    lost = {**one["free"][0], "error": None, "determined": False, "low": None, "high": None}
-    wild = {**one["series"][0], "measured": [1.0, 1e3, 1e6, 1e9]}
-    return [
-        fits.draw_fit(one),
-        fits.draw_fit({**two, "series": [*two["series"], wild]}),
-        fits.draw_fit({**one, "free": [lost]}),
-    ]
-
-
-def of_measurements() -> list[Figure]:
-    return [*of_fits(), *of_a_record()]
-
-
 #: File that makes figures -> how they come about here.
 DRAWN: dict[str, Callable[[], list[Figure]]] = {
-    "plugins/formats": of_a_run, "points/plot": of_a_sweep, "points/compare": of_a_comparison, "precision/picture": of_precision,
-    "raceway_article/figures": of_the_article, "rig/study": of_a_rig, "raceway_view/pictures": of_contacts,
-    "raceway_view/stress": of_stresses, "raceway_catalogue/catalogue": of_the_catalogue, "raceway_checks/law": of_laws,
-    "points/branch": of_a_branch, "points/sensitivities": of_sensitivities, "fit/picture": of_measurements,
-    "points/band": of_a_band,
+    "plugins/formats": of_a_run, "points/plot": of_a_sweep, "points/compare": of_a_comparison, "points/branch": of_a_branch,
+    "points/sensitivities": of_sensitivities, "points/band": of_a_band,
 }  # fmt: skip
 
 
-#: Of the drawn: the article's study takes seconds, and its own tests draw it.
-MARKS = {of_stresses: [pytest.mark.slow, pytest.mark.needs("pyvista")], of_the_article: [pytest.mark.slow]}
-
-
-@pytest.mark.parametrize(
-    "draw", [pytest.param(draw, id=draw.__name__, marks=MARKS.get(draw, ())) for draw in DRAWN.values()]
-)
+@pytest.mark.parametrize("draw", [pytest.param(draw, id=draw.__name__) for draw in DRAWN.values()])
 def test_every_drawn_point_lies_inside_its_axes_and_is_read_at_600_pixels(draw):
-    figures = [writer.readable(figure) for figure in draw()]
-    for figure in figures:
-        figure.draw_without_rendering()  # when its limits are known
-    assert figures and [line for figure in figures for line in outside(figure)] == []
-    assert [fault for figure in figures for fault in unreadable(figure)] == []
+    assert_readable(draw())
 
 
 def test_equal_rows_are_both_seen():
@@ -300,41 +160,8 @@ def test_pictures_are_written_for_a_page_and_for_a_paper(tmp_path, all_pixels):
         assert b"<svg" in files[f"{name}.svg"]
 
 
-def test_labels_of_precision_lie_on_no_other_and_name_the_other_models():
-    rows = [
-        {"setting": {"integrator.steps_per_turn": n}, "family": f"order {p}", "error": n ** -2.0, "time_s": 1e-5 * n * (1.0 + 1e-3 * p), "base": True}
-        for p in (1, 2, 3) for n in (10, 20, 40, 10000)
-    ]  # fmt: skip
-    rows.append({"setting": {"bodies.kind": "condensed"}, "family": "models", "error": 1e-3, "time_s": 1e-3, "base": False})
-    figure = precision.draw({"title": "made up", "rows": rows, "front": [0], "reference": {"error": None}})
-    figure.draw_without_rendering()
-    (panel,) = figure.axes
-    assert sorted(text.get_text() for text in panel.texts) == sorted(
-        ["10", "20", "40", "10000"] * 3 + ["bodies.kind = condensed"]
-    )
-    boxes = [Text.get_window_extent(text) for text in panel.texts]  # of an annotation: with its line
-    assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])
-
-
-def test_the_dashed_lines_of_a_rigs_error_say_what_they_are():
-    _, split = of_a_rig()
-    (panel,) = split.axes
-    dashed = [line.get_xdata()[0] for line in panel.lines if line.get_linestyle() == "--"]
-    assert {text.get_text(): text.xy[0] for text in panel.texts} == {f"{limit:g} %": limit for limit in dashed} != {}
-
-
 def test_no_module_makes_figures_that_are_not_looked_at_here():
-    folder = Path(raceway.__file__).parent
-    making = set()
-    for path in [*folder.rglob("*.py"), *folder.parent.glob("packages/*/raceway_*/**/*.py")]:
-        if not re.search("new_figure|draw_panels|Figure", text := path.read_text(encoding="utf-8")):
-            continue
-        called = [node.func for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)]
-        names = {getattr(call, "id", getattr(call, "attr", None)) for call in called}
-        if names & {"new_figure", "draw_panels", "Figure"}:
-            making.add(path)
-    making.remove(folder / "answers" / "picture.py")  # makes the figures
-    assert {"/".join(path.parts[-2:]).removesuffix(".py") for path in making} == set(DRAWN)
+    assert makers(Path(raceway.__file__).parent) == {*DRAWN, "answers/picture"}  # the last makes the figures
 
 
 @pytest.mark.parametrize("what", ["line", "scatter", "lines", "patch", "log", "across"])

@@ -5,7 +5,6 @@ import sys
 
 import numpy as np
 import pytest
-from raceway_rotor.coefficient_file import point_rows
 
 import raceway as rw
 from checks.validation.command_line import invoke
@@ -207,17 +206,6 @@ def test_stiffness_from_standstill_is_refused_with_the_command_that_gives_it(fil
     for n, k in zip(content["speed"], content["coefficients"]["kyy"], strict=True):
         own = rw.run({**STATIC, "kinematics": {"spin_speed_rpm": n * 30.0 / np.pi}}).stiffness
         assert k == pytest.approx(own[1, 1] - own[1, 0] * own[0, 1] / own[0, 0], rel=1e-6)
-
-
-def test_columns_that_are_alike_are_one():
-    """As ``raceway export`` shows them, speeds in r/min; what is the same at all points stands below."""
-    zero = {name: np.zeros(5) for name in ("kyy", "kyz", "kzy", "kzz", "cyy", "cyz", "czy", "czz", "kxx")}
-    rising = 1.23456e8 * (1.0 + 0.1 * np.arange(5))
-    values = {**zero, "kyy": rising, "kzz": rising, "kxx": np.full(5, 6e7)}
-    rows, constant = point_rows({"speed": 104.719755 * np.arange(5)}, values)
-    assert [list(row.values()) for row in rows][:2] == [["0", "123.46"], ["1000", "135.8"]]
-    assert list(rows[0]) == ["speed\nr/min", "kyy = kzz\nN/µm"]
-    assert constant == ["kxx = 60 N/µm at all points", "0 at all points: kyz, kzy, cyy, cyz, czy, czz"]
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@
 
 import pytest
 
-from raceway.scene.growth import load_at_edge
+from raceway.testing import load_at_edge
 
 
 @pytest.mark.parametrize("angle", [0.05, 0.2, 0.5])

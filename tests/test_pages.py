@@ -1,4 +1,4 @@
-"""Every page that the program writes, opened from its file in headless chromium, as wide as a screen and as a telephone."""
+"""Pages that the program writes, those of the article beside its tests, opened from its file in headless chromium, as wide as a screen and as a telephone."""
 
 import json
 import shutil
@@ -13,12 +13,7 @@ from checks.validation.command_line import MINIMAL
 from raceway.extend import Page, new_figure
 
 #: The page of `view` has pictures; those of studies take longest to write.
-MARKS = {
-    "view": [pytest.mark.slow, pytest.mark.needs("pyvista")],
-    "study article": [pytest.mark.slow],
-    "study rig": [pytest.mark.slow],
-    "article of elastic bodies": [pytest.mark.slow],
-}
+MARKS = {"view": [pytest.mark.slow, pytest.mark.needs("pyvista")], "study rig": [pytest.mark.slow]}
 
 
 @pytest.fixture(scope="module")

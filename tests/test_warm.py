@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import raceway as rw
-from checks.validation import warm as published
 from checks.validation.scenes import built_in
 from raceway.extend import open_store
+from tests.core.validation import warm as published
 
 Temperatures = built_in("quantity", "heat")
 

@@ -18,6 +18,11 @@ PRESETS = EXAMPLES.parent / "raceway" / "data" / "bearings"
 ARTICLE, MINIMAL = str(EXAMPLES / "b7206.toml"), str(EXAMPLES / "minimal.toml")
 #: A mesh of a second.
 COARSE = ("--set", "mesh.kind=structured", "--set", "mesh.element_size=2e-3", "--set", "mesh.nodes_per_semi_axis=1")
+#: A study of the article far from resonances, so that a run takes milliseconds.
+SMALL_ARTICLE = (
+    *("--bodies", "rigid", "--speeds", "11000,13000,15000", "--axial", "1600,1800,2000"),
+    *("--friction", "0", "--processes", "0", "--no-pictures"),
+)
 
 
 #: After which a process is taken as hung [s]: none is judged by it, and one that compiles on a busy machine takes minutes.

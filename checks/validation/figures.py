@@ -1,11 +1,17 @@
-"""Whether everything that a figure draws lies inside its axes."""
+"""Whether everything that a figure draws lies inside its axes, and can be read."""
 
-from collections.abc import Iterator
+import ast
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.collections import PathCollection, QuadMesh
 from matplotlib.figure import Figure
+from matplotlib.text import Text
+
+from raceway.extend import figure_png
 
 #: Points on the very edge are inside; part of an axis' length, in its own scale.
 ROUNDING = 1e-9
@@ -72,3 +78,46 @@ def _of_collection(collection: Any) -> tuple[np.ndarray, Any]:
 def _data(axes: Any, transform: Any, points: np.ndarray) -> dict[str, np.ndarray]:
     known = transform.contains_branch_seperately(axes.transData)
     return {name: values for name, values, is_data in zip("xy", np.asarray(points).T, known, strict=True) if is_data}
+
+
+def unreadable(figure: Figure) -> list[str]:
+    """Letters below 9 pixels of 600, but in wide figures of pages; labels of axes of more than five words, or that are keys; words on words."""
+    least = min(1.05 * figure.get_figwidth(), 11.0)
+    texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
+    small = [f"{text.get_text()!r} in {text.get_fontsize():g} pt" for text in texts if text.get_fontsize() < least - 1e-6]
+    labels = [label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel())]
+    ticks = [tick for axes in figure.axes for side in axes.get_xticklabels() + axes.get_yticklabels() for tick in [side]]
+    words = [
+        text
+        for text in texts
+        if text not in ticks and text.get_text() != "\n" and (text.axes is None or text.axes.get_visible())
+    ]
+    boxes = [(text.get_text(), Text.get_window_extent(text).shrunk(0.94, 0.8)) for text in words]
+    small += [f"{a!r} lies on {b!r}" for k, (a, one) in enumerate(boxes) for b, other in boxes[:k] if one.overlaps(other)]
+    return small + [
+        label
+        for label in labels
+        if len(label.partition("[")[0].split()) > 5 or re.search(r"[a-z]\.[a-z]|_(rpm|deg|hz)", label)
+    ]
+
+
+def assert_readable(figures: Iterable[Figure]) -> None:
+    """All that they draw lies inside its axes and is read at 600 pixels."""
+    figures = list(figures)
+    for figure in figures:
+        figure_png(figure)  # its limits are known, and its letters readable
+    assert figures and [line for figure in figures for line in outside(figure)] == []
+    assert [fault for figure in figures for fault in unreadable(figure)] == []
+
+
+def makers(folder: Path) -> set[str]:
+    """Modules below a folder that make figures, by their last folder and name."""
+    making = set()
+    for path in folder.rglob("*.py"):
+        if not re.search("new_figure|draw_panels|Figure", text := path.read_text(encoding="utf-8")):
+            continue
+        called = [node.func for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)]
+        names = {getattr(call, "id", getattr(call, "attr", None)) for call in called}
+        if names & {"new_figure", "draw_panels", "Figure"}:
+            making.add("/".join(path.parts[-2:]).removesuffix(".py"))
+    return making

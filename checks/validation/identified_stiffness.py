@@ -15,8 +15,7 @@ from checks.validation.reference.shooting import rotating as rotating_force
 from checks.validation.reference.statics import equilibrium
 from checks.validation.scenes import rig_force, rotating
 from raceway import scene_from_dict
-from raceway.scene.growth import ring_inertia
-from raceway.testing import run
+from raceway.testing import ring_inertia, run
 
 INTEGRATORS = ("newmark", "generalized_alpha", "central_difference")
 #: Tilt, axial load [N], speed [r/min], centrifugal force.

@@ -15,8 +15,7 @@ from checks.validation.reference.shooting import trajectory
 from checks.validation.scenes import rig_force, rotating
 from raceway import scene_from_dict
 from raceway.extend import Motion, Schedule, System, integrate
-from raceway.scene.growth import ring_inertia
-from raceway.testing import Model, model_of, simulate, solve_equilibrium
+from raceway.testing import Model, model_of, ring_inertia, simulate, solve_equilibrium
 
 INTEGRATORS = ("newmark", "generalized_alpha", "central_difference")
 #: Deviation of the fitted slope from 2 that is put down to the range of steps.

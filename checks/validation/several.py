@@ -7,7 +7,7 @@ import numpy as np
 from checks.validation.reference.ring import Ring
 from checks.validation.reference.shooting import dynamic_stiffness, rotating, swinging, trajectory
 from raceway import Result
-from raceway.scene.growth import ring_inertia
+from raceway.testing import ring_inertia
 
 Tables = dict[str, Any]
 

@@ -1,7 +1,7 @@
 """Parts that a scene needs, each kept or left out with its reason: coordinates, balls, bodies, motion, output; predicted times.
 
 Times are those of a run of compiled rings, from measured times of their parts.  Constants are seconds of processor time of the
-reference machine of ``slowness``, with all that a run does for its error beside its answer: tests/evidence/test_cost.py holds whole
+reference machine of ``slowness``, with all that a run does for its error beside its answer: packages/raceway-checks/tests/evidence/test_cost.py holds whole
 runs against them.
 """
 

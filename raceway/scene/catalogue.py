@@ -5,7 +5,7 @@ One TOML file a preset, in ``raceway/data/bearings``, holds ``title`` and one ta
 
 One TOML file a series, in ``raceway/data/series``, holds the same for many bearings: [columns.KEY] with ``source``, ``inferred`` and the name of the
 column of its relative scatter, [constants.KEY] for what all have, and in [bearings] a row of numbers a designation.  Series are
-written by ``python -m checks.presets`` from what makers print.  ``70.toml`` and ``70_NTN.toml`` are one series of two makers.
+written by ``python packages/raceway-catalogue/tests/presets.py`` from what makers print.  ``70.toml`` and ``70_NTN.toml`` are one series of two makers.
 
 ``maker`` says whose bearings they are, ``uncertainty`` what is not known of their stiffness: parts of ``raceway/data/uncertainty.toml``.
 """

@@ -40,10 +40,11 @@ _PUBLIC = {
     # What tests of single steps need beside the public functions.
     **dict.fromkeys(("b7206c", "model_of", "settled"), "raceway.testing.suite"),
     **dict.fromkeys(("Registry", "default_registry"), "raceway.framework.loading.registry"),
-    "drive": "raceway.testing.contact_law",
+    **dict.fromkeys(("drive", "example_pairs", "exponents"), "raceway.testing.contact_law"),
+    **dict.fromkeys(("ball_growth", "groove_depth", "load_at_edge", "ring_inertia"), "raceway.scene.growth"),
     "samples": "raceway.testing.signals",
     "Model": "raceway.bodies.model",
-    "run": "raceway.pipeline.run",
+    **dict.fromkeys(("PATIENCE", "Allowance", "run"), "raceway.pipeline.run"),
     "solve_equilibrium": "raceway.pipeline.equilibrium",
     "simulate": "raceway.pipeline.simulate",
 }

@@ -70,7 +70,7 @@ def test_a_basis_is_one_of_the_list(rows):
 
 
 def test_reports_are_of_modules_without_a_failure(rows, tmp_path, monkeypatch):
-    monkeypatch.setattr("checks.claims.FOLDER", tmp_path / "tests" / "evidence")
+    monkeypatch.setattr(files, "ROOT", tmp_path)
     monkeypatch.setattr(
         files, "write", lambda name, title, rows, seconds, command: written.update({name: (title, rows, command)})
     )

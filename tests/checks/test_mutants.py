@@ -68,7 +68,7 @@ def test_there_are_enough_and_no_two_are_the_same():
 
 
 def test_a_text_that_does_not_occur_once_is_refused():
-    fault = Fault("some.py", "a + b", "a - b", ("tests/test_contact.py",), "a sign")
+    fault = Fault("some.py", "a + b", "a - b", ("tests/core/test_contact.py",), "a sign")
     assert fault.put("c = a + b\n") == "c = a - b\n"
     for source in ("c = b + a\n", "c = a + b\nd = a + b\n"):
         with pytest.raises(ValueError, match="must be once"):
@@ -89,7 +89,7 @@ def test_a_fault_touches_what_imports_its_file_and_nothing_else():
         "raceway/core/fem/hexahedron/stiffness.py",
         "raceway/core/fem/hexahedron/operator.py",
         "raceway/core/fem/elastic/assembly.py",
-        "tests/hexahedron/test_elements.py",
+        "tests/core/hexahedron/test_elements.py",
     } <= found
     assert not {"raceway/core/time/compiled.py", "raceway/contact_laws/penalty.py"} & found
 

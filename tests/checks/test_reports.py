@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from checks import reports as files
-from checks.claims import FOLDER, Claim, claims_into
+from checks.claims import Claim, claims_into
 from checks.night import changes
 from checks.reports import CHOSEN, chosen
 from checks.robustness import below, near, show
@@ -46,7 +46,7 @@ def test_the_site_has_a_page_of_each_report_and_links_to_it(tmp_path):
 
 def test_every_report_has_a_module():
     """A module without a report gets one the next night."""
-    assert set(REPORTS) <= {path.stem.removeprefix("test_") for path in FOLDER.rglob("test_*.py")}
+    assert set(REPORTS) <= {path.stem.removeprefix("test_") for path in files.ROOT.glob("**/evidence/test_*.py")}
 
 
 def _report(**values):

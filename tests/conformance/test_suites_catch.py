@@ -10,9 +10,17 @@ import pytest
 
 from checks.validation.scenes import built_in
 from raceway.extend import Drivers
-from raceway.testing import SUITES, BodiesSuite, ContactLawSuite, ExcitationSuite, IdentifierSuite, IntegratorSuite, suite_of
+from raceway.testing import (
+    SUITES,
+    BodiesSuite,
+    ContactLawSuite,
+    ExcitationSuite,
+    IdentifierSuite,
+    IntegratorSuite,
+    exponents,
+    suite_of,
+)
 from raceway.testing import suite as suites
-from raceway.testing.contact_law import exponents
 from tests import broken_laws
 from tests.broken_bodies import BROKEN
 

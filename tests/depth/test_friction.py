@@ -198,7 +198,7 @@ def test_no_friction_is_the_limit_of_little_friction(built):
 
 
 def test_stick_stiffness_by_default_is_the_ellipses_along_the_groove(built):
-    """A part of the normal stiffness, mean of both races at the axial ball load; see tests/test_contact.py."""
+    """A part of the normal stiffness, mean of both races at the axial ball load; see tests/core/test_contact.py."""
     model = built(contact={"friction": 0.03})
     q, _, _ = attrs.evolve(model.system).solve_equilibrium(model.guess)
     load = model.system.evaluate(q).contact_force[0]

@@ -10,8 +10,7 @@ from checks.validation.reference.ring import Ring
 from checks.validation.reference.row_set import RowSet, press, press_together
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.extend import default_registry, equilibrium_table, make_basis, resolve, running_pairs, scene_schema
-from raceway.scene.growth import ring_inertia
-from raceway.testing import solve_equilibrium
+from raceway.testing import ring_inertia, solve_equilibrium
 
 DISTANCE = 16e-3
 #: Equilibria are solved to 1e-11; the references' Hertz factors, by quadrature and root finding, agree to 1e-9.

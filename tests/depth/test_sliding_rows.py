@@ -3,7 +3,6 @@ with them held as in a motion, and the preload in three states: before mounting,
 
 import numpy as np
 import pytest
-from raceway_rotor.node_bearing import node_bearing
 
 import raceway as rw
 from checks.validation.reference.mounted import approach, axial, row
@@ -145,18 +144,6 @@ def test_gradients_are_those_of_whole_runs(key, step):
         values = {k: getattr(one, word)[chosen] for k, one in near.items()}
         expected = (values[-2] - 8.0 * values[-1] + 8.0 * values[1] - values[2]) / (12.0 * step)
         np.testing.assert_allclose(getattr(statics, word)[chosen], expected, rtol=1e-4)
-
-
-@pytest.mark.parametrize("axial", ["force", "displacement"])
-def test_a_rotor_s_node_meets_the_rows_following(axial):
-    """Coefficients of small motions, and the derivative of the force in time, are one stiffness."""
-    tables = sprung(load={"axial": 20.0, "radial": [150.0, 0.0]})
-    node = node_bearing(tables, axial=axial)
-    wanted = node.dynamic_stiffness(1e-3, 1200.0).real
-    size, h = np.eye(3), 3e-9
-    slope = np.array([(node.resistance(1200.0, h * e)[0] - node.resistance(1200.0, -h * e)[0]) / (2.0 * h) for e in size]).T
-    np.testing.assert_allclose(slope / wanted.max(), wanted / wanted.max(), atol=1e-6)
-    assert wanted[0, 0] == pytest.approx(node.at_rest(1200.0)[1].stiffness[0, 0], rel=1e-9)
 
 
 def test_two_preloads_with_a_spring_are_reported_as_the_rows_carry_them():

@@ -10,8 +10,7 @@ from checks.validation.reference.ring import Ring
 from checks.validation.reference.row_set import RowSet, press, warmed
 from raceway import ConvergenceError, SceneError, build_model, make_plan, scene_from_dict
 from raceway.extend import equilibrium_table, resolve
-from raceway.scene.growth import ball_growth
-from raceway.testing import run, solve_equilibrium
+from raceway.testing import ball_growth, run, solve_equilibrium
 
 DISTANCE = 16e-3
 STEEL = 12.5e-6

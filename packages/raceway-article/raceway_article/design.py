@@ -31,7 +31,7 @@ FRICTIONS = tuple(FRICTION_WORDS)
 #: How runs with friction are integrated: the force grows over two thirds of the turns, the last third counts. Steps that are solved to
 #: 1e-4 of the forces move K by at most 5e-7.
 FRICTION_TURNS, FRICTION_STEPS, FRICTION_TOLERANCE = 12, 360, 1e-4
-#: Least relative error of K with friction: what twice the turns of twice the steps change (``tests/evidence/test_article.py``).
+#: Least relative error of K with friction: what twice the turns of twice the steps change (``packages/raceway-article/tests/evidence/test_article.py``).
 FRICTION_ERROR = 0.005
 ARTICLE = Path(__file__).resolve().parent / "data" / "article.toml"
 #: The article's ranges: section 4 (speeds) and 3.3 (axial loads); how finely is ours.

@@ -6,14 +6,15 @@ import re
 
 import attrs
 import pytest
+from article_study import curves, row, study
 from raceway_article import rows
 from raceway_article import study as driver
 from raceway_article.design import ARTICLE, FRICTIONS, ROTATING, Setting, article_tables, design, shaft_tilt_stiffness
 from raceway_article.figures import Picture, drawings
 from raceway_article.page import page
 
-from checks.validation.article_study import SMALL, curves, row, study
-from checks.validation.command_line import EXAMPLES, invoke
+from checks.validation.command_line import EXAMPLES, SMALL_ARTICLE, invoke
+from checks.validation.figures import assert_readable
 from raceway import ConvergenceError
 from raceway.core.periodic.branches import chosen
 from raceway.extend import FAILED, Attractor, default_registry, read_toml
@@ -47,7 +48,7 @@ def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, qu
 
     stop.__qualname__ = real.__qualname__  # a part of the key of finished work
     monkeypatch.setattr(driver, "rows_of_curve", stop)
-    words = ("study", "article", *SMALL, "--out", tmp_path)
+    words = ("study", "article", *SMALL_ARTICLE, "--out", tmp_path)
     found = invoke(*words)
     assert found.exit_code == 130
     assert "the same command continues" in found.stderr
@@ -85,7 +86,7 @@ def test_a_run_that_fails_is_shown_as_failed(tmp_path, quick, monkeypatch):
     monkeypatch.setattr(rows, "run", fail)
     monkeypatch.setattr(rows, "_looped", lambda points, _: [None] * len(points))
     monkeypatch.setattr(rows, "attractor_from_rest", lambda _, speed, turns: Attractor(speed, FAILED, turns, why="nothing"))
-    found = invoke("study", "article", *SMALL, "--out", tmp_path)
+    found = invoke("study", "article", *SMALL_ARTICLE, "--out", tmp_path)
     assert found.exit_code == 1
     assert "every run failed" in found.stderr and "no motion was found" in found.stderr
     verdicts = json.loads((tmp_path / "article.json").read_text(encoding="utf-8"))["verdicts"]
@@ -245,3 +246,14 @@ def test_a_scene_without_unbalance_is_refused(tmp_path):
     scene.write_text(re.sub(r"\[excitation\].*?(?=\n\[)", "", text, flags=re.DOTALL), encoding="utf-8")
     found = invoke("study", "article", scene, "--out", tmp_path / "out")
     assert found.exit_code == 2 and "`excitation.unbalance`" in found.stderr
+
+
+@pytest.mark.slow
+def test_its_pictures_are_readable():
+    """An unstable motion a hundred times as stiff as the rest."""
+
+    def k(setting, load, w):
+        return (1e10,) if setting.tilt == "free" and w > 0.9 else 1e8 * (1.0 + 0.1 * w)
+
+    found = study(curves(k))
+    assert_readable([panel.figure() for panel in drawings(found.curves, found.scan)])

@@ -8,13 +8,13 @@ import tomllib
 
 import attrs
 import pytest
+from article_study import elastic_study
 from raceway_article import elastic, elastic_design, elastic_rows
 from raceway_article.elastic_design import SCENE, ElasticDesign, design
 from raceway_article.elastic_page import drawings, page
 from raceway_article.remaining_time import RemainingTime
 
 import raceway as rw
-from checks.validation.article_study import elastic_study
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway import ConvergenceError, SceneError
 from raceway.extend import read_toml

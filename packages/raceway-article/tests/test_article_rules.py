@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
+from article_study import curves, static
 from raceway_article import courses
 from raceway_article.claims import region_of, verdict_of, verdicts
 from raceway_article.courses import power_exponent
 from raceway_article.rules import FAILED, HOLDS, NOT, PARTLY, UNTESTED, Finding
-
-from checks.validation.article_study import curves, static
 
 W = np.linspace(0.0, 1.0, 9)
 SMALL = np.full(9, 1e-9)

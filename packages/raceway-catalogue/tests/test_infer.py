@@ -5,6 +5,7 @@ import json
 import attrs
 import numpy as np
 import pytest
+from raceway_catalogue.catalogue import section_drawing
 from raceway_catalogue.infer import lines_by_size
 from raceway_catalogue.inferred import infer_printed
 from raceway_catalogue.printed import Printed, Rating, printed_by, table_in_text
@@ -12,6 +13,7 @@ from raceway_catalogue.rating_conventions import CONFORMITY, pair_stiffness
 
 import raceway as rw
 from checks.validation.command_line import invoke
+from checks.validation.figures import assert_readable
 from raceway import SceneError
 from raceway.core.quantities.ratings import groove_curvatures, hertz_load_factor, static_load_factor
 from raceway.extend import BallBearing, BallRow, contact_modulus
@@ -298,3 +300,13 @@ def test_the_section_is_in_proportion():
     shapes = [shape for axes in section_drawing("7014C", bearing).axes for shape in axes.patches]
     balls = np.array([(*shape.center, 2.0 * shape.radius) for shape in shapes if isinstance(shape, Circle)])
     assert balls == pytest.approx(np.array([[0.0, r, 1e3 * bearing.ball_diameter] for r in (45.0, -45.0, 45.0)]))
+
+
+def test_its_drawings_are_readable():
+    """Large and small, light and heavy, with few and with many balls."""
+    assert_readable(
+        [
+            section_drawing(name, rw.scene_from_dict({"bearing": {"preset": name}}).bearing)
+            for name in ("7000C", "7014A", "7930A5")
+        ]
+    )

@@ -8,6 +8,7 @@ from scipy.integrate import quad
 
 import raceway as rw
 from checks.validation.command_line import EXAMPLES, invoke
+from checks.validation.figures import assert_readable
 from raceway import RacewayError, SceneError
 
 CUBIC = EXAMPLES.parent / "tests" / "cubic_law.py"
@@ -147,3 +148,10 @@ def test_the_command_says_what_the_function_does(tmp_path):
     assert f"{expected['cycle']['damping']:.4g} N s/m" in shown and "contact.damping: 300 N s/m at each contact" in shown
     third = invoke("dev", "law", "cubic", "--plugin", CUBIC)
     assert third.exit_code == 0 and "cubic: inner contact" in third.stdout
+
+
+def test_its_pictures_are_readable():
+    """Dry, damped, opening on the way, and carried by a film before the surfaces touch."""
+    film = ("contact.viscosity=0.03", "kinematics.spin_speed_rpm=10000")
+    found = [rw.law("penalty"), rw.law("hertz", None, "contact.damping=3000", amplitude=1.5), rw.law("film", None, *film)]
+    assert_readable([one.draw() for one in found])

@@ -7,13 +7,16 @@ from typing import Any
 import attrs
 import numpy as np
 import pytest
+from matplotlib.text import Text
 from raceway_checks.precision import study as module
 from raceway_checks.precision.answer import THRESHOLDS
+from raceway_checks.precision.picture import draw
 from raceway_checks.precision.settings import find_reference, make_design
 from raceway_checks.precision.timing import measured
 from rich.console import Console
 
 from checks.validation.command_line import ARTICLE, invoke
+from checks.validation.figures import assert_readable
 from raceway import RacewayError, SceneError, precision, scene_from_dict
 from raceway.extend import Store, read_toml, row_key, written
 from raceway.pipeline.transient_error import hann_line
@@ -304,3 +307,28 @@ def test_the_bound_holds_the_error_and_is_of_its_size(kind, steps):
     assert true <= found.bound
     # The bound is a change of the last refinement, or a distance of two methods: it has no reason to be far above the error.
     assert found.bound <= max(40.0 * true, 1e-9)
+
+
+def test_its_picture_is_readable():
+    rows = [
+        {"setting": {"integrator.steps_per_turn": n}, "family": f"order {p}", "error": n ** -float(p), "time_s": 1e-5 * n, "base": p < 4}
+        for p in (1, 2, 4) for n in (10, 100, 10000)
+    ]  # fmt: skip
+    whole = {"title": "made up", "rows": rows, "front": [0, 3, 5]}
+    assert_readable([draw({**whole, "reference": {"error": bound}}) for bound in (1e-6, None)])
+
+
+def test_labels_of_precision_lie_on_no_other_and_name_the_other_models():
+    rows = [
+        {"setting": {"integrator.steps_per_turn": n}, "family": f"order {p}", "error": n ** -2.0, "time_s": 1e-5 * n * (1.0 + 1e-3 * p), "base": True}
+        for p in (1, 2, 3) for n in (10, 20, 40, 10000)
+    ]  # fmt: skip
+    rows.append({"setting": {"bodies.kind": "condensed"}, "family": "models", "error": 1e-3, "time_s": 1e-3, "base": False})
+    figure = draw({"title": "made up", "rows": rows, "front": [0], "reference": {"error": None}})
+    figure.draw_without_rendering()
+    (panel,) = figure.axes
+    assert sorted(text.get_text() for text in panel.texts) == sorted(
+        ["10", "20", "40", "10000"] * 3 + ["bodies.kind = condensed"]
+    )
+    boxes = [Text.get_window_extent(text) for text in panel.texts]  # of an annotation: with its line
+    assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])

@@ -1,6 +1,7 @@
 """The ``verify`` study itself: what it computes, refuses and reports."""
 
 import json
+from functools import wraps
 from typing import ClassVar
 
 import attrs
@@ -8,6 +9,7 @@ import pytest
 from raceway_checks.verify.reference import reference_cases
 from raceway_checks.verify.study import COMPUTED, Verification, verify
 
+from checks.validation.command_line import invoke
 from checks.validation.scenes import built_in
 from raceway import ConvergenceError, SceneError, hookimpl
 from raceway.extend import Registry
@@ -136,3 +138,16 @@ def test_third_party_integrators_are_run_and_a_broken_one_is_named():
     broken = rows["peak force, broken [N]"]
     assert not broken.ok and "'broken' of their-package" in broken.note and "ZeroDivisionError" in broken.note
     assert not any("direct" in quantity for quantity in rows)
+
+
+def test_verify_fails_with_code_1(monkeypatch):
+    @wraps(verify)
+    def off(*given, **named):
+        done = verify(*given, **named)
+        return attrs.evolve(done, rows=tuple(attrs.evolve(row, ok=False) for row in done.rows))
+
+    content = json.loads(invoke("verify", "--only", "seed-unbalance", "--json").stdout)
+    assert all(row["ok"] for row in content["rows"])
+    monkeypatch.setattr("raceway_checks.verify.study.verify", off)
+    found = invoke("verify", "--only", "seed-unbalance")
+    assert found.exit_code == 1 and "0 of" in found.stdout

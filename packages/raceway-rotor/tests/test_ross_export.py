@@ -1,6 +1,6 @@
 """Coefficients for rotor programs: their numbers, and the files, read by a small reader of ROSS's layout.
 
-ROSS itself reads them in tests/evidence/test_ross.py: it is not in the extra ``all``.
+ROSS itself reads them in packages/raceway-rotor/tests/evidence/test_ross.py: it is not in the extra ``all``.
 """
 
 import json

@@ -5,6 +5,8 @@ import re
 
 import numpy as np
 import pytest
+from raceway_rotor.coefficient_file import point_rows
+from raceway_rotor.node_bearing import node_bearing
 
 import raceway as rw
 from checks.validation.command_line import invoke
@@ -234,3 +236,27 @@ def test_the_command_writes_all_of_them(tmp_path):
     assert refused.exit_code == 2 and "give --ross, --nastran, --ansys or --table" in " ".join(refused.stderr.split())
     refused = invoke("export", tmp_path / "store", "--table", tmp_path / "b.xls")
     assert refused.exit_code == 2 and "states its kind by the ending" in refused.stderr
+
+
+def test_columns_that_are_alike_are_one():
+    """As ``raceway export`` shows them, speeds in r/min; what is the same at all points stands below."""
+    zero = {name: np.zeros(5) for name in ("kyy", "kyz", "kzy", "kzz", "cyy", "cyz", "czy", "czz", "kxx")}
+    rising = 1.23456e8 * (1.0 + 0.1 * np.arange(5))
+    values = {**zero, "kyy": rising, "kzz": rising, "kxx": np.full(5, 6e7)}
+    rows, constant = point_rows({"speed": 104.719755 * np.arange(5)}, values)
+    assert [list(row.values()) for row in rows][:2] == [["0", "123.46"], ["1000", "135.8"]]
+    assert list(rows[0]) == ["speed\nr/min", "kyy = kzz\nN/µm"]
+    assert constant == ["kxx = 60 N/µm at all points", "0 at all points: kyz, kzy, cyy, cyz, czy, czz"]
+
+
+@pytest.mark.parametrize("axial", ["force", "displacement"])
+def test_a_rotor_s_node_meets_the_rows_following(axial):
+    """Coefficients of small motions, and the derivative of the force in time, are one stiffness."""
+    pair = {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "preload_kind": "spring"}
+    tables = {"bearing": pair, "load": {"axial": 20.0, "radial": [150.0, 0.0]}}
+    node = node_bearing(tables, axial=axial)
+    wanted = node.dynamic_stiffness(1e-3, 1200.0).real
+    size, h = np.eye(3), 3e-9
+    slope = np.array([(node.resistance(1200.0, h * e)[0] - node.resistance(1200.0, -h * e)[0]) / (2.0 * h) for e in size]).T
+    np.testing.assert_allclose(slope / wanted.max(), wanted / wanted.max(), atol=1e-6)
+    assert wanted[0, 0] == pytest.approx(node.at_rest(1200.0)[1].stiffness[0, 0], rel=1e-9)

@@ -12,6 +12,7 @@ from raceway_view.view import at_peak, at_rest
 
 import raceway as rw
 from checks.validation.command_line import COARSE, MINIMAL, invoke, python
+from checks.validation.figures import assert_readable
 from checks.validation.scenes import built_in
 from raceway import scene_from_dict
 from raceway.extend import picture, ring_shape
@@ -258,3 +259,8 @@ def test_what_a_plug_in_mesher_must_not_return(tmp_path, answer, words):
     found = invoke("view", "--mesh", MINIMAL, *given)
     assert found.exit_code == 2
     assert words in " ".join(found.output.split())
+
+
+def test_the_picture_of_contacts_is_readable():
+    found = run(scene_from_dict(b7206c(load={"axial": 300.0, "radial": [900.0, 0.0]})))
+    assert_readable([contacts(BearingSolids.of(found), at_rest(found), "made up")])

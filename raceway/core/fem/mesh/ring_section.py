@@ -14,7 +14,7 @@ from raceway.errors import MeshError
 #: Gauss points along the axis in each of three parts, and along the radius: more change growth and moments by 2e-15.
 _ALONG, _ACROSS = 20, 10
 
-#: Of the polynomials of the rotating ring; finite elements differ by 1 % (tests/depth/test_growth.py).
+#: Of the polynomials of the rotating ring; finite elements differ by 1 % (tests/core/test_growth.py).
 _DEGREE = 8
 
 
