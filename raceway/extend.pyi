@@ -192,11 +192,11 @@ from .points.attractor import attractor_from_rest as attractor_from_rest
 from .points.axes import axis_label as axis_label
 from .points.axes import box as box
 from .points.axes import is_number as is_number
-from .points.axes import numbers_at as numbers_at
+from .points.base import numbers_at as numbers_at
 from .points.axes import parse_axis as parse_axis
 from .points.axes import points as points
 from .points.axes import shown as shown
-from .points.axes import tables_at as tables_at
+from .points.base import tables_at as tables_at
 from .points.column_quantities import DIMENSIONS as DIMENSIONS
 from .points.column_quantities import SteadyLines as SteadyLines
 from .points.column_quantities import lasting as lasting
@@ -324,7 +324,7 @@ from .answers.quantities import PEAK_BALL_LOAD as PEAK_BALL_LOAD
 from .answers.quantities import PRECISION as PRECISION
 from .framework.doors import DURATION as DURATION
 from .points.axes import Vary as Vary
-from .points.axes import axes_of as axes_of
-from .points.axes import refuse_mistakes as refuse_mistakes
+from .points.base import axes_of as axes_of
+from .points.base import refuse_mistakes as refuse_mistakes
 from .scene.inputs import parse_change as parse_change
 from .pipeline.content import Content as Content

@@ -1,6 +1,6 @@
 """One scene at many points, and one engine that computes them: in, rows out as they finish, kept and resumed, by any executor.
 
-axes        values along keys of a scene, lists and grids of points
+axes        values along keys of a scene, lists and grids of points;  base: the scene at a point
 engine      items of work, versions and plug-ins that decide a row; time and memory of runs
 store       rows and states on disk;  dataset: labelled results, NetCDF and CSV
 sweep       ``raceway.sweep``;  selection: a part of it;  plot: its pictures

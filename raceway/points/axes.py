@@ -13,14 +13,8 @@ from typing import Any, TypeAlias
 import attrs
 import numpy as np
 
-from raceway.errors import Mistake, PluginError, SceneError
-from raceway.framework.loading.registry import Registry
-from raceway.scene.inputs import parse_value, read_toml, text_of, tidy, value_at, with_value
-from raceway.scene.reading import numbers_only, options_class
-from raceway.scene.scene import scene_from_dict
-from raceway.scene.tables import PLUGIN_TABLES, TABLES
-from raceway.scene.units import is_quantity
-from raceway.scene.unused import without_inherited
+from raceway.errors import Mistake, SceneError
+from raceway.scene.inputs import parse_value, read_toml, text_of, tidy
 from raceway.storage.files import why_unreadable
 from raceway.storage.tables import ReadTables, Tables
 
@@ -223,87 +217,6 @@ def points(axes: Sequence[Axis]) -> Iterator[Tables]:
     return Design(tuple(axes)).points()
 
 
-def tables_at(tables: ReadTables, point: ReadTables, registry: Registry, notes: list[str] | None = None) -> Tables:
-    """The scene's tables at one point; what is left out with a change of kind is said in ``notes``, once each.
-
-    Keys of the scene that the point takes their effect from are left out without a word.
-    """
-    scene_tables = dict(tables)
-    # Kinds first: what another axis sets must not be taken for an option of the old kind.
-    for key, value in sorted(point.items(), key=lambda item: not item[0].endswith(".kind")):
-        name, _, last = key.rpartition(".")
-        if last == "kind" and name in PLUGIN_TABLES and isinstance(value, str):
-            for option in _strange_options(scene_tables, name, value, registry):
-                value_before = scene_tables[name][option]
-                scene_tables[name] = {k: v for k, v in scene_tables[name].items() if k != option}
-                note = f"{name}.{option} = {shown(value_before)} is omitted for kind '{value}', which lacks it"
-                if notes is not None and note not in notes:
-                    notes.append(note)
-        scene_tables = with_value(scene_tables, key, value)
-    return without_inherited(tables, scene_tables, point, registry)
-
-
-def numbers_at(tables: ReadTables, point: ReadTables, registry: Registry) -> Tables:
-    """A point whose values with a unit as text are numbers in the unit of their key."""
-    texts = [key for key, value in point.items() if isinstance(value, str) and is_quantity(value)]
-    if not texts:
-        return dict(point)
-    numbers = numbers_only(tables_at(tables, point, registry), registry)
-    return {**point, **{key: value_at(numbers, key) for key in texts}}
-
-
-def axes_of(definitions: Vary, tables: ReadTables, registry: Registry) -> tuple[Axis, ...]:
-    """``parse_axes`` with values in the units of the scene's keys."""
-    return tuple(_in_units(axis, tables, registry) for axis in parse_axes(definitions))
-
-
-def _in_units(axis: Axis, tables: ReadTables, registry: Registry) -> Axis:
-    """An axis whose values with a unit as text are numbers in the unit of the key."""
-    if axis.numeric:
-        return axis
-    return Axis(axis.key, tuple(numbers_at(tables, {axis.key: value}, registry)[axis.key] for value in axis.values))
-
-
-def design_in_units(design: "Design", tables: ReadTables, registry: Registry) -> "Design":
-    """A design with all values as numbers in the units of their keys."""
-    if design.listed and not all(axis.numeric for axis in design.axes):
-        return _of_points([numbers_at(tables, point, registry) for point in design.points()])
-    return Design(tuple(_in_units(axis, tables, registry) for axis in design.axes), design.listed)
-
-
-def _strange_options(tables: ReadTables, name: str, kind: str, registry: Registry) -> list[str]:
-    """Options in a table that its present kind knows and the new kind does not; typing mistakes are not among them."""
-    table = tables.get(name)
-    role, default = PLUGIN_TABLES[name]
-    if not isinstance(table, dict):
-        return []
-    words = (str(table.get("kind", default)), kind)
-    try:
-        old, new = ({field.name for field in attrs.fields(options_class(role, word, registry))} for word in words)
-    except PluginError:
-        return []  # the scene's own check names the unknown kind
-    core = {field.name for field in attrs.fields(TABLES[name])} if name in TABLES else set()
-    return [option for option in table if option in old - new - core]
-
-
-def refuse_mistakes(tables: ReadTables, axes: tuple[Axis, ...], registry: Registry) -> str:
-    """Check the first point whole, and each further value as far as it concerns an axis; the scene's title."""
-    first = {axis.key: axis.values[0] for axis in axes}
-    title = scene_from_dict(tables_at(tables, first, registry), registry).title
-    keys = {axis.key for axis in axes}
-    mistakes = []
-    for axis in axes:
-        for value in axis.values[1:]:
-            try:
-                scene_from_dict(tables_at(tables, {**first, axis.key: value}, registry), registry)
-            except SceneError as error:
-                # What two axes refuse together may run at other points: such a point is kept as refused.
-                mistakes += [m for m in error.mistakes if m.path in keys]
-    if mistakes:
-        raise SceneError(mistakes)
-    return title
-
-
 #: Most points of a sweep: beyond it, files of results are no longer something to open.
 _MOST_SWEEP_POINTS = 1_000_000
 #: Bytes of a list of them at most: 256 for each.
@@ -348,6 +261,11 @@ class Design:
 
     def to_dict(self) -> Tables:
         return {"listed": self.listed, "axes": {axis.key: list(axis.values) for axis in self.axes}}
+
+    @classmethod
+    def of_points(cls, points: Sequence[ReadTables]) -> "Design":
+        """A list of points, all with the same keys."""
+        return cls(tuple(Axis(key, tuple(point[key] for point in points)) for key in points[0]), listed=True)
 
     @classmethod
     def from_dict(cls, tables: ReadTables) -> "Design":
@@ -426,11 +344,6 @@ def design_file(path: Path) -> Design:
     return grid(f"{key}={','.join(values)}" for key, values in words)
 
 
-def _of_points(points: Sequence[ReadTables]) -> Design:
-    """A list of points, all with the same keys."""
-    return Design(tuple(Axis(key, tuple(point[key] for point in points)) for key in points[0]), listed=True)
-
-
 def _leaves(table: ReadTables, before: str = "") -> Iterator[tuple[str, object]]:
     """``a.b`` for [grid] "a.b" and for [grid.a] b alike."""
     for key, value in table.items():
@@ -488,7 +401,7 @@ def _point_list(path: Path | str, points: object) -> Design:
     bad = [key for key in keys if not key or not all(part.strip() for part in key.split("."))]
     if bad:
         raise SceneError.at(str(path), bad[0], "is not a key of a scene, such as load.axial")
-    return _of_points(points)
+    return Design.of_points(points)
 
 
 def point_words(point: ReadTables, keys: Sequence[str] | None = None) -> str:

@@ -386,7 +386,7 @@ def uncertainty(
             count, steady = (len(widths) + 2) * samples, read if read.excitation is None else _steady(read)
             loop = function(steady, [t.key.path for t in widths], ["K" if steady.excitation else "kyy"], threads=1)
             if loop.why_slow:
-                seconds, _ = run_times(count, lambda _: steady.to_dict(), default_registry(), planned=1)
+                seconds, _ = run_times(count, lambda _: steady, planned=1)
                 return Workload(
                     read.title, count, seconds / max(processes, 1), runs=count, noun="samples", why_runs=loop.why_slow
                 )

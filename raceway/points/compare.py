@@ -24,7 +24,8 @@ from raceway.pipeline.run import run
 from raceway.pipeline.uncertainty import interval
 from raceway.planning.plan import make_plan
 from raceway.plugins.formats import labelled_dataset
-from raceway.points.axes import Axis, Vary, axes_of, noun, places_of, points, refuse_mistakes, shown, tables_at
+from raceway.points.axes import Axis, Vary, noun, places_of, points, shown
+from raceway.points.base import axes_of, refuse_mistakes, tables_at
 from raceway.points.dataset import axis_labels
 from raceway.points.effects import MOVING, Findings, Row, enumeration, explain, in_few_words
 from raceway.points.engine import Item, local, work_through

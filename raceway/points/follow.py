@@ -140,7 +140,7 @@ def curve(
         )
     registry = registry_with(plugins)
     parameter = parameter_of(plain_tables(scene, *changes, registry=registry), over, registry)
-    seconds, _ = run_times(points, lambda _: parameter.base.to_dict(), registry, planned=1)
+    seconds, _ = run_times(points, lambda _: parameter.base, planned=1)
     remarks = ["Smooth branches take 30 to 200 orbits."] + ["Integrations over time (--turns) are added."] * bool(turns)
     return Workload(
         parameter.base.title, points, seconds, looped=points, noun="orbits", at_most=True, remarks=tuple(remarks)

@@ -21,7 +21,7 @@ from raceway.errors import ConvergenceError, SceneError
 from raceway.framework.contracts import Excitation
 from raceway.framework.loading.registry import Registry
 from raceway.pipeline.equilibrium import solve_equilibrium
-from raceway.points.axes import numbers_at
+from raceway.points.base import numbers_at
 from raceway.scene.inputs import parse_value, with_value
 from raceway.scene.keys import key_of, with_number
 from raceway.scene.scene import Scene, scene_from_dict

@@ -25,7 +25,8 @@ from raceway.framework.loading.registry import Registry, registry_with
 from raceway.framework.options import at_least
 from raceway.framework.shown import duration
 from raceway.pipeline.simulate import OnProgress
-from raceway.points.axes import Design, design_in_units, grid, listed_points, sampled, tables_at
+from raceway.points.axes import Design, grid, listed_points, sampled
+from raceway.points.base import Base
 from raceway.points.column_quantities import MOVING, QUANTITIES, Columns, stated_columns
 from raceway.points.dataset import DOF, SweepStore, all_failed, block_edges, dataset, open_store, values_of
 from raceway.points.engine import Work, answers, differences, identity, registry_of, worker
@@ -33,7 +34,7 @@ from raceway.points.function import BLOCK, Function, PointStatus, refuse_bytes
 from raceway.points.store import Row, exists, written
 from raceway.points.workload import Workload, of_columns, run_times, survey
 from raceway.scene.keys import continuous_keys
-from raceway.scene.scene import Scene, SceneSource, plain_tables, scene_from_dict
+from raceway.scene.scene import Scene, SceneSource, scene_from_dict
 from raceway.storage.files import writable
 from raceway.storage.tables import ReadTables, Tables
 
@@ -52,7 +53,7 @@ _SHARED = 4
 class Point:
     """Callable on ``(number, point)``; the row of a run, whose content is ``{"values", "warnings"}``."""
 
-    tables: Tables  # of the scene
+    tables: ReadTables  # of the scene
     further: tuple[str, ...] = ()  # names of ``ENDS`` that are asked for
 
     def __call__(self, task: tuple[int, Tables], registry: Registry) -> Row:
@@ -62,7 +63,7 @@ class Point:
         wall, cpu = time.perf_counter(), time.process_time()
         state, reason, content, cost = "failed", "", Tables(), Tables()
         try:
-            result = run(scene_from_dict(tables_at(self.tables, point, registry), registry), registry)
+            result = run(Base(self.tables, registry).scene_at(point), registry)
             infinite = [name for name, value in result.quantities.items() if np.isposinf(value).all()]
             ends = {name: ENDS[name].of(result) for name in self.further}
             values = values_of(result) | {name: value for name, value in ends.items() if value is not None}
@@ -105,15 +106,15 @@ def _block_row(first: int, answer: Columns, reasons: dict[int, str], times: Read
     return Row(f"{first}:{first + len(status)}", "done", json.dumps(reasons), answer, {**counts, **times})
 
 
-def _column_function(tables: ReadTables, scene: Scene, design: Design, registry: Registry) -> Function | None:
+def _column_function(base: Base, scene: Scene, design: Design) -> Function | None:
     """All columns of a sweep as a function of its keys; None where points need runs of their own.
 
-    tables : of the scene;  scene : at the first point
+    scene : at the first point
     """
     keys = {key.path for key in continuous_keys(scene)}
     if not all(axis.numeric and axis.key in keys for axis in design.axes):
         return None
-    of_plugins = stated_columns(scene, registry)
+    of_plugins = stated_columns(scene, base.registry)
     moving, tilts = scene.excitation is not None, scene.supports.tilt != "locked"
     outputs = [name for name in COLUMNS if name in QUANTITIES and (moving or name not in MOVING)]
     left_out = [] if tilts else [KYY_TILTS_FOLLOW.name]
@@ -123,17 +124,16 @@ def _column_function(tables: ReadTables, scene: Scene, design: Design, registry:
     function = Function(scene, design.keys, tuple(outputs), threads=usable_cores())
     # What bodies that deform are off by is known to runs alone.
     quick = not function.why_slow and function.contacts_alone
-    return function if quick and _alone(function, tables, design, registry) else None
+    return function if quick and _alone(function, base, design) else None
 
 
-def _alone(function: Function, tables: ReadTables, design: Design, registry: Registry) -> bool:
+def _alone(function: Function, base: Base, design: Design) -> bool:
     """Whether the numbers of a point change nothing else in the scene, looked at where each is least and largest."""
     for axis in design.axes:
         for number in (int(axis.column.argmin()), int(axis.column.argmax())):
             point = {**design.point(0), axis.key: axis.values[number]}
             try:
-                read = scene_from_dict(tables_at(tables, point, registry), registry).to_dict()
-                if read != function.scene_at(point).to_dict():
+                if base.scene_at(point).to_dict() != function.scene_at(point).to_dict():
                     return False
             except SceneError:  # seen where all numbers of a point are known
                 continue
@@ -144,7 +144,7 @@ def _alone(function: Function, tables: ReadTables, design: Design, registry: Reg
 class Sweep:
     """A sweep that was looked over: what is computed, where it goes, and what is there already."""
 
-    tables: Tables
+    base: Base
     design: Design
     store: Path
     plugins: tuple[str, ...]
@@ -171,12 +171,11 @@ def prepare(
     files, further = tuple(str(Path(file).resolve()) for file in plugins), tuple(quantities)
     for name in further:
         member("quantities", name, ENDS)
-    registry = registry_of(files)
-    tables = plain_tables(scene, registry=registry)
+    base = Base.of(scene, registry_of(files))
     swept = axes if isinstance(axes, Design) else grid(axes) if isinstance(axes, Mapping) else listed_points(axes)
-    design = design_in_units(swept, tables, registry)
+    design = base.in_units(swept)
     try:
-        overview = survey(tables, design, registry)
+        overview = survey(base, design)
     except SceneError as error:
         # Who asks for a motion at speed 0 is told how a stiffness from 0 r/min is had.
         more = (f". {_FROM_ZERO}" if each.path == SPEED and each.value == 0 else "" for each in error.mistakes)
@@ -185,21 +184,24 @@ def prepare(
     for note in overview.notes:
         warnings.warn(note, stacklevel=2)
     # Intervals are known to runs alone.
-    function = None if files or further else _column_function(tables, overview.scene, design, registry)
+    function = None if files or further else _column_function(base, overview.scene, design)
     facts = {
         "scene": overview.scene.to_dict(),
-        "given": tables_at(tables, design.point(0), registry),
+        "given": base.tables_at(design.point(0)),
         "design": design.to_dict(),
         "block": 0 if function is None else _SHARED * BLOCK[function.moving],
         "quantities": {
             name: each.labels
-            for name, each in (*stated_columns(overview.scene, registry).items(), *((name, ENDS[name]) for name in further))
+            for name, each in (
+                *stated_columns(overview.scene, base.registry).items(),
+                *((name, ENDS[name]) for name in further),
+            )
         },
-        "identity": identity(registry, overview.used),
+        "identity": identity(base.registry, overview.used),
         "files": overview.files,
     }
     if any(key.rpartition(".")[2] == "kind" for key in design.keys):
-        facts["tables"] = dict(tables)  # options of kinds that the first point does not have
+        facts["tables"] = dict(base.tables)  # options of kinds that the first point does not have
     if exists(store):
         with open_store(store) as present:
             _refuse_other(present, facts, store)
@@ -211,7 +213,7 @@ def prepare(
                 )
     elif (store / "results.nc").exists():
         raise RacewayError(f"`{store}` holds a results.nc that is not of a sweep: choose another folder with --out.")
-    return Sweep(tables, design, store, files, facts, function, further)
+    return Sweep(base, design, store, files, facts, function, further)
 
 
 def refuse_large(task: Sweep, executor: Executor, force: bool) -> None:
@@ -230,13 +232,13 @@ def refuse_large(task: Sweep, executor: Executor, force: bool) -> None:
 
 def workload(task: Sweep, executor: Executor, planned: int = 100) -> Workload:
     """What is not finished yet: its size, and its time as that of so many planned points; nothing is computed."""
-    design, function, registry, present = task.design, task.function, registry_of(task.plugins), 0
+    design, function, present = task.design, task.function, 0
     if exists(task.store):
         with open_store(task.store) as store:
             present = design.size - store.status()["waiting"]
     title, left = str(task.facts["scene"]["title"]), design.size - present
     if function is None:
-        seconds, refusals = run_times(left, lambda n: tables_at(task.tables, design.point(n), registry), registry, planned)
+        seconds, refusals = run_times(left, lambda n: task.base.scene_at(design.point(n)), planned)
         return Workload(
             title, design.size, seconds / getattr(executor, "workers", 1), runs=left - refusals, refused=refusals, stored=present,
             disk_bytes=_RUN_BYTES * design.size, why_runs="an axis, the scene or a quantity that no compiled loop takes",
@@ -273,11 +275,10 @@ def fill_store(
             return count
 
         if task.function is not None:
-            at_first = tables_at(task.tables, design.point(0), registry_of(task.plugins))
             blocks = [ends for key, ends in edges.items() if key in waiting]
             count = design.size - sum(last - first for first, last in blocks)
             batches = ((k, [(first, design.columns(first, last))]) for k, (first, last) in enumerate(blocks))
-            for k, answer in _rows(executor, task, _Block(at_first, task.function.outputs), batches):
+            for k, answer in _rows(executor, task, _Block(task.facts["given"], task.function.outputs), batches):
                 first, last = blocks[k]
                 leftover = {"status": np.full(last - first, PointStatus.FAILED)}  # with its worker: to runs
                 store.put([_block_row(first, leftover, {}, {}) if isinstance(answer, Lost) else answer])
@@ -293,7 +294,7 @@ def fill_store(
             numbers = [number for number in range(design.size) if number in waiting]
         count = design.size - len(numbers)
         batches = ((n, [(n, design.point(n))]) for n in numbers)
-        for n, answer in _rows(executor, task, Point(task.tables, task.further), batches):
+        for n, answer in _rows(executor, task, Point(task.base.tables, task.further), batches):
             store.put([Row(n, "failed", answer.reason, {}, {}) if isinstance(answer, Lost) else answer])
             count = advance(count + 1)
     return open_store(task.store)

@@ -13,19 +13,19 @@ import numpy as np
 from raceway.answers.answer import Answer, Part
 from raceway.answers.table import Row, Words, sections
 from raceway.errors import Mistake, RacewayError, SceneError
-from raceway.framework.loading.registry import Registry
 from raceway.framework.shown import duration
 from raceway.planning.parts import START_S, slowness
 from raceway.planning.plan import column_time, make_plan
-from raceway.points.axes import Design, tables_at
+from raceway.points.axes import Design
+from raceway.points.base import Base
 from raceway.points.engine import plugins_of
 from raceway.points.function import BLOCK, Function
 from raceway.points.store import Store, connected, exists, files_of
 from raceway.scene.keys import continuous_keys
-from raceway.scene.scene import Scene, scene_from_dict
+from raceway.scene.scene import Scene
 from raceway.scene.tables import PLUGIN_TABLES, TABLES
 from raceway.storage.files import size_words
-from raceway.storage.tables import ReadTables, Tables
+from raceway.storage.tables import Tables
 
 _MOST_MISTAKES = 10
 
@@ -40,19 +40,19 @@ class _Survey:
     notes: tuple[str, ...]  # options that are left out where another kind does not know them
 
 
-def survey(tables: ReadTables, design: Design, registry: Registry) -> _Survey:
+def survey(base: Base, design: Design) -> _Survey:
     """Check every value of a grid, each at the first values of the others, or every point of a list.
 
     SceneError: The scene's mistakes, and those of the values: an unknown key, a wrong type.  What only two values together make
         impossible is a failed point.
     """
     notes: list[str] = []
-    first = scene_from_dict(tables_at(tables, design.point(0), registry, notes), registry)
+    first = base.scene_at(design.point(0), notes)
     plugins, files, mistakes = set(plugins_of(first)), set(files_of(first)), []
     numbers = {key.path for key in continuous_keys(first)} & {axis.key for axis in design.axes if axis.numeric}
     for where, axis_key, point in _others(design, numbers):
         try:
-            scene = scene_from_dict(tables_at(tables, point, registry, notes), registry)
+            scene = base.scene_at(point, notes)
         except SceneError as error:
             own = list[Mistake](error.mistakes if design.listed else ())
             # Of a grid those that the value makes by itself: of a swept key, or of its whole table where no other axis has a part.
@@ -172,16 +172,13 @@ class Workload(Answer):
         yield from self.remarks
 
 
-def run_times(
-    count: int, tables_at: Callable[[int], ReadTables], registry: Registry, planned: int = 100
-) -> tuple[float, int]:
+def run_times(count: int, scene_at: Callable[[int], Scene], planned: int = 100) -> tuple[float, int]:
     """Predicted time of runs, one after another in a process [s], and how many of them rules refuse: of so many ``planned`` ones."""
     seconds, refusals, bodies = 0.0, 0, dict[str, float]()
     looked_at = np.unique(np.linspace(0, count - 1, min(count, planned)).astype(int)).tolist()
     for number in looked_at:
         try:
-            scene = scene_from_dict(tables_at(number), registry)
-            plan = make_plan(scene)
+            plan = make_plan(scene := scene_at(number))
         except RacewayError:
             refusals += 1
             continue

@@ -290,8 +290,8 @@ def workload(design: Design, processes: int, kept: Path | None, registry: Regist
     starts = {setting: design.point(setting, load, speed, registry) for setting, load, speed in points}
     loops = [setting for setting, start in starts.items() if loop_of([start], registry)[0] is not None]
     alone, looped = ([point for point in points if (point[0] in loops) == loop] for loop in (False, True))
-    runs_s, refusal = run_times(len(alone), lambda n: design.point(*alone[n], registry), registry)
-    again_s, refused = run_times(len(looped), lambda n: design.point(*looped[n], registry), registry)
+    runs_s, refusal = run_times(len(alone), lambda n: scene_from_dict(design.point(*alone[n], registry), registry))
+    again_s, refused = run_times(len(looped), lambda n: scene_from_dict(design.point(*looped[n], registry), registry))
     size, seconds = (
         sum(len(design.speeds_of(setting)) for group in groups for setting, _ in group),
         runs_s + _AGAIN * again_s,

@@ -241,7 +241,7 @@ def rig(
     items = [Item(row_key(scene, registry, [*about, *p, k]), f"{p[1]:.0f} r/min, {p[0]:.0f} N", (k, p)) for k, p in grid]
     if plan:
         count, stored_count = len(items), stored_rows(kept, [item.key for item in items])
-        seconds, _ = run_times(_RUNS * (count - stored_count), lambda _: scene.to_dict(), registry, planned=1)
+        seconds, _ = run_times(_RUNS * (count - stored_count), lambda _: scene, planned=1)
         seconds, why = seconds + _SIGNALS_S * count, f"about {_RUNS} of each point"
         return Workload(scene.title, count, seconds, runs=count - stored_count, stored=stored_count, why_runs=why)
     bearings = {axial: bearing(scene, axial, registry) for axial in inputs.axial_loads}
