@@ -5,5 +5,6 @@ and what the fault does.  ``make mutants`` puts each into a copy of the sources 
 
 faults      the table
 trial       a fault in a copy of the sources, and its tests
+warm        the process that runs them
 kernels     compiled kernels that a fault leaves as they are
 """

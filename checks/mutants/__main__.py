@@ -6,11 +6,15 @@ compares the table with the sources.
 
 import argparse
 import sys
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from checks.mutants.faults import TABLE, Fault, chosen
 from checks.mutants.trial import QUICK, Verdict, copied
+
+#: Tests without a fault run in so many processes, one after another in each copy.
+PARTS = 12
 
 
 def main(words: list[str]) -> int:
@@ -34,36 +38,46 @@ def main(words: list[str]) -> int:
         for fault in faults:
             print(f"{fault.file}: {fault.does} ({', '.join(fault.tests)})")
         return 0
-    with ThreadPoolExecutor() as pool:
-        parts = list(pool.map(lambda part: tried(part, options.quick), (faults[::2], faults[1::2])))
-    survived = [verdict for part in parts for verdict in part if not verdict.caught]
+    verdicts = tried(faults, options.quick)
+    survived = [verdict for verdict in verdicts if not verdict.caught]
     for verdict in survived:
-        _show(verdict)
+        _shown(verdict)
     print(f"{len(faults) - len(survived)} of {len(faults)} caught")
     return 1 if survived else 0
 
 
 def tried(faults: list[Fault], quick: bool) -> list[Verdict]:
-    """Verdicts on faults, put into a copy of the sources one after another; shown as they come.
+    """Verdicts on faults, each put into one of two copies of the sources; shown as they come.
 
     Raises
     ------
     SystemExit
         A test fails without any fault.
     """
-    verdicts = []
-    with copied() as copy:
-        if failing := copy.unharmed(faults, quick):
-            sys.exit(f"fails without any fault: {failing}")
-        for fault in faults:
-            verdicts.append(copy.trial(fault, quick))
-            _show(verdicts[-1])
-    return verdicts
+    tests = sorted({test for fault in faults for test in fault.tests})
+    files = sorted({test.partition("::")[0] for test in tests})
+    parts = iter(
+        [[test for test in tests if test.partition("::")[0] in files[k::PARTS]] for k in range(min(PARTS, len(files)))]
+    )
+    waiting = iter(faults)
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        ThreadPoolExecutor() as pool,
+        copied(Path(folder)) as one,
+        copied(Path(folder), 1) as other,
+    ):
+        both = one, other  # which take from one iterator
+        failing = pool.map(lambda copy: [why for part in parts if (why := copy.unharmed(part, quick))], both)
+        if why := [why for half in failing for why in half]:
+            sys.exit(f"fails without any fault: {why[0]}")
+        shown = pool.map(lambda copy: [_shown(copy.trial(fault, quick)) for fault in waiting], both)
+        return [verdict for half in shown for verdict in half]
 
 
-def _show(verdict: Verdict) -> None:
+def _shown(verdict: Verdict) -> Verdict:
     word, fault = "caught  " if verdict.caught else "SURVIVED", verdict.fault
     print(f"{word} {fault.file}: {fault.does} ({verdict.how})", flush=True)
+    return verdict
 
 
 if __name__ == "__main__":

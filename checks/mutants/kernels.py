@@ -1,33 +1,15 @@
 """Compiled kernels of the sources without a fault, for the trial of a fault that does not touch them.
 
 The cache has a folder for each state of the core's sources, and a fault is another state: all would be compiled anew, which takes
-longer than the tests.  What a kernel was compiled from is its file and what that imports; the rest is carried over.
+longer than the tests.  What a kernel was compiled from is its file and what that imports; the rest is carried over, also to another place.
 """
 
 import ast
-import subprocess
-import sys
+import hashlib
 from functools import cache
 from pathlib import Path
 
-from checks.mutants.faults import ROOT
-
-#: Run in the faulty sources, whose key is part of the digest that every file of a kernel needs: links beside new digests.
-_CARRY = """
-import os, sys
-from pathlib import Path
-from raceway.storage.kernel_cache import current_folder, make
-from raceway.storage.kernel_cache import _DIGEST, _digest
-folder = current_folder()
-make(folder)
-for line in sys.stdin.read().splitlines():
-    old = Path(line)
-    new = folder / old.parent.name / old.name
-    new.parent.mkdir(exist_ok=True)
-    if not new.exists():
-        os.link(old, new)
-        new.with_name(new.name + _DIGEST).write_text(_digest(new), encoding="ascii")
-"""
+from checks.mutants.faults import ROOT, Fault
 
 
 def _module(path: Path) -> str:
@@ -46,11 +28,16 @@ def _places() -> dict[str, str]:
 
 
 @cache
+def _sources() -> list[Path]:
+    return [path for name in ("raceway", "packages", "tests", "checks") for path in (ROOT / name).rglob("*.py")]
+
+
+@cache
 def _imported() -> dict[Path, set[str]]:
     """The modules, and names taken from modules, that each file of the sources imports."""
     found: dict[Path, set[str]] = {}
     places = _places()
-    for path in [path for name in ("raceway", "packages", "tests", "checks") for path in (ROOT / name).rglob("*.py")]:
+    for path in _sources():
         names = found.setdefault(path, set())
         more: list[ast.AST] = [ast.parse(path.read_text(encoding="utf-8"))]
         while more:  # statements alone, a fifth of all nodes
@@ -65,6 +52,7 @@ def _imported() -> dict[Path, set[str]]:
     return found
 
 
+@cache
 def touched(file: str) -> set[Path]:
     """A file of the sources and all that import it, also through others."""
     found: set[Path] = set()
@@ -76,14 +64,35 @@ def touched(file: str) -> set[Path]:
     return found
 
 
-def carry_over(good: Path, place: Path, file: str, environment: dict[str, str]) -> None:
-    """Link the kernels in ``good`` that a fault in ``file`` leaves as they are into the cache of the faulty sources at ``place``."""
-    stale = {(path.parent.name, path.stem) for path in touched(file)}
-    kept = [
-        path
-        for path in sorted(good.glob("kernels/*/*/*.nb[ic]"))
-        if (path.parent.name.rpartition("_")[0], path.name.partition(".")[0]) not in stale
-    ]
-    subprocess.run(
-        [sys.executable, "-c", _CARRY], cwd=place, env=environment, input="\n".join(map(str, kept)), text=True, check=True
-    )
+def folder_of(sources: Path) -> str:
+    """numba's folder for the kernels of a folder of sources: another for each place."""
+    return f"{sources.name}_{hashlib.sha1(str(sources).encode()).hexdigest()}"
+
+
+def kept(places: dict[Path, Path], fault: Fault | None = None) -> list[tuple[str, str]]:
+    """Kernels that a fault leaves as they are: the folder of their sources, and each file.
+
+    places : roots of equal sources, and the folder of the kernels of each
+    """
+    stale = touched(fault.file) if fault else set()
+    found = {}
+    for sources in {path.parent for path in _sources()}:
+        part = sources.relative_to(ROOT)
+        for place, folder in places.items():
+            for path in (folder / folder_of(place / part)).glob("*.nb[ic]"):
+                if sources / f"{path.name.partition('.')[0]}.py" not in stale:
+                    found[part, path.name] = str(part), str(path)
+    return list(found.values())
+
+
+def carry_over(kernels: list[tuple[str, str]]) -> None:
+    """Link files of kernels into this process's cache; of faulty sources, whose key is part of the digest that every file needs."""
+    from raceway.storage.kernel_cache import _DIGEST, _digest, current_folder, make
+
+    make(current_folder())
+    for part, old in kernels:
+        new = current_folder() / folder_of(Path.cwd() / part) / Path(old).name
+        new.parent.mkdir(exist_ok=True)
+        if not new.exists():
+            new.symlink_to(old)
+            new.with_name(new.name + _DIGEST).write_text(_digest(new), encoding="ascii")

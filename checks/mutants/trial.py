@@ -1,29 +1,40 @@
 """A fault in a copy of the sources, and what its tests say."""
 
+import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from itertools import count
 from pathlib import Path
 
 import attrs
 
 from checks.mutants.faults import ROOT, Fault
-from checks.mutants.kernels import carry_over
+from checks.mutants.kernels import kept
+from raceway.storage.kernel_cache import current_folder
 
 #: Time for the tests of one fault [s]: none takes a tenth of it without a fault.
-LIMIT_S = 600.0
+LIMIT_S = 600
 #: What the tests need of the sources.
 COPIED = (
     "raceway", "packages", "tests", "checks", "examples", "docs", "README.md", "CHANGELOG.md",
     "pyproject.toml", "Makefile", "conftest.py",
 )  # fmt: skip
+#: What most tests import that is not of the sources.
+LIBRARIES = (
+    "numpy", "scipy.interpolate", "scipy.linalg", "scipy.optimize", "scipy.sparse.linalg", "scipy.special", "numba", "pytest", "rich",
+    "xarray", "numba.np.arrayobj", "matplotlib.pyplot", "click", "cattrs.preconf.json", "PIL.Image", "xdist.plugin",
+)  # fmt: skip
 #: What `make test` runs.
 QUICK = "not slow and not docs and not night and not release and not ross"
 _FAILED, _NONE_LEFT = 1, 5
+#: Of faulty files [s], one for each: compiled files tell by time and size what is theirs.
+_TIMES = count()
 
 
 @attrs.frozen
@@ -43,51 +54,34 @@ class Verdict:
 
 @attrs.frozen
 class Copy:
-    """A copy of the sources, with a cache folder of its own for each state of them.
+    """A copy of the sources.
 
     Attributes
     ----------
-    place : root of the copied sources;  good : folder of the kernels of the sources without a fault, once they were needed
+    place : root of the copied sources;  good : the cache of the sources without a fault;  warm : the process that runs tests here
+    places : roots of the same sources, and the folder of the kernels of each
     """
 
     place: Path
     good: Path
+    places: dict[Path, Path]
+    warm: subprocess.Popen[str]
 
-    def pytest(self, tests: list[str], cache: Path, quick: bool, limit: float | None = LIMIT_S) -> tuple[int, str]:
-        """Exit code of pytest (-1: beyond the limit) and its output."""
-        words = [
-            "-m",
-            "pytest",
-            "-q",
-            "-x",
-            "-p",
-            "no:cacheprovider",
-            "-p",
-            "no:checks.processor_time",
-        ]  # a fault may take its time
-        command = [sys.executable, *words, *(["-m", QUICK] if quick else []), *tests]
-        try:
-            done = subprocess.run(
-                command, cwd=self.place, env=self.environment(cache), capture_output=True, text=True, timeout=limit
-            )
-        except subprocess.TimeoutExpired:
-            return -1, ""
-        return done.returncode, done.stdout + done.stderr
+    def pytest(
+        self, tests: Iterable[str], cache: Path, quick: bool, kernels: list[tuple[str, str]], limit: int = 0
+    ) -> tuple[int, str]:
+        """Exit code of pytest (that of ``SIGALRM``: beyond the limit) and its output."""
+        plugins = ["-p", "no:cacheprovider", "-p", "no:checks.processor_time"]  # a fault may take its time
+        words = ["-q", "-x", *plugins, *(["-m", QUICK] if quick else []), *tests]
+        with tempfile.NamedTemporaryFile("r", encoding="utf-8") as output:
+            job = {"cache": str(cache), "kernels": kernels, "words": words, "output": output.name, "limit": limit}
+            assert self.warm.stdin and self.warm.stdout
+            print(json.dumps(job), file=self.warm.stdin, flush=True)
+            return int(self.warm.stdout.readline()), output.read()
 
-    def environment(self, cache: Path) -> dict[str, str]:
-        """What the tests run under: these sources, this cache."""
-        return {
-            **os.environ,
-            "PYTHONPATH": os.pathsep.join(map(str, (self.place, *sorted(self.place.glob("packages/*"))))),
-            "RACEWAY_CACHE_DIR": str(cache),
-        }
-
-    def unharmed(self, faults: list[Fault], quick: bool = False) -> str:
-        """What fails of the faults' tests without any fault; empty when all pass, as they must."""
-        tests = sorted({test for fault in faults for test in fault.tests})
-        if not tests:
-            return ""
-        code, output = self.pytest(tests, self.good, quick, limit=None)
+    def unharmed(self, tests: Iterable[str], quick: bool = False) -> str:
+        """What fails of tests without any fault; empty when all pass, as they must."""
+        code, output = self.pytest(tests, self.good, quick, kept(self.places))
         return "" if code in (0, _NONE_LEFT) else _first_failure(output) or output[-300:]
 
     def trial(self, fault: Fault, quick: bool = False) -> Verdict:
@@ -95,40 +89,43 @@ class Copy:
         path = self.place / fault.file
         good, before = path.read_text(encoding="utf-8"), path.stat()
         path.write_text(fault.put(good), encoding="utf-8")
+        os.utime(path, (0, next(_TIMES)))
         try:
-            with tempfile.TemporaryDirectory(dir=self.place.parent) as folder:
-                cache = Path(folder)
-                if fault.file.startswith("raceway/core/"):
-                    carry_over(self.good, self.place, fault.file, self.environment(cache))
-                else:  # another key would mean other kernels
-                    cache = self.good
-                code, output = self.pytest(list(fault.tests), cache, quick)
+            with tempfile.TemporaryDirectory(dir=self.place.parent) as cache:
+                code, output = self.pytest(fault.tests, Path(cache), quick, kept(self.places, fault), LIMIT_S)
         finally:
             path.write_text(good, encoding="utf-8")
-            os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))  # compiled files tell by the time what is theirs
+            os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
         return Verdict(fault, *_judged(code, output))
 
 
 @contextmanager
-def copied() -> Iterator[Copy]:
-    """A copy of the sources, in a temporary folder."""
-    with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder) / "sources"
-        place.mkdir()
-        for name in COPIED:
-            source = ROOT / name
-            if source.is_dir():
-                shutil.copytree(source, place / name, ignore=shutil.ignore_patterns("__pycache__"))
-            else:
-                shutil.copy2(source, place / name)
-        yield Copy(place, place.parent / "cache")
+def copied(folder: Path, number: int = 0) -> Iterator[Copy]:
+    """One of two copies of the sources in a temporary folder, which share the cache beside them; kernels of the user's cache serve both."""
+    good, one, other = (folder.resolve() / name for name in ("cache", "0", "1"))
+    kernels = good / "kernels" / current_folder().name
+    places = {ROOT: current_folder(), one: kernels, other: kernels}
+    place = (one, other)[number]
+    place.mkdir()
+    for name in COPIED:
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(source, place / name, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy2(source, place / name)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (place, *sorted(place.glob("packages/*")))))}
+    command = [sys.executable, "-m", "checks.mutants.warm", *LIBRARIES]
+    with subprocess.Popen(
+        command, cwd=place, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as warm:
+        yield Copy(place, good, places, warm)
 
 
 def _judged(code: int, output: str) -> tuple[bool, str]:
-    if code == -1:
+    if code == -signal.SIGALRM:
         return True, "beyond the limit of time"
-    if code == _FAILED:
-        return True, _first_failure(output) or "a test failed"
+    if code == _FAILED and (first := _first_failure(output)):
+        return True, first
     if code == _NONE_LEFT:
         return False, "no test of this tier"
     return False, "survived" if code == 0 else f"pytest ends with {code}: {output[-200:]}"

@@ -1,15 +1,16 @@
 """The table of deliberate faults fits the sources; ``make mutants`` tries all of them, here only one is."""
 
 import ast
+import shutil
 from functools import lru_cache
 from pathlib import Path
 
 import pytest
 
-from checks.mutants import trial
+from checks.mutants import kernels, trial
 from checks.mutants.__main__ import main
 from checks.mutants.faults import ROOT, TABLE, Fault, chosen, read_faults
-from checks.mutants.kernels import touched
+from raceway.storage.kernel_cache import current_folder
 
 FAULTS, STRANGERS = read_faults(), read_faults(TABLE.with_name("stranger.toml"))
 ARITHMETIC = (ast.Add, ast.Sub, ast.Mult, ast.Div, ast.Pow, ast.MatMult)
@@ -84,7 +85,7 @@ def test_words_choose_among_the_faults(capsys):
 
 @pytest.mark.slow
 def test_a_fault_touches_what_imports_its_file_and_nothing_else():
-    found = {str(path.relative_to(ROOT)) for path in touched("raceway/core/fem/hexahedron/stiffness.py")}
+    found = {str(path.relative_to(ROOT)) for path in kernels.touched("raceway/core/fem/hexahedron/stiffness.py")}
     assert {
         "raceway/core/fem/hexahedron/stiffness.py",
         "raceway/core/fem/hexahedron/operator.py",
@@ -99,21 +100,47 @@ def test_the_copy_has_what_configures_pytest():
     assert {"pyproject.toml", *(path.name for path in ROOT.glob("*.py"))} <= set(trial.COPIED)
 
 
+def test_kernels_that_a_fault_leaves_as_they_are_serve_at_another_place(monkeypatch, tmp_path):
+    """Of two kernels in a copy's cache one is compiled from the faulty file."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("RACEWAY_CACHE_DIR", str(tmp_path / "cache"))
+    place = Path("raceway/core/contact")
+    there = tmp_path / "before" / kernels.folder_of(Path("/other") / place)
+    there.mkdir(parents=True)
+    for name in ("hertz.f-1.py311.nbi", "other.g-1.py311.nbi"):
+        (there / name).write_text(name)
+    monkeypatch.setattr(kernels, "touched", lambda file: {ROOT / file})
+    places, fault = {Path("/other"): tmp_path / "before"}, Fault("raceway/core/contact/hertz.py", "", "", (), "")
+    assert [Path(path).name for _, path in kernels.kept(places, fault)] == ["other.g-1.py311.nbi"]
+    assert len(found := kernels.kept(places)) == 2
+    kernels.carry_over(found)
+    assert (
+        current_folder() / kernels.folder_of(tmp_path / place) / "hertz.f-1.py311.nbi"
+    ).read_text() == "hertz.f-1.py311.nbi"
+
+
 def test_a_caught_fault_is_told_from_one_that_survives(monkeypatch, tmp_path):
     """In sources of one function whose test sees its sign and not its size."""
     for name in trial.COPIED:
         (tmp_path / name).touch() if "." in name or name == "Makefile" else (tmp_path / name).mkdir()
     (tmp_path / "raceway/__init__.py").touch()
+    shutil.copytree(ROOT / "checks/mutants", tmp_path / "checks/mutants")
+    (tmp_path / "checks/__init__.py").touch()
     path = tmp_path / "raceway/some.py"
     path.write_text("def f(x):\n    return 2 * x\n")
     (tmp_path / "tests/test_some.py").write_text("from raceway.some import f\n\ndef test_sign():\n    assert f(1) > 0\n")
-    monkeypatch.setattr(trial, "ROOT", tmp_path)
+    for name, value in {"ROOT": tmp_path, "LIBRARIES": (), "kept": lambda *_: []}.items():
+        monkeypatch.setattr(trial, name, value)
     tests = ("tests/test_some.py::test_sign",)
-    sign, size = (Fault("raceway/some.py", "2 * x", text, tests, "") for text in ("-2 * x", "3 * x"))
-    with trial.copied() as copy:
-        assert copy.unharmed([sign, size]) == ""
+    forever = "__import__('time').sleep(99)"
+    effects = {"-2 * x": (True, tests[0]), "3 * x ": (False, "survived"), forever: (True, "beyond the limit of time")}
+    (tmp_path / "copies").mkdir()
+    with trial.copied(tmp_path / "copies") as copy:
+        assert copy.unharmed(tests) == ""
         before = path.stat().st_mtime_ns
-        verdicts = [copy.trial(fault) for fault in (sign, size)]
+        for becomes, verdict in effects.items():
+            monkeypatch.setattr(trial, "LIMIT_S", 1 if becomes == forever else 600)
+            one = copy.trial(Fault("raceway/some.py", "2 * x", becomes, tests, ""))
+            assert (one.caught, one.how) == verdict
         there = copy.place / "raceway/some.py"
         assert (there.read_text(), there.stat().st_mtime_ns) == (path.read_text(), before)
-    assert [(one.caught, one.how) for one in verdicts] == [(True, tests[0]), (False, "survived")]
