@@ -1,7 +1,8 @@
 """Compiled kernels of the sources without a fault, for the trial of a fault that does not touch them.
 
 The cache has a folder for each state of the core's sources, and a fault is another state: all would be compiled anew, which takes
-longer than the tests.  What a kernel was compiled from is its file and what that imports; the rest is carried over, also to another place.
+longer than the tests.  A kernel is compiled from the names in its statement, those in the statements that make them, and so on; the
+others are carried over, also to another place.
 """
 
 import ast
@@ -33,34 +34,61 @@ def _sources() -> list[Path]:
 
 
 @cache
-def _imported() -> dict[Path, set[str]]:
-    """The modules, and names taken from modules, that each file of the sources imports."""
-    found: dict[Path, set[str]] = {}
-    places = _places()
-    for path in _sources():
-        names = found.setdefault(path, set())
-        more: list[ast.AST] = [ast.parse(path.read_text(encoding="utf-8"))]
-        while more:  # statements alone, a fifth of all nodes
-            node = more.pop()
-            more += [one for part in ("body", "orelse", "handlers", "finalbody") for one in getattr(node, part, ())]
-            if isinstance(node, ast.Import):
-                names.update(alias.name for alias in node.names)
-            elif isinstance(node, ast.ImportFrom) and node.module:
-                names.add(node.module)
-                names.update(f"{node.module}.{alias.name}" for alias in node.names)
-        names |= {places[name] for name in names if name in places}
+def _statements(path: Path) -> list[tuple[range, set[str], set[str]]]:
+    """Lines of each statement of a file, the names that it makes, and those that it mentions, with their modules'."""
+    module, source = _module(path), path.read_text(encoding="utf-8")
+    tree, found = ast.parse(source), []
+    origin: dict[str, str] = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            origin |= {alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.Import):
+            origin |= {alias.asname: alias.name for alias in node.names if alias.asname}
+    for top in tree.body:
+        nodes = list(ast.walk(top))
+        names = [node for node in nodes if isinstance(node, ast.Name)]
+        mentioned = {origin.get(node.id, f"{module}.{node.id}") for node in names}
+        for node in nodes:
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in origin:
+                mentioned.add(f"{origin[node.value.id]}.{node.attr}")
+        if isinstance(top, (ast.FunctionDef, ast.ClassDef)):
+            made = {top.name}
+        elif isinstance(top, (ast.Import, ast.ImportFrom)):
+            made = {alias.asname or alias.name for alias in top.names}
+            mentioned |= {origin[name] for name in made if name in origin}
+        else:
+            made = {node.id for node in names if isinstance(node.ctx, ast.Store)} or {node.id for node in names}
+        first = min([top.lineno, *(node.lineno for node in getattr(top, "decorator_list", ()))])
+        found.append((range(first, (top.end_lineno or first) + 1), {f"{module}.{name}" for name in made}, mentioned))
     return found
 
 
 @cache
-def touched(file: str) -> set[Path]:
-    """A file of the sources and all that import it, also through others."""
-    found: set[Path] = set()
-    more = {ROOT / file}
+def _users() -> dict[str, set[str]]:
+    """Names -> the names whose statements mention them."""
+    found: dict[str, set[str]] = {}
+    for name, place in _places().items():
+        found.setdefault(f"{place}.{name.rpartition('.')[2]}", set()).add(name)
+    for path in _sources():
+        if path.is_relative_to(ROOT / "tests") and "@jit" not in path.read_text(encoding="utf-8"):
+            continue  # a fifth of the time
+        for _, made, mentioned in _statements(path):
+            for name in mentioned:
+                found.setdefault(name, set()).update(made)
+    return found
+
+
+def touched(fault: Fault) -> set[str]:
+    """Names that the faulty statement makes and those made of them, also through others."""
+    path, found = ROOT / fault.file, set[str]()
+    start = path.read_text(encoding="utf-8").partition(fault.was)[0].count("\n") + 1
+    lines = set(range(start, start + 1 + fault.was.strip("\n").count("\n")))
+    more = {
+        name for there, made, _ in (_statements(path) if path.suffix == ".py" else ()) if lines & set(there) for name in made
+    }
     while more:
         found |= more
-        names = {_module(path) for path in more}
-        more = {path for path, imported in _imported().items() if names & imported} - found
+        more = set().union(*(_users().get(name, ()) for name in more)) - found
     return found
 
 
@@ -74,13 +102,14 @@ def kept(places: dict[Path, Path], fault: Fault | None = None) -> list[tuple[str
 
     places : roots of equal sources, and the folder of the kernels of each
     """
-    stale = touched(fault.file) if fault else set()
+    stale = touched(fault) if fault else set()
     found = {}
     for sources in {path.parent for path in _sources()}:
         part = sources.relative_to(ROOT)
         for place, folder in places.items():
             for path in (folder / folder_of(place / part)).glob("*.nb[ic]"):
-                if sources / f"{path.name.partition('.')[0]}.py" not in stale:
+                stem, name = path.name.partition("-")[0].split(".")[:2]
+                if f"{_module(sources / stem)}.{name}" not in stale:
                     found[part, path.name] = str(part), str(path)
     return list(found.values())
 
