@@ -159,4 +159,4 @@ def test_a_browser_that_is_missing_is_named(monkeypatch):
 def test_the_data_of_the_page_are_json(page):
     text = page("view").read_text(encoding="utf-8")
     data = json.loads(text.split('type="application/json">')[1].split("</script>")[0])
-    assert len(data["balls"]) == 12 and set(data["shapes"]) >= {"ball", "ring 0"}
+    assert len(data["balls"]) == 12 and set(data["fixed_shapes"]) >= {"ball", "ring 0"}

@@ -101,7 +101,10 @@ class Browser:
             self.driver.get_log(log)  # of the page before
         self.driver.get(path.resolve().as_uri())
         self.run("return Promise.all([...document.images].map((e) => e.decode().catch(() => null)))")
-        console = [entry["message"] for entry in self.driver.get_log("browser")]
+        lines = [entry["message"] for entry in self.driver.get_log("browser")]
+        console = [
+            line for line in lines if "GL Driver Message (OpenGL, Performance" not in line
+        ]  # of the machine, not the page
         events = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         asked = [e["params"]["request"]["url"] for e in events if e["method"] == "Network.requestWillBeSent"]
         foreign = [address for address in asked if not address.startswith("data:") and address != path.resolve().as_uri()]
