@@ -24,19 +24,9 @@ from raceway.extend import Tables
 from raceway_article.design import FRICTION_WORDS, MEASURES, ONE_WAY, ROTATING, TILT_WORDS, Curves
 from raceway_article.rules import BRIDGED, FAILED, HOLDS, LEVEL, NOT, PARTLY, UNTESTED, Finding, Verdict
 from raceway_article.courses import (
-    ABOUT,
-    course,
-    is_about,
-    change_within,
-    load_effect,
+    ABOUT, NEAREST, Exponent, change_within, course, influence, influence_grows, is_about, load_effect, power_exponent,
     rises_with_load,
-    influence,
-    influence_grows,
-    Exponent,
-    power_exponent,
-    NEAREST,
-)
-
+)  # fmt: skip
 
 #: What the text of the article states: deviations of peak pressures; effects of the axial load in two zones of w*.
 _LARGEST_DEVIATION, _HEAVIEST_DEVIATION = 0.0242, 0.0033
@@ -52,8 +42,6 @@ _READINGS = {
 
 #: Number, claim, rule, what was computed, outcomes of the rule.
 _Row = tuple[str, str, str, str, list[Finding]]
-
-
 _ORDER = ("friction", "tilt", "inertia", "bodies", "speed", "load")
 
 
@@ -279,9 +267,7 @@ def _axial(curves: Curves, measure: str) -> list[_Row]:
     rows: list[_Row] = []
     expectation = f"about {_LOW_EFFECT:.0%} and about {_HIGH_EFFECT:.0%} (each within {ABOUT:.0%} of the number); {BRIDGED}"
     for number, (claim, words) in _READINGS.items():
-        zones = []
-        for zone in ("low", "high"):
-            zones.append([Finding(e.at, _as_claimed(e), getattr(e, zone), e.why) for e in effects[number]])
+        zones = [[Finding(e.at, _as_claimed(e), getattr(e, z), e.why) for e in effects[number]] for z in ("low", "high")]
         low, high = (_by_tilt(findings, 100.0, " %", ".1f") for findings in zones)
         finding = f"low zone: {low}. High zone: {high}"
         rows.append((number, claim.format(measure), f"{words}: {expectation}", finding, zones[1]))
@@ -289,9 +275,7 @@ def _axial(curves: Curves, measure: str) -> list[_Row]:
     for at, low_effect, high_effect, why in effects["5c"]:
         growth = None if low_effect is None or high_effect is None else high_effect - low_effect
         grows.append(Finding(at, None if growth is None else growth > 0.0, growth, why))
-    finding = (
-        f"change of that effect from the low to the high zone, in points of percent: {_by_tilt(grows, 100.0, '', '+.1f')}"
-    )
+    finding = f"its change from the low to the high zone, in points of percent: {_by_tilt(grows, 100.0, '', '+.1f')}"
     rule = f"the effect of 5c is larger in the high zone than in the low one; {BRIDGED}"
     return [*rows, ("5e", f"The influence of axial load on {measure} grows with speed.", rule, finding, grows)]
 

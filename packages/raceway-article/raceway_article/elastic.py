@@ -21,13 +21,8 @@ from raceway.extend import (
 from raceway_article.design import RACES
 from raceway_article.elastic_design import BODIES, STEPS, ElasticDesign, ElasticRun
 from raceway_article.elastic_rows import (
-    difference_at_rest,
-    difference_in_motion,
-    over,
-    pressures_of,
-    row_of,
-    stiffness_numbers,
-)
+    difference_at_rest, difference_in_motion, over, pressures_of, row_of, stiffness_numbers,
+)  # fmt: skip
 from raceway_article.remaining_time import RemainingTime
 
 _REFERENCE = BODIES[0]

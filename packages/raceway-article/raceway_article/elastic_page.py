@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from raceway.extend import Cell, Page, ReadTables, Tables
+from raceway.extend import Cell, Page, ReadTables, Tables, leaves
 from raceway_article.design import EXPLICIT, RACES
 from raceway_article.figures import Panel, Picture, finish
 from raceway_article.page import percent, show_picture, shown
@@ -26,21 +26,10 @@ _NAMES = {"ball_loads": "a ball load, over the largest", "x": "x", "y": "y", "ky
 
 
 def columns(rows: Sequence[ReadTables]) -> list[Tables]:
-    """Flat rows without what is a table in other rows: its columns stay empty where there is none."""
-    flat_rows = [_flat(row) for row in rows]
+    """Flat rows, lists left to the JSON file, without what is a table in other rows: its columns stay empty where there is none."""
+    flat_rows = [{name: value for name, value in leaves(row) if not isinstance(value, list | dict)} for row in rows]
     inner = {name.rpartition(".")[0] for row in flat_rows for name in row}
     return [{name: value for name, value in row.items() if name not in inner} for row in flat_rows]
-
-
-def _flat(table: ReadTables, before: str = "") -> Tables:
-    """Numbers and words of nested tables, with their names joined by dots; lists are left to the JSON file."""
-    out: Tables = {}
-    for name, value in table.items():
-        if isinstance(value, dict):
-            out |= _flat(value, f"{before}{name}.")
-        elif not isinstance(value, list):
-            out[f"{before}{name}"] = value
-    return out
 
 
 def drawings(content: ReadTables) -> list[Picture]:
@@ -50,9 +39,7 @@ def drawings(content: ReadTables) -> list[Picture]:
     pictures = []
     if any(row["from_hertz"][race] is not None for row in static for race in RACES):
         panels = [_pressures_panel(race, [row for row in static if row["from_hertz"][race] is not None]) for race in RACES]
-        pictures.append(
-            Picture("article-elastic-pressures", "Peak pressure against Hertz at the same ball load", tuple(panels))
-        )
+        pictures.append(Picture("article-elastic-pressures", "Peak pressure against Hertz at the same load", tuple(panels)))
     if static:
         panels = [_loads_panel(case, of_case) for case, of_case in _by_case(static).items()]
         pictures.append(Picture("article-elastic-ball-loads", "Ball loads on the inner race", tuple(panels)))
@@ -211,10 +198,8 @@ def page(content: ReadTables, pictures: Sequence[Picture], section: bytes | None
     _stresses(out, static, section)
     out.section("Cost")
     out.rows([_cost_row(row) for row in content["rows"]], "Every run; elements of condensed bodies are none of the run")
-    words = (
-        "Runs go one at a time. What elastic bodies are factored into is stored on disk: later load cases and runs read it."
-    )
-    out.text(words, kind="note")
+    words = "What elastic bodies are factored into is stored on disk: later load cases and runs read it."
+    out.text(f"Runs go one at a time. {words}", kind="note")
     out.section("What differs between the bodies")
     out.listing(content["what_differs"])
     warnings = [
@@ -295,13 +280,9 @@ def in_short(content: ReadTables) -> list[str]:
         points.append(f"Explicit from implicit steps of elastic bodies (K, |Z|): at most {percent(max(apart, key=abs))}.")
     balance = [row["energy_balance"] for row in elastic if row["phase"] == "motion" and row["energy_balance"] is not None]
     if balance:
-        points.append(
-            f"The energy of the motions of elastic bodies is balanced to {max(balance):.1e} of what was exchanged."
-        )
+        points.append(f"The energy of the motions of elastic bodies balances to {max(balance):.1e} of what was exchanged.")
     if content["failed"]:
-        points.append(
-            f"{content['failed']} of {content['runs']} runs failed or were refused: the reasons stand under “Cost”."
-        )
+        points.append(f"{content['failed']} of {content['runs']} runs failed or were refused: reasons stand under “Cost”.")
     return points
 
 

@@ -69,9 +69,8 @@ class Picture:
                 handles |= zip([text.get_text() for text in legend.texts], legend.legend_handles, strict=True)
                 legend.remove()
         if handles:  # once for all panels
-            figure.legend(
-                handles.values(), handles.keys(), loc="outside lower center", ncols=min(len(handles), 3), frameon=False
-            )
+            abreast = min(len(handles), 3)
+            figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=abreast, frameon=False)
         figure.suptitle(wrapped(self.title, int(8.2 * figure.get_figwidth())), fontsize=12)
         return figure
 
@@ -179,9 +178,7 @@ def _excitations(curves: Curves, kind: str, tilt: str, measure: str, star: bool,
         known = np.isfinite(y := k(curve))
         return _line(w[known], y[known], style, colour, width, label, marked)
 
-    lines = [
-        bridged(curve, "--", _PAIRS[pair][0], 1.1, f"{_PAIRS[pair][3]}, {_LIGHT}", False) for pair, curve in light.items()
-    ]
+    lines = [bridged(k, "--", _PAIRS[pair][0], 1.1, f"{_PAIRS[pair][3]}, {_LIGHT}", False) for pair, k in light.items()]
     lines += [bridged(curve, style, colour, width, name)
               for curve, (colour, style, width, name) in ((curve, _PAIRS[pair]) for pair, curve in run.items())]  # fmt: skip
     # A ring does not stay on an unstable motion; limits are those of the others.
@@ -199,9 +196,7 @@ def _excitations(curves: Curves, kind: str, tilt: str, measure: str, star: bool,
     other = {f"{row['speed_rpm']:g}" for curve in run.values() for row in curve.rows if row.get("found") == "from rest"}
     if other:
         at = ", ".join(sorted(other, key=float))
-        caption += (
-            f" At {at} r/min stands the motion that a ring reaches from rest: on another branch than its neighbours K jumps."
-        )
+        caption += f" At {at} r/min stands the motion that a ring reaches from rest: on another branch K jumps."
     words = f"{label} over w* from 0 to 1, {TILT_WORDS[tilt]}: {_ends({_PAIRS[pair][3]: k(curve) for pair, curve in run.items()})}"
     return _panel(lines, (f"{TILT_WORDS[tilt]}, {load:g} N", _SPEED, label), 2, words, caption)
 
@@ -212,10 +207,8 @@ def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
     k, light = _with_and_without_inertia(curves, kind, tilt, star)
     label, lines, names = _STAR if star else _STIFFNESS, list[Line](), dict[str, np.ndarray]()
     for row, colour in zip(rows, _colours(len(rows)), strict=True):
-        lines += [
-            _line(w, k[row], "-", colour, 2.0, marked=False),
-            _line(w, light[row], "--", colour, 1.1, "" if names else _LIGHT, False),
-        ]
+        lines.append(_line(w, k[row], "-", colour, 2.0, marked=False))
+        lines.append(_line(w, light[row], "--", colour, 1.1, "" if names else _LIGHT, False))
         names[f"{curves.design.loads[row]:g} N"] = k[row]
 
     def ends(axes: Axes) -> None:
@@ -223,11 +216,8 @@ def _over_speed(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
             _reference(axes)
         axes.set_xlim(0.0, 1.2)
         axes.set_xticks([0.0, 0.25, 0.5, 0.75, 1.0])
-        name_ends(
-            axes,
-            [(float(line.y[-1]), name, line.style["color"]) for name, line in zip(names, lines[::2], strict=True)],
-            0.062,
-        )
+        marks = [(float(line.y[-1]), name, line.style["color"]) for name, line in zip(names, lines[::2], strict=True)]
+        name_ends(axes, marks, 0.062)
 
     words = f"{label} over w*, {TILT_WORDS[tilt]}, with ball inertia: {_ends(names)}"
     return _panel(lines, (TILT_WORDS[tilt], _SPEED, label), 1, words, more=ends)
@@ -248,9 +238,7 @@ def _over_load(curves: Curves, kind: str, tilt: str, star: bool) -> Panel:
 
 
 def _with_and_without_inertia(curves: Curves, kind: str, tilt: str, star: bool) -> list[np.ndarray]:
-    return [
-        _surface(curves, Setting(**ROTATING, tilt=tilt, inertia=inertia, bodies=kind), star) for inertia in (True, False)
-    ]
+    return [_surface(curves, Setting(**ROTATING, tilt=tilt, inertia=on, bodies=kind), star) for on in (True, False)]
 
 
 def _surface(curves: Curves, setting: Setting, star: bool) -> np.ndarray:
@@ -343,11 +331,8 @@ def _tilt_stiffness(ratios: Mapping[str, np.ndarray], shaft: float) -> Picture:
     lines = [_line(np.array(STIFFNESSES), ratio, "-", colour, 2.0, name) for (name, ratio), colour in colours]
     labels = "Hardening (above 1) or softening", "tilt stiffness of the shaft [N m/rad]", "k* at w* = 1"
     words = f"k* at the highest speed over the tilt stiffness, from next to free to next to locked: {_ends(ratios)}"
-    return Picture(
-        "tilt-stiffness",
-        "What decides the trend: the tilt stiffness of the shaft",
-        (_panel(lines, labels, 3, words, more=more),),
-    )
+    panel = _panel(lines, labels, 3, words, more=more)
+    return Picture("tilt-stiffness", "What decides the trend: the tilt stiffness of the shaft", (panel,))
 
 
 def _both_bodies(curves: Curves, tilt: str, star: bool) -> Panel:

@@ -51,9 +51,8 @@ def page(
     _verdicts(out, content)
     scene, speeds, loads = content["scene"], content["speeds_rpm"], content["axial_n"]
     excitation = scene["excitation"]
-    constant = (
-        f"{excitation['force']:g} N" if "force" in excitation else f"that at {excitation['reference_speed_rpm']:g} r/min"
-    )
+    force, speed = excitation.get("force"), excitation.get("reference_speed_rpm")
+    constant = f"that at {speed:g} r/min" if force is None else f"{force:g} N"
     out.section("What is computed")
     out.text(
         f"Without friction the steady orbit of the inner ring is solved for directly (integrator `periodic`) at {len(speeds)} speeds from "

@@ -1,6 +1,7 @@
 """Rows of a curve over speed, load or tilt stiffness: by the compiled loop where that decides, else by runs that continue each other."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -52,20 +53,14 @@ def rows_of_curve(points: Sequence[Tables], registry: Registry) -> list[Tables]:
         elif k >= len(steady):
             rows[k], _ = _point_row(points[k], registry, without_friction.get(at))
         else:
-            if follows and before in looped:
-                near = _neighbour(points[before], registry)
+            if follows and before in looped:  # the motion that the compiled loop found there, where a run finds it, too
+                near = None
+                with suppress(RacewayError):
+                    near = run(scene_from_dict(points[before], registry), registry, stay=True)
             row, result = _point_row(points[k], registry, near)
             rows[k], before, without_friction[at] = row, k, result
             near = result if row["status"] == Status.COMPLETED or row.get("found") == "directly" else near
     return [row for row in rows if row]
-
-
-def _neighbour(tables: Tables, registry: Registry) -> Result | None:
-    """The motion of a point that the compiled loop found, to continue; None where a run finds none."""
-    try:
-        return run(scene_from_dict(tables, registry), registry, stay=True)
-    except RacewayError:
-        return None
 
 
 def _looped(points: Sequence[Tables], registry: Registry) -> Sequence[Tables | None]:

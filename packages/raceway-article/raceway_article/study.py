@@ -239,15 +239,11 @@ class Article(Answer):
 
         yield Words(self.title, "bold")
         yield from lead(self.to_dict(), self.curves.design.scene_load)
-        yield [
-            {"": one.number, "claim": one.claim, "verdict": KINDS[one.kind][2], "where": one.where} for one in self.verdicts
-        ]
+        yield [{"": v.number, "claim": v.claim, "verdict": KINDS[v.kind][2], "where": v.where} for v in self.verdicts]
         if unsure := [verdict.number for verdict in self.verdicts if verdict.failed]:
             yield Words(f"some runs failed or are unstable: {', '.join(unsure)}; which ones: article.json", "dim")
         equal = sum(trend.holds for trend in self.trends)
-        yield Words(
-            f"quasi-static trends equal to an independent solver's printed digits: {equal} of {len(self.trends)}", "dim"
-        )
+        yield Words(f"quasi-static trends equal to a solver's printed digits: {equal} of {len(self.trends)}", "dim")
         cost = f"{self.runs} points, {len(self.failed)} failed; {self.seconds:.0f} s, {self.cpu_s:.0f} s of processor time"
         yield Words(cost + (f"; {self.reused} of {self.tasks} pieces taken from earlier" if self.reused else ""), "dim")
 
@@ -265,9 +261,8 @@ def _items(design: Design, registry: Registry) -> list[Item]:
         ends = points(_base("shaft", design.bodies), [load], [design.speeds[0], design.speeds[-1]])
         scan = [with_value(tables, "supports.tilt", stiffness) for stiffness in STIFFNESSES for tables in ends]
         tasks.append((f"tilt stiffness at {load:g} N", rows_of_curve, scan))
-    tasks += [
-        ("the rig's speeds", rows_of_curve, points(setting, RIG_LOADS, RIG_SPEEDS)) for setting in _rig_settings(design)
-    ]
+    for setting in _rig_settings(design):
+        tasks.append(("the rig's speeds", rows_of_curve, points(setting, RIG_LOADS, RIG_SPEEDS)))
     for group in design.curves():
         inputs = [tables for setting, load in group for tables in points(setting, [load], design.speeds_of(setting))]
         tasks.append(("curves over speed", rows_of_curve, inputs))
@@ -292,21 +287,11 @@ def workload(design: Design, processes: int, kept: Path | None, registry: Regist
     alone, looped = ([point for point in points if (point[0] in loops) == loop] for loop in (False, True))
     runs_s, refusal = run_times(len(alone), lambda n: scene_from_dict(design.point(*alone[n], registry), registry))
     again_s, refused = run_times(len(looped), lambda n: scene_from_dict(design.point(*looped[n], registry), registry))
-    size, seconds = (
-        sum(len(design.speeds_of(setting)) for group in groups for setting, _ in group),
-        runs_s + _AGAIN * again_s,
-    )
-    remark = (
-        f"Points of the loop that are unstable or far from linear are run in addition: counted are {_AGAIN:.0%} of them."
-    )
-    counts = (
-        size,
-        seconds / max(processes, 1),
-        max(len(looped) - refused, 0),
-        max(len(alone) - refusal, 0),
-        refusal + refused,
-        size - len(points),
-    )
+    size = sum(len(design.speeds_of(setting)) for group in groups for setting, _ in group)
+    seconds = (runs_s + _AGAIN * again_s) / max(processes, 1)
+    in_loop, in_runs = max(len(looped) - refused, 0), max(len(alone) - refusal, 0)
+    counts = size, seconds, in_loop, in_runs, refusal + refused, size - len(points)
+    remark = f"Points of the loop that are unstable or far from linear are run, too: counted are {_AGAIN:.0%} of them."
     return Workload(str(design.tables["title"]), *counts, why_runs="no compiled loop has them", remarks=(remark,))
 
 

@@ -61,10 +61,8 @@ class Trend:
 
     def row(self) -> Tables:
         """As a row of a flat table."""
-        table = self.to_dict()
-        numbers = {
-            f"{name}_{k}": value for name in ("expected", "computed") for k, value in enumerate(table.pop(name) or ())
-        }
+        table, parts = self.to_dict(), ("expected", "computed")
+        numbers = {f"{name}_{k}": value for name in parts for k, value in enumerate(table.pop(name) or ())}
         return {name: table.pop(name) for name in ("tilt", "load", "inertia", "why")} | numbers | table
 
 
