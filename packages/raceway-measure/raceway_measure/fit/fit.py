@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Annotated
 
 from raceway import SceneError, door
-from raceway.extend import PATHS, TEXTS, SceneSource, ShowProgress, as_scene, registry_with, telling
+from raceway.extend import PATHS, TEXTS, SceneSource, ShowProgress, Tables, as_scene, registry_with, telling
 from raceway_measure.fit.column_headers import FORCED, ORBIT, over_time
 from raceway_measure.fit.fitted import Fitted
 from raceway_measure.fit.identified import Identified
@@ -81,11 +81,16 @@ def fit(
         elif linear or over_time(headers_of(data, "data"), columns):
             record = signals_of(data, columns, FORCED if linear else ORBIT)
         signals = record if isinstance(record, Signals) else None
-        by_force = record is not signals or signals is not None and any(name.startswith("force") for name in signals.columns)
-        _refuse_foreign(
-            signals, by_force or linear, scene is not None, mass is not None, slow_roll is not None or run_out is not None
-        )
-        if record is not None and (by_force or linear):
+        forced = record is not signals or signals is not None and any(name.startswith("force") for name in signals.columns)
+        by_force = forced or linear
+        if by_force and scene is not None:
+            raise SceneError.at("scene", None, "a record of force and displacement is fitted by a linear model: omit it")
+        if (slow_roll is not None or run_out is not None) and (by_force or signals is None):
+            kind = "without a force" if by_force else "over time; the data are a table"
+            raise SceneError.at("slow roll", None, f"belongs to the signals of a rig, {kind}")
+        if mass is not None and not by_force:
+            raise SceneError.at("mass", None, "belongs to a record of force and displacement; a scene has a mass")
+        if record is not None and by_force:
             search = partial(fit_record, record, names, mass)
         elif scene is None:
             raise SceneError.at("scene", None, "is missing: give --scene, the model to fit")
@@ -98,19 +103,6 @@ def fit(
             search = partial(fit_table, table, read, names)
         report("searching", 1, 2)
         return search()
-
-
-def _refuse_foreign(record: Signals | None, by_force: bool, scene: bool, mass: bool, sloping: bool) -> None:
-    """``SceneError`` for an argument that does not belong to the data."""
-    if by_force and scene:
-        raise SceneError.at("scene", None, "a record of force and displacement is fitted by a linear model: omit it")
-    if sloping and (by_force or record is None):
-        data = (
-            "the signals of a rig, without a force" if by_force else "the signals of a rig over time; the data are a table"
-        )
-        raise SceneError.at("slow roll", None, f"belongs to {data}")
-    if mass and not by_force:
-        raise SceneError.at("mass", None, "belongs to a record of force and displacement; a scene has a mass")
 
 
 def fit_texts(
@@ -151,21 +143,12 @@ def fit_texts(
         if not (sign and header and name):
             raise SceneError.at("--map", text, 'must have the form "HEADER=NAME", for instance "X [µm]=y_um"')
         meanings[header] = name
+    ways: Tables = {"slow_roll": slow_roll, "run_out": vector, "columns": meanings, "plugins": plugins, "progress": progress}
     if free:
-        return fit(
-            data,
-            scene,
-            free,
-            mass=mass,
-            slow_roll=slow_roll,
-            run_out=vector,
-            columns=meanings,
-            plugins=plugins,
-            progress=progress,
-        )
+        return fit(data, scene, free, mass=mass, **ways)
     if scene is None:
         message = "names nothing: give --free K,C,mass of a record of force and displacement, or --scene of a rig"
         raise SceneError.at("--free", None, message)
     if mass is not None:
         raise SceneError.at("--mass", mass, "belongs to --free and a record of force and displacement")
-    return identify(data, scene, slow_roll=slow_roll, run_out=vector, columns=meanings, plugins=plugins, progress=progress)
+    return identify(data, scene, **ways)

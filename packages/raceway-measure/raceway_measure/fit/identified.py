@@ -250,15 +250,12 @@ class Identified(Answer):
     def _coefficients(self) -> list[Fact]:
         """K and C with their half-widths, and K of the scene."""
         c, wide, state = self.equivalent_damping, self.equivalent_damping_error, self.state
-        facts = [
-            interval("K", self.equivalent_stiffness, self.uncertainty[0], "N/m", f"Re Z + m w^2, m = {state.mass:.4g} kg")
-        ]
+        definition = f"Re Z + m w^2, m = {state.mass:.4g} kg"
+        facts = [interval("K", self.equivalent_stiffness, self.uncertainty[0], "N/m", definition)]
         if c is not None and wide is not None:
             value = number(c, "N s/m", 4) if abs(c) > wide else "not resolved"
             facts.append(("C", value, f"+- {number(wide, 'N s/m', 2)} at 95 %"))
-        locked_tilt = interval(
-            "K, tilt locked", state.locked[0], self.uncertainty[2], "N/m", "less the force of the bearing's tilt"
-        )
+        locked_tilt = interval("K, tilt locked", state.locked[0], self.uncertainty[2], "N/m", "less the force of the tilt")
         scene = number(1e-6 * self.scene_stiffness, "N/µm")
         return [*facts, ("K of the scene's bearing", scene, "under the same force and moment"), locked_tilt]
 

@@ -122,9 +122,7 @@ def response_of(path: str | Path, columns: Mapping[str, str] | None = None) -> F
                 "histories (type 1) of force and response, are needed. Export one of them"
             )
         if unknown := next((k for k in columns_map if k not in words), None):
-            raise ValueError(
-                f"no function {unknown} for --map; there are {'; '.join(f'{k}: {text}' for k, text in words.items())}"
-            )
+            raise ValueError(f"no function {unknown} for --map: {'; '.join(f'{k}: {text}' for k, text in words.items())}")
         tables = {k: table for k, table in zip(words, functions, strict=True) if columns_map.get(k) != IGNORE}
         factors = next((units for units in sets if units["type"] == 164), None)
         if kind == 1:
@@ -221,9 +219,7 @@ def _read_function(source: str, table: _Set, factors: _Set | None, number: str, 
         raise ValueError(f"function {number} has {len(hz)} complex numbers above 0 Hz: at least {_LEAST} are needed")
     omega = 2.0 * np.pi * hz
     if form != "receptance":
-        values = {"mobility": values / (1j * omega), "accelerance": -values / omega**2, "dynamic_stiffness": 1.0 / values}[
-            form
-        ]
+        values = {"mobility": values / (1j * omega), "accelerance": -values / omega**2}.get(form, 1.0 / values)
     if table["rsp_dir"] * table["ref_dir"] < 0:
         values = -values
         notes.append("force and response are counted in opposite directions: the sign is reversed")

@@ -300,9 +300,7 @@ def read_tdms(path: Path) -> dict[str, np.ndarray]:
         raise ValueError(f"cannot be read: it is no .tdms file, or damaged ({why})") from None
     last = (file.file_status.channel_statuses or {}).items()
     if incomplete := ", ".join(f"{name} {n}" for name, block in last if (n := block.expected_length - block.read_length)):
-        raise ValueError(
-            f"is cut off, samples are missing at its end: {incomplete}. Copy it again, or export those that are there"
-        )
+        raise ValueError(f"is cut off, samples are missing: {incomplete}. Copy it again, or export those that are there")
     channels = [channel for group in file.groups() for channel in group.channels()]
     if not channels:
         raise ValueError("has no channels: save the signals, too")

@@ -272,9 +272,7 @@ def fit_table(measurements: _Measurements, scene: Scene, names: list[str]) -> Fi
     free = free_keys(scene, names)
     refuse_few(measurements.count * len(measurements.values), len(free), measurements.source)
     if both := next((key.name for key in free if key.name in measurements.keys), None):
-        raise SceneError.at(
-            "--free", both, "is a column of the data, too: a key is either free or known in each measurement"
-        )
+        raise SceneError.at("--free", both, "is a column of the data, too: a key is free or known in each measurement")
     moving = [name for name in measurements.values if name in _MOTION]
     if moving and scene.excitation is None:
         raise SceneError.at("excitation", None, f"is missing: {', '.join(moving)} are those of a motion under an excitation")
