@@ -12,7 +12,7 @@ import numpy as np
 
 from raceway import RacewayError, SceneError
 from raceway.extend import SceneSource, slug
-from raceway_rotor.node_bearing import NodeBearing, node_bearing
+from raceway_rotor.node_bearing import node_bearing
 from raceway_rotor.ross_file import generation, ross, through_points
 
 if TYPE_CHECKING:
@@ -89,9 +89,7 @@ class RollingBearing(_Element):
             rule = "ROSS links translations only: leave `n_link` out, or choose 'locked', 'free' or a stiffness"
             raise SceneError.at("tilt", tilt, rule)
         self.side = -1 if preload is not None and preload < 0.0 else 1
-        self.node_bearing: NodeBearing = node_bearing(
-            bearing, None if preload is None else abs(preload), tilt, axial, damping
-        )
+        self.node_bearing = node_bearing(bearing, None if preload is None else abs(preload), tilt, axial, damping)
         self._at_motion: dict[float, np.ndarray] = {}
         self._dofs: dict[str, int] | None = None
         axis = np.asarray(speeds if speeds is not None else _SPEEDS_RPM * pi / 30.0, dtype=float)

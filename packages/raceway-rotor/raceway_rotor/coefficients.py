@@ -208,9 +208,7 @@ def _refuse_few(selection: Selection, least: int) -> None:
     if not speeds:
         value = selection.value(SPEED)
         constant = f"`{SPEED}` has the one value {shown(value)}" if value is not None else "the scene has no speed"
-        raise SceneError.at(
-            SPEED, None, f"does not vary here ({constant}): sweep it, for instance --grid {SPEED}=1000:15000:15"
-        )
+        raise SceneError.at(SPEED, None, f"does not vary here ({constant}): sweep it, as by --grid {SPEED}=1000:15000:15")
     few = [key for key in speeds if len(selection.axes[key]) < least]
     if few:
         raise SceneError([

@@ -131,9 +131,8 @@ class NodeBearing:
             correction = np.linalg.solve(tangent[np.ix_(inside, inside)], residual[inside])
             force[outside] -= tangent[np.ix_(outside, inside)] @ correction
         if 0 in inside:
-            beside = _schur_complement(
-                equilibrium.stiffness + system.stiffness, list(range(self.size)), [i for i in inside if i > 0]
-            )
+            still = equilibrium.stiffness + system.stiffness
+            beside = _schur_complement(still, list(range(self.size)), [i for i in inside if i > 0])
             slope[0, 0] = beside[0, 0]
             force[0] = slope[0, 0] * displacement[0]
         return force, slope

@@ -221,9 +221,7 @@ def run_time_response(
         )
     unknown = sorted(set(options) - set(_OPTIONS))
     if unknown:
-        raise RacewayError(
-            f"`{unknown[0]}` is not an option with nonlinear bearings: gamma, beta, {', '.join(_OPTIONS)} are"
-        )
+        raise RacewayError(f"`{unknown[0]}` is no option with nonlinear bearings: gamma, beta, {', '.join(_OPTIONS)} are")
     forces, times = np.asarray(F, dtype=float), np.asarray(t, dtype=float)
     if forces.shape != (len(times), rotor.ndof):
         raise RacewayError(

@@ -96,7 +96,7 @@ class Rig:
             raise ValueError(f"`disc_thickness` = {self.disc_thickness:g} m must be less than `span` = {self.span:g} m")
         if self.unbalance_radius > self.disc_radius:
             raise ValueError(
-                f"`unbalance_radius` = {self.unbalance_radius:g} m exceeds the disc radius of {self.disc_radius:g} m"
+                f"`unbalance_radius` = {self.unbalance_radius:g} m exceeds the disc radius, {self.disc_radius:g} m"
             )
         if self.sensor_side == "outside":
             room = 0.5 * (self.shaft_length - self.span)
@@ -140,9 +140,7 @@ class Rig:
 def rig_of(scene: Scene) -> Rig:
     """The table ``[rig]`` of a scene; SceneError where there is none."""
     if "rig" not in scene.source:
-        raise SceneError.at(
-            "rig", None, "is required: a table [rig] with shaft, disc and sensor (see examples/test_rig.toml)"
-        )
+        raise SceneError.at("rig", None, "is required: a table [rig] with shaft, disc and sensor (examples/test_rig.toml)")
     mistakes: list[Mistake] = []
     rig = structure(scene.source["rig"], Rig, "rig", mistakes)
     if rig is None:

@@ -266,9 +266,7 @@ class Bearing:
 def bearing(scene: Scene, axial: float, registry: Registry) -> Bearing:
     """The scene's bearing in the rig under an axial load [N]; SceneError where it is not the same all around."""
     if any(scene.load.radial) or any(scene.load.moment):
-        raise SceneError.at(
-            "load", None, "the rig is taken to whirl in circles: leave `load.radial` and `load.moment` at zero"
-        )
+        raise SceneError.at("load", None, "the rig whirls in circles: leave `load.radial` and `load.moment` at zero")
     if scene.bearing.arrangement != "single":
         raise SceneError.at("bearing.arrangement", scene.bearing.arrangement, "the rig has single bearings: 'single'")
     free = attrs.evolve(
@@ -390,6 +388,4 @@ def find_root(
             step = 0.5 * step
         jacobian += np.outer(trial - f - jacobian @ step, step) / (step @ step)
         u, f = u + step, trial
-    raise ConvergenceError(
-        f"shaft and bearing find no common motion after {_MOST} tries: they differ by {np.abs(f).max():.1e}"
-    )
+    raise ConvergenceError(f"shaft and bearing find no common motion in {_MOST} tries: they differ by {np.abs(f).max():.1e}")

@@ -89,9 +89,8 @@ def _directions(selection: Selection) -> Matrices:
         if selection.value("supports.tilt", "locked") != "locked":
             power = 0.5 * sum((across[angle] * np.abs(h[angle])) ** 2 for angle in (0, 90))
             antisymmetric = np.sqrt(np.maximum(power - np.abs(cross) ** 2, 0.0))
-            note += (
-                f"; the ring's gyroscopic moments add {np.max(antisymmetric / np.abs(h[0])):.1e} of H, counted as its error"
-            )
+            share = np.max(antisymmetric / np.abs(h[0]))
+            note += f"; the ring's gyroscopic moments add {share:.1e} of H, counted as its error"
     else:
         if widest > _MOST_ANISOTROPY:
             raise RacewayError(
