@@ -114,9 +114,8 @@ def fit(function: Quantities, axes: Sequence[Interval], tolerance: float, most: 
     difference = np.abs(best(columns) - values)
     one_sign = np.abs(np.sign(values).sum(axis=1, keepdims=True)) == values.shape[1]
     relative = np.max(difference / np.where(one_sign, np.abs(values), 1e-200), axis=1)
-    return attrs.evolve(
-        best, error=np.max(difference / size, axis=1), relative=relative, difference=np.max(difference, axis=1)
-    )
+    error, difference = np.max(difference / size, axis=1), np.max(difference, axis=1)
+    return attrs.evolve(best, error=error, relative=relative, difference=difference)
 
 
 def _interpolant(function: Quantities, axes: Sequence[Interval], counts: Sequence[int]) -> Series:
@@ -199,8 +198,15 @@ def map_unit(
     keys = [key_of(scene, path) for path in ranges]
     words = "; ".join(f"{key.path} {a:g} to {b:g} {key.unit}" for key, a, b in zip(keys, low, high, strict=True))
     relative, difference, excess = (_SAFETY * x for x in (series.relative, series.difference, series.error))
-    bounds = list(zip(outputs, difference, relative, strict=True))
-    largest, of = max(((r, v.name) for v, _, r in bounds if r < _RESOLVED), default=(0.0, ""))
+    inputs = [Variable(k.path, k.unit, k.help, float(np.clip(k.value, *ranges[k.path])), *ranges[k.path]) for k in keys]
+    stated, errors = list[Variable](), list[Variable]()
+    for v, d, r in zip(outputs, difference, relative, strict=True):
+        words_of_error = f"error at most {d:.1e} {v.unit}{f', relative {r:.1e}' if r < _RESOLVED else ''}"
+        stated.append(attrs.evolve(v, words=f"{v.words}; {words_of_error}"))
+        relative_error = Variable(f"relative_error.{v.name}", "1", _STATED, float(r))
+        errors.append(relative_error if r < _RESOLVED else Variable(f"error.{v.name}", v.unit, _STATED, float(d)))
+    resolved = zip(outputs, relative, strict=True)
+    largest, of = max(((r, v.name) for v, r in resolved if r < _RESOLVED), default=(0.0, ""))
     error_words = f"relative error at most {largest:.1e} ({of})" if of else "errors are those of each output"
     if excess.max() > tolerance:
         error_words += f", above the tolerance {tolerance:g}. {_NARROW[:-1]}"
@@ -218,22 +224,9 @@ def map_unit(
             "terms": terms.reshape(len(terms), -1),
         },
         f"an input is out of range: its end stands for it ({words})",
-        tuple(
-            Variable(key.path, key.unit, key.help, float(np.clip(key.value, *ranges[key.path])), *ranges[key.path])
-            for key in keys
-        ),
-        tuple(
-            attrs.evolve(
-                v, words=f"{v.words}; error at most {d:.1e} {v.unit}{f', relative {r:.1e}' if r < _RESOLVED else ''}"
-            )
-            for v, d, r in bounds
-        ),
-        tuple(
-            Variable(f"relative_error.{v.name}", "1", _STATED, float(r))
-            if r < _RESOLVED
-            else Variable(f"error.{v.name}", v.unit, _STATED, float(d))
-            for v, d, r in bounds
-        ),
+        tuple(inputs),
+        tuple(stated),
+        tuple(errors),
     )
 
 
