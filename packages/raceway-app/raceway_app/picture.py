@@ -134,9 +134,8 @@ class Curves:
 
     def __init__(self) -> None:
         self._built: dict[bool, tuple[object, dict[str, float], Function]] = {}  # of few points: what it holds for, numbers
-        self._lost: dict[
-            str, tuple[np.ndarray, np.ndarray]
-        ] = {}  # axis -> points of the curves before, which have no answer
+        #: axis -> points of the curves before, which have no answer
+        self._lost: dict[str, tuple[np.ndarray, np.ndarray]] = {}
 
     def _function(self, scene: Scene, of: Form, keys: list[str], outputs: list[str], few: bool) -> Function:
         """Over ``keys`` and the numbers that have changed since it was built."""
@@ -168,10 +167,9 @@ class Curves:
         outputs = [curve for names in titles.values() for curve in names]
         outputs += ["contact_angle"] if "ball_load" in outputs else []
         x = {name: axis.numbers() for name, axis in axes.items()}
-        places = dict(
-            zip(x, np.split(np.arange(sum(map(len, x.values()))), np.cumsum([len(own) for own in x.values()])), strict=False)
-        )
-        lost = np.zeros(sum(map(len, x.values())), bool)
+        ends = np.cumsum([len(own) for own in x.values()])
+        places = dict(zip(x, np.split(np.arange(ends[-1]), ends), strict=False))
+        lost = np.zeros(ends[-1], bool)
         for name, (before, gaps) in self._lost.items() if few and x.keys() == self._lost.keys() else ():
             lost[places[name]] = gaps[np.abs(x[name][:, None] - before).argmin(axis=1)]
         lost &= not lost.all()

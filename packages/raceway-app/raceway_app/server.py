@@ -131,9 +131,8 @@ class Page:
                 self.state.note = f"written: {write_whole(text.encode(), session.file('curves', '.csv'))}"
             elif kind in ("png", "ross"):
                 path = session.file(*{"png": ("pictures", ""), "ross": ("bearing", ".toml")}[kind], panel)
-                self.worker.submit(
-                    Job(session.number, {panel: (session.number, session.scenes[panel])}, file=kind, path=path)
-                )
+                scenes = {panel: (session.number, session.scenes[panel])}
+                self.worker.submit(Job(session.number, scenes, file=kind, path=path))
                 self.state.note = "writing"
         except RacewayError as error:
             self.state.note = str(error)
@@ -253,9 +252,8 @@ class Page:
         os.environ["WSLINK_WS_COMPRESS"] = "0"  # nothing is far
         arguments, sys.argv = sys.argv, sys.argv[:1]
         try:
-            server.start(
-                port=port, host="127.0.0.1", open_browser=False, show_connection_info=False, timeout=0, disable_logging=True
-            )
+            quiet = {"open_browser": False, "show_connection_info": False, "disable_logging": True}
+            server.start(port=port, host="127.0.0.1", timeout=0, **quiet)
         finally:
             sys.argv = arguments
 

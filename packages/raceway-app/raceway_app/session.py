@@ -68,9 +68,7 @@ def texts(source: Given, scene: Scene | None) -> tuple[dict[str, str], dict[str,
 
 def mistakes_of(error: RacewayError) -> list[tuple[str, str]]:
     """Path and sentence of each mistake of a scene; of another failure no path."""
-    return (
-        [(mistake.path, str(mistake)) for mistake in error.mistakes] if isinstance(error, SceneError) else [("", str(error))]
-    )
+    return [(each.path, str(each)) for each in error.mistakes] if isinstance(error, SceneError) else [("", str(error))]
 
 
 #: Changes that can be undone.

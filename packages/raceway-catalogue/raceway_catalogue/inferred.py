@@ -252,9 +252,7 @@ def _candidates(size: Printed, maker: str | None) -> list[Candidate]:
     practice = None if maker is None else _PRACTICES[maker.lower()]
     if size.deep_groove:
         if practice == "grooves":
-            rule = (
-                "rates deep-groove bearings by its own grooves, which leave the ball count open: give conformity and balls"
-            )
+            rule = "rates deep-groove bearings by its own grooves, which leave the count open: give conformity and balls"
             raise SceneError.at("maker", maker, rule)
         return sorted(deep_groove_candidates(size), key=lambda x: (not x.explains, -x.weight))
     candidates = [] if practice == "grooves" else by_tables(size)
@@ -270,9 +268,7 @@ def _refuse_contradiction(size: Printed) -> None:
     """Ratings fall as the contact angle grows: C with cos(a)^0.7, C0 with cos(a), but for a few percent."""
     angles = [rating.contact_angle_deg for rating in size.ratings]
     if len(set(angles)) < len(angles):
-        raise SceneError.at(
-            size.title, angles, "each contact angle can have one pair of ratings: these dimensions are listed twice"
-        )
+        raise SceneError.at(size.title, angles, "an angle has one pair of ratings: these dimensions are listed twice")
     first = min(size.ratings, key=lambda x: x.contact_angle_deg)
     for rating in size.ratings:
         lean = math.cos(math.radians(rating.contact_angle_deg)) / math.cos(math.radians(first.contact_angle_deg))
@@ -334,9 +330,8 @@ def _grooves(size: Printed, best: Candidate, conformity: float | None) -> tuple[
     if fit is None:
         both = _Number(CONFORMITY, _CONFORMITY, "meets printed stiffnesses of the series 70, and is taken for all")
     else:
-        several = (
-            f"{len(size.pairs)} printed stiffnesses of pairs" if len(size.pairs) > 1 else "the printed stiffness of a pair"
-        )
+        n = len(size.pairs)
+        several = f"{n} printed stiffnesses of pairs" if n > 1 else "the printed stiffness of a pair"
         both = _Number(fit[0], fit[1], f"meets {several}")
     return both, both
 

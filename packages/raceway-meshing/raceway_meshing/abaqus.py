@@ -44,9 +44,7 @@ class Abaqus:
         with open(path, encoding="utf-8", errors="replace") as stream, memory_for(0):
             for number, line in enumerate(stream, 1):
                 if "INCLUDE" in line.upper() and line.partition(",")[0].strip().replace("*", "").upper() == "INCLUDE":
-                    raise MeshError(
-                        f"'{path}', line {number}: *INCLUDE is not supported: insert the content of the included file"
-                    )
+                    raise MeshError(f"'{path}', line {number}: *INCLUDE is not supported: insert what is in that file")
         content = exchange.load(path, exchange.meshio().abaqus.read)
         cells, first = exchange.hexahedra(path, content)
         members = dict[str, np.ndarray]()  # (k,) hexahedra of an element set, which meshio gives block by block

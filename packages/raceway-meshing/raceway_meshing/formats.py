@@ -51,9 +51,7 @@ def load(path: Path, reader: Callable[[Path], Mesh]) -> Mesh:
         raise MeshError(f"'{path}' cannot be read: {why.strerror or why}") from why
     except Exception as why:  # meshio raises whatever its parsers stumble over
         cause = f" ({type(why).__name__}: {why})" if str(why) else ""
-        raise MeshError(
-            f"'{path}' cannot be read: it is damaged, truncated, or not of the type of its suffix{cause}"
-        ) from why
+        raise MeshError(f"'{path}' cannot be read: it is damaged, cut off, or not of the type of its suffix{cause}") from why
 
 
 def readable(path: Path | str) -> int:

@@ -146,9 +146,7 @@ def _refuse_doubled(mesh: HexMesh, body: str) -> None:
     _, first, counts = np.unique(np.sort(mesh.cells, axis=1), axis=0, return_index=True, return_counts=True)
     if (counts > 1).any():
         cell = int(first[counts > 1].min())
-        raise MeshError(
-            f"`{body}`: {int((counts - 1).sum())} cells are duplicated; the first is cell {cell}: remove the copies"
-        )
+        raise MeshError(f"`{body}`: {int((counts - 1).sum())} cells are duplicated; the first is {cell}: remove the copies")
     points = mesh.points[np.unique(mesh.cells)]
     grain = 1e-9 * float(np.ptp(points, axis=0).max())
     _, first, counts = np.unique(np.round(points / grain), axis=0, return_index=True, return_counts=True)
@@ -164,9 +162,7 @@ def _refuse_doubled(mesh: HexMesh, body: str) -> None:
 
     count = int(mesh.cells.max()) + 1
     rows, columns = np.repeat(np.arange(len(mesh.cells)), 8), mesh.cells.reshape(-1)
-    owns = coo_matrix(
-        (np.ones(rows.size, dtype=np.int8), (rows, columns + len(mesh.cells))), shape=(len(mesh.cells) + count,) * 2
-    )
+    owns = coo_matrix((np.ones(rows.size, dtype=np.int8), (rows, columns + len(mesh.cells))), (len(mesh.cells) + count,) * 2)
     _, label = connected_components(owns, directed=False)
     parts = len(np.unique(label[: len(mesh.cells)]))
     if parts > 1:

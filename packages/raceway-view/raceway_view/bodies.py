@@ -174,9 +174,7 @@ class BearingSolids:
         """From a result; rings without dimensions get usual ones, by name.  SceneError: rows of different bearings."""
         b = result.model.problem.bearing
         if not b.equal_rows:
-            raise SceneError.at(
-                "bearing.row", None, "holds rows of different bearings, which are not drawn: leave out what differs"
-            )
+            raise SceneError.at("bearing.row", None, "rows of different bearings are not drawn: leave out what differs")
         wall = 0.85 * b.ball_diameter
         usual = {
             "bore": b.pitch_diameter - 2.0 * wall, "outer_diameter": b.pitch_diameter + 2.0 * wall, "width": 1.7 * b.ball_diameter

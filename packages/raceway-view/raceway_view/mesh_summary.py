@@ -39,9 +39,7 @@ def summary(meshes: Mapping[str, HexMesh]) -> Tables:
         # A rigid motion of the same cells leaves a sample of edges as long as it was.
         sample, size = mesh.cells[:: max(len(mesh.cells) // 1000, 1)], float(np.ptp(mesh.points, axis=0).max())
         mine, others = (_edges(one, sample) for one in (mesh, meshes[twin]))
-        bodies[name] = (
-            bodies[twin] if twin != name and np.allclose(mine, others, rtol=0.0, atol=1e-9 * size) else _body(mesh)
-        )
+        bodies[name] = bodies[twin] if twin != name and np.allclose(mine, others, 0.0, 1e-9 * size) else _body(mesh)
     weights = np.array([body["elements"] for body in bodies.values()], dtype=float)
 
     def over(key: str, word: str) -> float:

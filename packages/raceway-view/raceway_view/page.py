@@ -47,9 +47,7 @@ def view_page(bearing: BearingSolids, state: Snapshot, words: Tables, pictures: 
         "script": files("raceway_view").joinpath("data/view.js").read_text(encoding="utf-8"),
         "label": escape(f"The bearing in three dimensions, {len(state.azimuth)} balls", quote=True),
     }
-    page.markup(
-        Template(files("raceway_view").joinpath("data/view_stage.html").read_text(encoding="utf-8")).substitute(parts)
-    )
+    page.markup(Template((files("raceway_view") / "data/view_stage.html").read_text(encoding="utf-8")).substitute(parts))
     page.section("Balls")
     for inner in (True, False):
         race = "inner" if inner else "outer"

@@ -42,9 +42,7 @@ def refuse_pictures(otherwise: str = "") -> None:
 def _fault_of_pictures() -> str:
     """How drawing fails in a process of its own; "" where it does not."""
     try:
-        trial = subprocess.run(
-            [sys.executable, "-c", _PICTURE], capture_output=True, text=True, timeout=_PATIENCE, check=False
-        )
+        trial = subprocess.run([sys.executable, "-c", _PICTURE], capture_output=True, text=True, timeout=_PATIENCE)
     except subprocess.TimeoutExpired:
         return f"a trial took more than {_PATIENCE:g} s"
     if trial.returncode == 0:
