@@ -4,6 +4,7 @@ A hook of classes may also return a mapping of their names to "module:Class": a 
 names it, or when somebody asks for all of its kind.
 """
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import click
@@ -27,54 +28,24 @@ hookspec = pluggy.HookspecMarker("raceway")
 hookimpl = pluggy.HookimplMarker("raceway")
 
 
-@hookspec
-def raceway_contact_laws() -> Classes:  # type: ignore[empty-body]
-    """Classes that follow ``raceway.framework.contracts.ContactLaw``."""
+def _classes(contract: str) -> Callable[[], Classes]:
+    def hook() -> Classes:  # type: ignore[empty-body]
+        pass
+
+    hook.__doc__ = f"Classes that follow ``raceway.framework.contracts.{contract}``."
+    return hookspec(hook)
 
 
-@hookspec
-def raceway_excitations() -> Classes:  # type: ignore[empty-body]
-    """Classes that follow ``raceway.framework.contracts.Excitation``."""
-
-
-@hookspec
-def raceway_integrators() -> Classes:  # type: ignore[empty-body]
-    """Classes that follow ``raceway.framework.contracts.Integrator``."""
-
-
-@hookspec
-def raceway_identifiers() -> Classes:  # type: ignore[empty-body]
-    """Classes that follow ``raceway.framework.contracts.Identifier``."""
-
-
-@hookspec
-def raceway_bodies() -> Classes:  # type: ignore[empty-body]
-    """Classes that follow ``raceway.framework.contracts.BodiesKind``."""
-
-
-@hookspec
-def raceway_meshers() -> Classes:  # type: ignore[empty-body]
-    """Classes that follow ``raceway.framework.contracts.Mesher``."""
-
-
-@hookspec
-def raceway_formats() -> Classes:  # type: ignore[empty-body]
-    """Classes that follow ``raceway.framework.contracts.Format``."""
-
-
-@hookspec
-def raceway_quantities() -> Classes:  # type: ignore[empty-body]
-    """Classes that follow ``raceway.framework.contracts.Quantities``."""
-
-
-@hookspec
-def raceway_executors() -> Classes:  # type: ignore[empty-body]
-    """Classes that follow ``raceway.framework.contracts.Executor``."""
-
-
-@hookspec
-def raceway_studies() -> Classes:  # type: ignore[empty-body]
-    """Classes that follow ``raceway.framework.contracts.Study``."""
+raceway_contact_laws = _classes("ContactLaw")
+raceway_excitations = _classes("Excitation")
+raceway_integrators = _classes("Integrator")
+raceway_identifiers = _classes("Identifier")
+raceway_bodies = _classes("BodiesKind")
+raceway_meshers = _classes("Mesher")
+raceway_formats = _classes("Format")
+raceway_quantities = _classes("Quantities")
+raceway_executors = _classes("Executor")
+raceway_studies = _classes("Study")
 
 
 @hookspec
