@@ -4,8 +4,6 @@ A hook gives classes, or the places of classes by their names, which are importe
 cannot be loaded is remembered with its reason and takes nothing else down.  Two plug-ins of one kind and name shadow each
 other: the name cannot be used until one of them goes.
 
-``Registry.load_file`` adds one-off plug-ins from a file; ``Registry.notify`` calls life-cycle hooks and says whose failed.
-
 Environment: ``RACEWAY_DISABLE`` (names of distributions or entry points to leave out, commas), ``RACEWAY_PLUGINS`` (the
 exact set of third-party plug-ins to load), ``RACEWAY_TRACE`` (set: every hook call on standard error).
 """
@@ -26,7 +24,7 @@ from raceway.framework import hookspecs
 from raceway.framework.contracts import KINDS, broken_duties
 from raceway.framework.doors import reader
 from raceway.framework.loading import available, missing_package, named, packages
-from raceway.framework.loading.sources import chosen_entry_points, foreign_words, import_file, is_foreign_fault, owner
+from raceway.framework.loading.sources import attempted, chosen_entry_points, import_file, is_foreign_fault, owner, shown
 from raceway.framework.options import nearest
 
 _BUILT_IN = ("raceway.contact_laws", "raceway.integrators", "raceway.plugins")
@@ -94,14 +92,9 @@ class Entry:
     def _imported(self) -> type[Any] | Fault:
         """The class at the place, or why there is none."""
         kind = self.kind.replace("_", " ")
-        try:
-            with foreign_words():
-                plugin: type[Any] = named(self.place)
-        except BaseException as why:  # whatever a third party's import raises
-            if not is_foreign_fault(why):
-                raise
-            reason = f"{kind} '{self.name}' fails to import from `{self.place}`: {type(why).__name__}: {why}"
-            return Fault(self.label, reason)
+        plugin, why = attempted(lambda: named(self.place))
+        if why:
+            return Fault(self.label, f"{kind} '{self.name}' fails to import from `{self.place}`: {why}")
         reason = _fault_of(self.kind, plugin)
         if not reason and plugin.name != self.name:
             reason = f"{kind} `{self.place}` has the name '{plugin.name}', its hook says '{self.name}'"
@@ -150,11 +143,7 @@ class Registry:
         self._register(plugin, source, distribution or source, version)
 
     def load_file(self, path: str | Path) -> list[Entry]:
-        """Load one-off plug-ins from a Python file with hook implementations, for this registry only.
-
-        Returns
-        -------
-        list of Entry : what the file adds; its ``version`` is a hash of the file
+        """What a Python file with hook implementations adds, for this registry only; its ``version`` is a hash of the file.
 
         PluginError: A file that is missing, fails to import, or adds nothing; the registry is as it was before.
         """
@@ -168,9 +157,8 @@ class Registry:
         added = [e for e in self.all() if e.source == str(path)]
         hooks = (self.manager.get_hookcallers(module) or []) if self.manager.is_registered(module) else []
         if not faults and not hooks:
-            faults = [
-                Fault(str(path), "has no hook: write for instance @hookimpl def raceway_contact_laws(): return [MyLaw]")
-            ]
+            example = "@hookimpl def raceway_contact_laws(): return [MyLaw]"
+            faults = [Fault(str(path), f"has no hook: write for instance {example}")]
         if faults:
             if self.manager.is_registered(module):
                 self.manager.unregister(module)
@@ -188,30 +176,21 @@ class Registry:
             excluded = [p for p in self.manager.get_plugins() if p is not implementation.plugin]
             try:
                 self.manager.subset_hook_caller(hook, excluded)(**arguments)
-            except RacewayError:
+            except (RacewayError, KeyboardInterrupt):
                 raise
             except BaseException as why:  # a third party's own code
-                if not is_foreign_fault(why):
-                    raise
-                raise PluginError(
-                    f"plug-in `{names[id(implementation.plugin)]}`: `{hook}` raises {type(why).__name__}: {why}. "
-                    "Name it in RACEWAY_DISABLE to run without it."
-                ) from why
+                words = f"`{hook}` raises {type(why).__name__}: {why}. Name it in RACEWAY_DISABLE to run without it."
+                raise PluginError(f"plug-in `{names[id(implementation.plugin)]}`: {words}") from why
 
     def mapping(self, hook: str) -> dict[str, Any]:
         """What all plug-ins answer to a hook of mappings; tuples of one key follow each other.  A plug-in that raises has a fault."""
         merged: dict[str, Any] = {}
         for implementation in getattr(self.manager.hook, hook).get_hookimpls():
-            try:
-                with foreign_words():
-                    answer = dict(implementation.function())
-            except BaseException as why:  # a third party's own code
-                if not is_foreign_fault(why):
-                    raise
-                fault = Fault(implementation.plugin_name, f"`{hook}` raises {type(why).__name__}: {why}")
-                self.faults += [] if fault in self.faults else [fault]
-                continue
-            merged |= {key: merged.get(key, ()) + v if isinstance(v, tuple) else v for key, v in answer.items()}
+            answer, why = attempted(lambda: dict(implementation.function()))  # noqa: B023  called at once
+            fault = Fault(implementation.plugin_name, f"`{hook}` raises {why}")
+            self.faults += [fault] if why and fault not in self.faults else []
+            for key, value in (answer or {}).items():
+                merged[key] = merged.get(key, ()) + value if isinstance(value, tuple) else value
         return merged
 
     def find_any(self, text: str) -> Entry:
@@ -223,21 +202,16 @@ class Registry:
         if colon:
             kind = kind.strip().replace("-", "_").replace(" ", "_")
             if kind not in self._kinds:
-                raise PluginError(
-                    f"no kind of plug-in named '{kind}'{nearest(kind, self._kinds)}; kinds: {', '.join(self._kinds)}"
-                )
+                known = ", ".join(self._kinds)
+                raise PluginError(f"no kind of plug-in named '{kind}'{nearest(kind, self._kinds)}; kinds: {known}")
             return self.find(kind, name.strip())
         kinds = [k for k in self._kinds if (k, name) in self.entries]
         if len(kinds) == 1:
             return self.find(kinds[0], name)
         if kinds:
             raise PluginError(f"'{name}' is ambiguous; write {' or '.join(f'{k}:{name}' for k in kinds)}")
-        names = sorted({n for _, n in self.entries})
         installed = ", ".join(f"{k}:{n}" for k, n in sorted(self.entries))
-        message = f"no plug-in named '{name}'{nearest(name, names)}; installed: {installed}"
-        if self.faults:
-            message += ". Not loaded: " + "; ".join(str(f) for f in self.faults)
-        raise PluginError(message)
+        raise self._unknown("plug-in", name, sorted({n for _, n in self.entries}), installed)
 
     def find(self, kind: str, name: str) -> Entry:
         """The plug-in of a kind and name, imported.
@@ -249,19 +223,17 @@ class Registry:
             return entries[0]
         if len(entries) > 1:
             owners = " and ".join(f"`{e.title}` of {e.distribution}" for e in entries)
-            raise PluginError(
-                f"two plug-ins claim the name '{name}' as {kind.replace('_', ' ')}: {owners}. Rename or "
-                "remove one: leave its --plugin file out, or name its distribution in RACEWAY_DISABLE."
-            )
+            remedy = "Rename or remove one: leave its --plugin file out, or name its distribution in RACEWAY_DISABLE."
+            raise PluginError(f"two plug-ins claim the name '{name}' as {kind.replace('_', ' ')}: {owners}. {remedy}")
         names = self.names(kind)
         if missing := missing_package(f"{kind}:{name}", "plugins"):
             raise PluginError(f"{kind.replace('_', ' ')} '{name}' is {missing}")
-        message = (
-            f"no {kind.replace('_', ' ')} named '{name}'{nearest(name, names)}; installed: {', '.join(names) or 'none'}"
-        )
-        if self.faults:
-            message += ". Not loaded: " + "; ".join(str(f) for f in self.faults)
-        raise PluginError(message)
+        raise self._unknown(kind.replace("_", " "), name, names, ", ".join(names) or "none")
+
+    def _unknown(self, kind: str, name: str, names: list[str], installed: str) -> PluginError:
+        faults = "; ".join(map(str, self.faults))
+        known = f"{installed}. Not loaded: {faults}" if faults else installed
+        return PluginError(f"no {kind} named '{name}'{nearest(name, names)}; installed: {known}")
 
     def format_of(self, path: str | Path) -> Entry:
         """The format of a file, by the ending of its name; the longest ending that fits.
@@ -275,8 +247,7 @@ class Registry:
         if not fitting:
             suffixes = ", ".join(sorted({ending for ending, _ in endings}))
             raise PluginError(f"'{path}': no format has the ending '{Path(path).suffix.lower()}'; there are {suffixes}")
-        longest = max(len(ending) for ending, _ in fitting)
-        ending, owner = next(pair for pair in fitting if len(pair[0]) == longest)
+        ending, owner = max(fitting, key=lambda pair: len(pair[0]))
         owners = [str(entry) for suffix, entry in fitting if suffix == ending]
         if len(owners) > 1:
             raise PluginError(f"'{path}': {' and '.join(owners)} both claim the ending '{ending}'. Remove one.")
@@ -316,15 +287,11 @@ class Registry:
 
     def _load(self, point: EntryPoint) -> None:
         distribution, version = owner(point)
-        try:
-            with foreign_words():
-                plugin = point.load()
-        except BaseException as why:  # whatever a third party's import raises: it is reported by name
-            if not is_foreign_fault(why):
-                raise
-            self.faults.append(Fault(f"{point.name} ({distribution})", f"fails to import: {type(why).__name__}: {why}"))
-            return
-        self._register(plugin, point.name, distribution, version)
+        plugin, why = attempted(point.load)
+        if why:
+            self.faults.append(Fault(f"{point.name} ({distribution})", f"fails to import: {why}"))
+        else:
+            self._register(plugin, point.name, distribution, version)
 
     def _register(self, plugin: object, source: str, distribution: str, version: str) -> None:
         label = _label(source, distribution)
@@ -346,26 +313,20 @@ class Registry:
             return
         for kind, (hook_name, _) in self._kinds.items():
             earlier = [p for p in self.manager.get_plugins() if p is not plugin]
-            try:
-                with foreign_words():
-                    lists = self.manager.subset_hook_caller(hook_name, earlier)()
-            except BaseException as why:  # a third party's own code
-                if not is_foreign_fault(why):
-                    raise
-                self.faults.append(Fault(label, f"`{hook_name}` raises {type(why).__name__}: {why}"))
-                continue
-            for given in lists:
+            lists, failure = attempted(self.manager.subset_hook_caller(hook_name, earlier))
+            if failure:
+                self.faults.append(Fault(label, f"`{hook_name}` raises {failure}"))
+            for given in lists or ():
                 if not isinstance(given, list | tuple | Mapping):
-                    reason = (
-                        f'returns {_shown(given)}, which is not a list of classes or a mapping of names to "module:Class"'
-                    )
+                    wanted = 'a list of classes or a mapping of names to "module:Class"'
+                    reason = f"returns {shown(given)}, which is not {wanted}"
                     self.faults.append(Fault(label, f"`{hook_name}` {reason}"))
                 elif isinstance(given, Mapping):
                     for name, place in given.items():
                         if isinstance(name, str) and isinstance(place, str) and all(place.partition(":")):
                             self._enter(Entry(kind, name, place, distribution, version, source))
                         else:
-                            reason = f'maps {_shown(name)} to {_shown(place)}: a name, then "module:Class"'
+                            reason = f'maps {shown(name)} to {shown(place)}: a name, then "module:Class"'
                             self.faults.append(Fault(label, f"`{hook_name}` {reason}"))
                 else:
                     for plugin_class in given:
@@ -390,26 +351,19 @@ def _label(source: str, distribution: str) -> str:
 
 def _fault_of(kind: str, plugin: Any) -> str:
     """Duties that a class breaks, in words; empty where it breaks none."""
-    words = kind.replace("_", " ")
-    try:
-        faults, title = broken_duties(kind, plugin), getattr(plugin, "__qualname__", None) or _shown(plugin)
+
+    def look() -> tuple[list[str], str]:
         getattr(plugin, "name", "")
-    except BaseException as why:  # an attribute of a metaclass, or a name, that raises
-        if not is_foreign_fault(why):
-            raise
-        return f"looking at {words} {_shown(plugin)} raises {type(why).__name__}: {why}"
+        return broken_duties(kind, plugin), getattr(plugin, "__qualname__", None) or shown(plugin)
+
+    words, (found, why) = kind.replace("_", " "), attempted(look)
+    if why:  # an attribute of a metaclass, or a name, that raises
+        return f"looking at {words} {shown(plugin)} raises {why}"
+    faults, title = found
     return f"{words} `{title}` {', '.join(faults)}" if faults else ""
 
 
 REGISTRY = reader("a registry of plug-ins", Registry)
-
-
-def _shown(thing: object) -> str:
-    """A third party's object in words; its type where it has none."""
-    try:
-        return repr(thing)
-    except Exception:  # its own __repr__
-        return f"an object of type {type(thing).__name__}"
 
 
 @cache

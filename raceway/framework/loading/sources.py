@@ -5,7 +5,7 @@ import os
 import sys
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import module_from_spec, spec_from_file_location
@@ -37,9 +37,7 @@ def chosen_entry_points(third_party: bool = True) -> tuple[list[EntryPoint], lis
     labels = sorted(every)
     for name in sorted(blocked - set(labels)):
         installed = f"installed: {', '.join(labels)}" if labels else "no plug-in is installed"
-        warnings.warn(
-            f"RACEWAY_DISABLE names '{name}', which nothing is called{nearest(name, labels)}; {installed}", stacklevel=2
-        )
+        warnings.warn(f"RACEWAY_DISABLE names '{name}', an unknown name{nearest(name, labels)}; {installed}", stacklevel=2)
     return [p for p in points if not blocked & _called(p)], missing
 
 
@@ -70,6 +68,22 @@ def foreign_words() -> Iterator[None]:
     """What plug-ins print while they are loaded goes to standard error: standard output may be JSON."""
     with redirect_stdout(sys.stderr):
         yield
+
+
+def attempted(call: Callable[[], Any]) -> tuple[Any, str]:
+    """What a third party's code returns, and in words what it raises instead; empty where it returns.  Ctrl-C passes through."""
+    try:
+        with foreign_words():
+            return call(), ""
+    except BaseException as why:  # whatever a third party's own code raises
+        if not is_foreign_fault(why):
+            raise
+        return None, f"{type(why).__name__}: {why}"
+
+
+def shown(thing: object) -> str:
+    """A third party's object in words; its type where it has none."""
+    return attempted(lambda: repr(thing))[0] or f"an object of type {type(thing).__name__}"
 
 
 class blamed:
