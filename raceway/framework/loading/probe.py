@@ -85,19 +85,11 @@ _LAST_LAW: dict[Kernel, tuple[ContactLaw, np.ndarray, np.ndarray, np.ndarray]] =
 _NEAR = 0.05
 
 
-def probe_law(
-    law: ContactLaw,
-    kernel: Kernel,
-    params: np.ndarray,
-    state: np.ndarray,
-    distribution: str | None = None,
-    depths: Iterable[float] = (),
-) -> None:
+def probe_law(law: ContactLaw, kernel: Kernel, params: np.ndarray, state: np.ndarray, depths: Iterable[float] = ()) -> None:
     """Refuse a contact law that breaks its contract on a few gaps and rates: ``PluginError`` with what was found, and the contract.
 
     law : the plug-in, for its name;  kernel : what its ``kernel()`` returned
     params : what its ``build()`` returned, (n, k);  state : (n, m), a row for each contact; not changed
-    distribution : whose it is; looked up in the registry when left out
     depths : approaches [m] of the scene at hand, tried besides the fixed ones
     """
     depths = tuple(float(depth) for depth in depths if depth > 0.0)
@@ -106,7 +98,7 @@ def probe_law(
     mark = _mark(kernel, params, state, depths)
     if mark in _PASSED:
         return
-    who = _who("contact law", "contact_law", law, distribution)
+    who = _who("contact law", law)
     n = len(state)
     _check_array(params, who, "build()", f"({n}, k): a row for each contact", (n, None))
     _check_compiled(kernel, who, LAW, "LAW")
@@ -157,13 +149,11 @@ def _probe_slopes(kernel: Kernel, params: np.ndarray, state: np.ndarray, gap: fl
         off = np.maximum(low - slack - slope, slope - high - slack)
         if len(off) and off.max() > 0.0:
             worst = int(np.argmax(off))
-            raise PluginError(
-                f"{who}: `{word}` = {slope[worst]:.6g} {where}, where differences of the force give {high[worst]:.6g}; the "
-                "contract says the derivative, memory held"
-            )
+            words = f"`{word}` = {slope[worst]:.6g} {where}, where differences of the force give {high[worst]:.6g}"
+            raise PluginError(f"{who}: {words}; the contract says the derivative, memory held")
 
 
-def probe_excitation(excitation: Excitation, kernel: Kernel, params: np.ndarray, distribution: str | None = None) -> None:
+def probe_excitation(excitation: Excitation, kernel: Kernel, params: np.ndarray) -> None:
     """Refuse an excitation that breaks its contract at a few times.
 
     Parameters
@@ -179,7 +169,7 @@ def probe_excitation(excitation: Excitation, kernel: Kernel, params: np.ndarray,
     mark = _mark(kernel, params, period)
     if mark in _PASSED:
         return
-    who = _who("excitation", "excitation", excitation, distribution)
+    who = _who("excitation", excitation)
     _check_array(params, who, "parameters()", "(k,)", (None,))
     _check_compiled(kernel, who, FORCE, "FORCE")
     for part in (0.0, 0.13, 0.5, 3.7):
@@ -222,9 +212,7 @@ def _probe_alone(kernel: Kernel, params: np.ndarray, state: np.ndarray, who: str
             force, d_gap, d_rate, _ = _call_law(kernel, alone, state[:1].copy(), gap, 0.0, who, where)
             finite.append(bool(np.isfinite([force[0], d_gap[0], d_rate[0]]).all()))
         if finite == [False, True]:
-            raise PluginError(
-                f"{who}: not finite {where}: the kernel reads beyond the {columns} columns of parameters that build() returned"
-            )
+            raise PluginError(f"{who}: not finite {where}: the kernel reads beyond the {columns} columns of build()")
 
 
 def _call_law(
@@ -244,10 +232,8 @@ def _guarded(kernel: Kernel, who: str, where: str, inputs: Mapping[str, np.ndarr
     try:
         kernel(*arguments)
     except Exception as why:  # the plug-in's own code
-        raise PluginError(
-            f"{who}: the kernel raises {type(why).__name__}: {why} {where}; the contract says it never raises: inside a "
-            "compiled loop an exception is lost"
-        ) from why
+        rule = "the contract says it never raises: inside a compiled loop an exception is lost"
+        raise PluginError(f"{who}: the kernel raises {type(why).__name__}: {why} {where}; {rule}") from why
     for word, array in inputs.items():
         if not np.array_equal(array, before[word]):
             array[...] = before[word]
@@ -257,9 +243,7 @@ def _guarded(kernel: Kernel, who: str, where: str, inputs: Mapping[str, np.ndarr
 def _check_outputs(outputs: Tables, who: str, where: str) -> None:
     for word, values in outputs.items():
         if (values == _MARK).any():
-            raise PluginError(
-                f"{who}: the kernel leaves `{word}` as it was {where}; the contract says that outputs are overwritten whole"
-            )
+            raise PluginError(f"{who}: the kernel leaves `{word}` as it was {where}; the contract says overwritten whole")
         if not np.isfinite(values).all():
             bad = values[~np.isfinite(values)][0]
             raise PluginError(f"{who}: the kernel gives `{word}` = {bad:g} {where}; the contract says finite")
@@ -275,12 +259,9 @@ def _check_array(values: Any, who: str, source: str, expected: str, shape: tuple
         raise PluginError(f"{who}: {source} returned values that are not finite")
 
 
-def _who(words: str, kind: str, plugin: ContactLaw | Excitation, distribution: str | None) -> str:
-    if distribution is None:
-        from raceway.framework.loading.registry import default_registry
+def _who(kind: str, plugin: ContactLaw | Excitation) -> str:
+    from raceway.framework.loading.registry import default_registry
 
-        owners = [
-            e.distribution for e in default_registry().entries.get((kind, plugin.name), []) if e.plugin is type(plugin)
-        ]
-        distribution = owners[0] if owners else type(plugin).__module__
-    return f"{words} '{plugin.name}' of {distribution}"
+    entries = default_registry().entries.get((kind.replace(" ", "_"), plugin.name), [])
+    owners = [entry.distribution for entry in entries if entry.plugin is type(plugin)]
+    return f"{kind} '{plugin.name}' of {owners[0] if owners else type(plugin).__module__}"
