@@ -47,8 +47,7 @@ _COLUMNS = 1e-7
 _ANGLES = 0.02
 #: Steps of the explicit limit that each method takes, over it.
 _STEPS, _OF_LIMIT = 12, 0.1
-#: Keys by table.
-Changes = dict[str, Tables]
+Changes = dict[str, Tables]  # keys by table
 #: Model, equilibrium, and the displacement (5,) of the plain scene -> whether the bearing shows a change.
 Shows = Callable[[Model, Equilibrium, np.ndarray], bool]
 
@@ -201,9 +200,7 @@ class BodiesSuite(Suite):
                 refusals += [word] if faults else []
         return f"refused: {', '.join(refusals) or 'nothing'}"
 
-    @duty(
-        "traits, stable_step, decide, unused, cost: as the contract types them, finite, of keys that exist; nothing is built"
-    )
+    @duty("traits, stable_step, decide, unused, cost: as the contract types them, of keys that exist; nothing is built")
     def test_plan(self, bodies: BodiesKind) -> None:
         scene = _scene_of(bodies)
         problem = resolve(scene)
@@ -234,8 +231,7 @@ class BodiesSuite(Suite):
     def test_build(self, bodies: BodiesKind) -> None:
         scene = _scene_of(bodies)
         bearing = bodies.build(resolve(scene), make_plan(scene))
-        kind = type(bearing).__name__
-        require(isinstance(bearing, BuiltBearing), f"build() returns {kind}, not a raceway.extend.BuiltBearing")
+        require(isinstance(bearing, BuiltBearing), f"build() returns {type(bearing).__name__}, not a BuiltBearing")
         check_shape("`guess`", bearing.guess, (5,))
         z = scene.bearing.balls_in_all
         require(bearing.system.ball_count == z, f"the system has {bearing.system.ball_count} balls, the scene {z}")
@@ -258,11 +254,10 @@ class BodiesSuite(Suite):
         K = system.reduced(equilibrium.stiffness + system.stiffness)
         worst = 0.0
         for k, at in enumerate(free):
-            ends = []
-            for sign in (1.0, -1.0):
-                load = system.load + sign * size[at] * np.eye(5)[at]
-                ends.append(attrs.evolve(system, load=load).solve_equilibrium(equilibrium.displacement)[0][free])
-            response = K @ (ends[0] - ends[1]) / (2.0 * size[at])
+            loads = (system.load + change * np.eye(5)[at] for change in (size[at], -size[at]))
+            systems = (attrs.evolve(system, load=load) for load in loads)
+            up, down = (moved.solve_equilibrium(equilibrium.displacement)[0][free] for moved in systems)
+            response = K @ (up - down) / (2.0 * size[at])
             worst = max(worst, float(np.abs((response - np.eye(len(free))[k]) * size[free] / size[at]).max()))
         require(worst < _TANGENT, f"K dq differs by {worst:.2g} of the load that moves the ring by dq")
         if not system.conservative:
@@ -298,9 +293,7 @@ class BodiesSuite(Suite):
         require(worst < _COLUMNS, f"columns differ by {worst:.2g} from single points")
         return f"{worst:.1e} from single points"
 
-    @duty(
-        "contact forces (2 Z,) and gaps: never negative, none in an open contact; with their angles they balance the loads"
-    )
+    @duty("contact forces (2 Z,) and gaps: never negative, none where open; with their angles they balance the loads")
     def test_contacts(self, bodies: BodiesKind) -> str:
         model, equilibrium = settled(_scene_of(bodies))
         z, force, gap = model.system.ball_count, equilibrium.contact_force, equilibrium.gap
@@ -308,17 +301,14 @@ class BodiesSuite(Suite):
             check_shape(f"`{word}`", values, (2 * z,))
             require(np.isfinite(values).all(), f"`{word}` is not finite")
         require((force >= 0.0).all(), f"a contact pulls with {force.min():.3g} N")
-        for word, angle, part in (
-            ("inner", equilibrium.angle_inner, force[:z]),
-            ("outer", equilibrium.angle_outer, force[z:]),
-        ):
+        races = (("inner", equilibrium.angle_inner, force[:z]), ("outer", equilibrium.angle_outer, force[z:]))
+        for word, angle, part in races:
             check_shape(f"the {word} contact angle", angle, (z,))
             matches = (np.isnan(angle) == (part == 0.0)).all()
             require(matches, f"{word} angles are nan where a contact is open, and only there")
-        q, ball, forces = (np.repeat(each[None], 3, axis=0) for each in (equilibrium.displacement, equilibrium.ball, force))
-        several = model.bearing.contact_angles(model, q, ball, forces, np.zeros(3))
-        shapes = [np.shape(angle) for angle in several]
-        require(shapes == [(3, z)] * 2, f"the angles of three states have the shapes {shapes}, not (3, {z})")
+        *states, forces = (np.repeat(each[None], 3, axis=0) for each in (equilibrium.displacement, equilibrium.ball, force))
+        several = model.bearing.contact_angles(model, *states, forces, np.zeros(3))
+        check_shape("the angles of three states", several, (2, 3, z))
         check_shape("over_edges() of three states", model.bearing.over_edges(model, *several, forces), (3,))
         # Sum of the inner races' forces against the loads on the free translations.
         load, inner = np.where(force[:z] > 0.0, force[:z], 0.0), np.nan_to_num(equilibrium.angle_inner)
@@ -337,12 +327,11 @@ class BodiesSuite(Suite):
         for race in (0, 1):
             ellipse = bearing.contact_ellipse(model, race, load)
             require([np.shape(part) for part in ellipse] == [(7,)] * 3, "contact_ellipse(): three arrays like `load`")
-            rises = all(np.isfinite(part).all() and (np.diff(part) >= 0.0).all() for part in ellipse)
-            require(rises, "contact_ellipse() falls")
+            require(all(np.isfinite(a).all() and (np.diff(a) >= 0.0).all() for a in ellipse), "contact_ellipse() falls")
             require(ellipse[0][0] == 0.0 < ellipse[0][1], "the peak pressure begins at 0 without a load, and grows")
         for name, column in bearing.ball_columns(model, equilibrium).items():
-            shape = np.shape(column)
-            require(shape == (model.system.ball_count,), f"ball_columns()['{name}'] has the shape {shape}, not (Z,)")
+            fits = np.shape(column) == (model.system.ball_count,)
+            require(fits, f"ball_columns()['{name}'] has the shape {np.shape(column)}, not (Z,)")
         json.dumps(without_nan(bearing.report(model, equilibrium)), allow_nan=False)
         edges = bearing.edge_warnings(model, equilibrium.angle_inner, equilibrium.angle_outer, equilibrium.contact_force)
         words = [*bearing.warnings(model, equilibrium), *edges]
@@ -353,9 +342,7 @@ class BodiesSuite(Suite):
             require(good, f"{name}() returns {answer!r}, not (number or None, how it was equilibrium)")
             require(answer[0] is None or 0.0 <= answer[0] < np.inf, f"{name}() is {answer[0]!r}")
 
-    @duty(
-        "steps of newmark, central_difference and quasi_static; where forces are compiled, compiled and stepped drivers agree"
-    )
+    @duty("steps of newmark, central_difference and quasi_static; compiled and stepped drivers agree where there are both")
     def test_steps(self, bodies: BodiesKind) -> str:
         model, equilibrium = settled(_scene_of(bodies))
         system, has_loop = model.system, model.traits.compiled

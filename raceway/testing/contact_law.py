@@ -53,6 +53,8 @@ def _scale_of(unit: str, length: float, force: float, time: float) -> float:
 _CONTACT = (5.0, 130.0, 1.16e11, 1.3e10, 300.0, 1e-9)
 #: Entraining speed m/s, load N, Young's modulus Pa, Poisson's ratio.
 _SPEED, _LOAD, _YOUNG, _POISSON = 8.0, 300.0, 2.1e11, 0.29
+#: One contact of several, by its index.
+_THIRD = np.array([2])
 #: Units of all arrays that a law may get.
 _PAIR_UNITS = {
     "curvature_a": "1/m", "curvature_b": "1/m", "contact_modulus": "Pa", "hertz_factor": "N/m^1.5", "reference_load": "N",
@@ -71,16 +73,6 @@ def example_pairs(n: int, seed: int = 1, nodal: bool = True) -> ContactPairs:
         pairs, area=pairs.area if nodal else None, ring_young=young, ring_poisson=poisson, ball_young=young,
         ball_poisson=poisson, running_angle=np.zeros(n), entraining_speed=speed, load=load,
     )  # fmt: skip
-
-
-def _arrays(pairs: ContactPairs) -> dict[str, np.ndarray]:
-    """The arrays that a law gets."""
-    return {name: array for name in _PAIR_UNITS if (array := getattr(pairs, name)) is not None}
-
-
-def _third(pairs: ContactPairs) -> ContactPairs:
-    """One of the contacts."""
-    return attrs.evolve(pairs, **{name: array[2:3] for name, array in _arrays(pairs).items()})
 
 
 def _pairs_of(law: ContactLaw, n: int, nodal: bool = False) -> ContactPairs:
@@ -161,10 +153,8 @@ class ContactLawSuite(Suite):
         require(params.ndim == 2 and len(params) == 7, f"build() of 7 contacts returns shape {params.shape}, not (7, k)")
         require(params.dtype == np.float64, f"build() returns {params.dtype}, not float64")
         require(np.isfinite(params).all(), "build() returns values that are not finite")
-        require(
-            np.array_equal(np.asarray(law.build(_third(pairs)))[0], params[2]),
-            "a contact's row depends on the other contacts",
-        )
+        alone = np.asarray(law.build(pairs.at(_THIRD)))
+        require(np.array_equal(alone[0], params[2]), "a contact's row depends on the other contacts")
 
     @duty("only a `renewed` law follows speed and load; its reach is 0 or more and vanishes with the entraining speed")
     def test_running(self, law: ContactLaw) -> str:
@@ -188,9 +178,8 @@ class ContactLawSuite(Suite):
         require(reach < 1e-9, f"a reach of {reach:.2g} of Hertz's approach stays at 1e-15 of the speed: it must vanish")
         off = float(np.abs(np.asarray(law.build(slow)) - resting).max() / np.abs(resting).max())
         require(off < 1e-9, f"parameters differ by {off:.2g} from those of standstill at 1e-15 of the speed")
-        require(
-            reach_of(law, _third(pairs))[0] == reach_of(law, pairs)[2], "a contact's reach depends on the other contacts"
-        )
+        alone = reach_of(law, pairs.at(_THIRD))
+        require(alone[0] == reach_of(law, pairs)[2], "a contact's reach depends on the other contacts")
         report = law_report(law, pairs)
         for name, values in {} if report is None else report.columns.items():
             check_shape(f"report(): column '{name}'", values, (9,))
@@ -386,12 +375,12 @@ class ContactLawSuite(Suite):
             return f"not checked: the options' own rules refuse other units ({why})"
         pairs = _pairs_of(law, 64)
         factors = {name: _scale_of(unit, length, force, time) for name, unit in _PAIR_UNITS.items()}
-        in_other_units = ContactPairs(**{name: array * factors[name] for name, array in _arrays(pairs).items()})
+        arrays = {name: array for name in _PAIR_UNITS if (array := getattr(pairs, name)) is not None}
+        in_other_units = ContactPairs(**{name: array * factors[name] for name, array in arrays.items()})
         gap, rate = self._random(7, (20, 64), 0.3)
         forces, _ = _along(drive(law, 64, pairs=pairs), gap, rate, 1e-5)
-        scaled_forces, _ = _along(
-            drive(scaled_law, 64, pairs=in_other_units), gap * length, rate * length / time, 1e-5 * time
-        )
+        scaled = drive(scaled_law, 64, pairs=in_other_units)
+        scaled_forces, _ = _along(scaled, gap * length, rate * length / time, 1e-5 * time)
         area = 1.0 if "resultant" in law.discretisations else length**2
         off = np.abs(scaled_forces * area / force - forces).max() / forces.max()
         words = "in other units: a dimensional number hides in"

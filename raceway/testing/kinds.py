@@ -144,9 +144,8 @@ def _example_scene() -> Scene:
     """A bearing of 30 mm bore under axial load and a turning force, two turns."""
     turning = {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4}
     method = {"kind": "newmark", "turns": 2, "steps_per_turn": 90}
-    return scene_from_dict(
-        b7206c(title="conformance", excitation=turning, integrator=method, kinematics={"ball_inertia": False})
-    )
+    still = {"ball_inertia": False}
+    return scene_from_dict(b7206c(title="conformance", excitation=turning, integrator=method, kinematics=still))
 
 
 @cache

@@ -339,7 +339,5 @@ class IdentifierSuite(Suite):
                 ("w C = Im Z", (C.of(answer) - DAMPING) * w),
             ):
                 part = abs(off) / abs(Z)
-                require(
-                    part < tolerance, f"{where}: {word} is off by {100 * part:.3g} % of |Z|, {100 * tolerance:g} % allowed"
-                )
+                require(part < tolerance, f"{where}: {word} off by {100 * part:.3g} % of |Z|, {100 * tolerance:g} % allowed")
         return ""

@@ -195,9 +195,7 @@ class Suite:
         text = "listed expected failures exist and have reasons"
         try:
             unknown = sorted(set(suite.expected()) - set(cls.checks()))
-            rows += [
-                DutyResult(u, text, FAILED, f"no check has that name; take it out of {EXPECTED_FAILURES}") for u in unknown
-            ]
+            rows += [DutyResult(u, text, FAILED, f"no check has that name, see {EXPECTED_FAILURES}") for u in unknown]
         except ConformityError as why:
             rows.append(DutyResult("expected_failures", text, FAILED, str(why)))
         return Conformity(kind or cls.kind, name or suite.class_of_plugin.name, tuple(rows))
@@ -362,9 +360,8 @@ def apart(work: Callable[[], T]) -> T:
         raise _Died(f"died: it had not ended after {LIMIT_S:g} s")
     if not answer:
         code = os.waitstatus_to_exitcode(status)
-        raise _Died(
-            f"died: its process ended {f'by {signal.Signals(-code).name}' if code < 0 else f'with exit code {code}'}"
-        )
+        end = f"by {signal.Signals(-code).name}" if code < 0 else f"with exit code {code}"
+        raise _Died(f"died: its process ended {end}")
     has_answer, result = pickle.loads(answer)
     if has_answer:
         return result

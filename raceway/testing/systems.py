@@ -108,9 +108,8 @@ def counting_system() -> System:
 
 
 def _system(free: list[float], clearance: float = 0.0, **parts: object) -> System:
-    return attrs.evolve(
-        impact_system(MASS, three_halves(), np.array([FACTOR]), clearance=clearance), free=np.array(free), **parts
-    )
+    system = impact_system(MASS, three_halves(), np.array([FACTOR]), clearance=clearance)
+    return attrs.evolve(system, free=np.array(free), **parts)
 
 
 def linear_system(damped: bool = True, forced: bool = True) -> System:
