@@ -267,14 +267,10 @@ class Bearing:
         """Refuse rows, arrangement and preload that contradict each other."""
         signs = signs_of(self.arrangement)
         if self.row and self.arrangement != "single" and len(self.row) != len(signs):
-            raise ValueError(
-                f"`row` has {len(self.row)} tables, but arrangement = '{self.arrangement}' is {len(signs)} rows"
-            )
+            raise ValueError(f"`row` has {len(self.row)} tables; '{self.arrangement}' is {len(signs)} rows")
         without = [k for k, row in enumerate(self.row) if self.arrangement == "single" and row.direction is None]
         if without:
-            raise ValueError(
-                f"`row[{without[0]}]` has no `direction`: give each row '+' or '-', or the set an `arrangement`"
-            )
+            raise ValueError(f"`row[{without[0]}]` has no `direction`: give each row '+' or '-', or an `arrangement`")
         with_positions = bool(self.row) and all(row.position is not None for row in self.row)
         if len(self.signs) > 1 and not with_positions and self.row_distance is None and self.width is None:
             raise ValueError(
@@ -292,14 +288,10 @@ class Bearing:
         if ground is not None and self.preload_of != "row":
             raise ValueError(f"`row[{ground}].preload` says what that row was ground for: set preload_of = 'row'")
         if self.second_preload is not None and self.preload_of == "row":
-            raise ValueError(
-                "`second_preload` is a force between rows: set preload_of = 'set', or give each row its `preload`"
-            )
+            raise ValueError("`second_preload` is between rows: set preload_of = 'set', or give each row its `preload`")
         if not self.preloaded:
             if self.second_preload is not None:
-                raise ValueError(
-                    f"`second_preload` = {self.second_preload:g} N needs a `preload`, that of the first row's direction"
-                )
+                raise ValueError(f"`second_preload` = {self.second_preload:g} N needs a `preload`, the first direction's")
             return
         if len(set(self.signs)) < 2:
             word = self.signs if self.row else self.arrangement

@@ -117,9 +117,7 @@ class Oil:
         if self.oil is not None and self.oil not in GRADES:
             raise ValueError(f"`oil` = {self.oil!r} is not known{nearest(self.oil, GRADES)}: {', '.join(GRADES)}")
         if pair and (self.viscosity_40 is None or self.viscosity_100 is None):
-            raise ValueError(
-                "`viscosity_40` and `viscosity_100` belong together: two points make a line over the temperature"
-            )
+            raise ValueError("`viscosity_40` and `viscosity_100` belong together: a line needs two points")
         if self.viscosity_40 is not None and self.viscosity_100 is not None and self.viscosity_40 <= self.viscosity_100:
             raise ValueError(
                 f"`viscosity_100` = {self.viscosity_100:g} m2/s must be below `viscosity_40` = {self.viscosity_40:g} m2/s: oils "

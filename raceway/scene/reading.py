@@ -61,9 +61,7 @@ def check_requirements(table: Mapping[str, object], registry: Registry, mistakes
         try:
             versions = SpecifierSet(specifier)
         except InvalidSpecifier:
-            mistakes.append(
-                Mistake(path, specifier, 'is not a version specifier; write for instance ">=1.2" or ">=1.2, <2"')
-            )
+            mistakes.append(Mistake(path, specifier, 'is not a version specifier; write ">=1.2" or ">=1.2, <2"'))
             continue
         why = _unmet(name, specifier, versions, distributions, registry)
         if why:
@@ -84,12 +82,10 @@ def _unmet(
         for fault in registry.faults:
             if key in {canonicalize_name(word.strip("()")) for word in fault.source.split()}:
                 return f"is installed, but could not be loaded: {fault.reason}"
-        for variable in ("RACEWAY_DISABLE", "RACEWAY_PLUGINS"):
-            words = {canonicalize_name(name) for name in names_in(variable)}
-            if (variable == "RACEWAY_DISABLE" and key in words) or (
-                variable == "RACEWAY_PLUGINS" and words and key not in words
-            ):
-                return f"is not loaded: the environment variable {variable} leaves it out"
+        disabled, only = (set(map(canonicalize_name, names_in(v))) for v in ("RACEWAY_DISABLE", "RACEWAY_PLUGINS"))
+        if key in disabled or (only and key not in only):
+            variable = "RACEWAY_DISABLE" if key in disabled else "RACEWAY_PLUGINS"
+            return f"is not loaded: the environment variable {variable} leaves it out"
         # A hint only for what is nearly the same: many distributions begin with the same word.
         close = difflib.get_close_matches(key, list(distributions), n=1, cutoff=0.85)
         like = f" (did you mean '{close[0]}'?)" if close else ""
@@ -159,14 +155,9 @@ def _with_rows(table: Tables, mistakes: list[Mistake]) -> Tables:
             else:
                 row = {**{key: value for key, value in values.items() if key in GEOMETRY}, **row}
         rows_whole.append(row)
-    if (
-        rows
-        and "preset" not in table
-        and "ball_diameter" not in table
-        and isinstance(rows_whole[0], dict)
-        and "preset" in rows_whole[0]
-    ):
-        table = {**table, "preset": rows_whole[0]["preset"]}
+    first = rows_whole[0] if rows_whole else None
+    if isinstance(first, dict) and "preset" in first and not table.keys() & {"preset", "ball_diameter"}:
+        table = {**table, "preset": first["preset"]}
     return {**table, "row": rows_whole}
 
 

@@ -244,14 +244,9 @@ def _mistakes(error: BaseException, value: object, cls: object, path: str) -> li
         return mistakes
     if isinstance(error, cattrs.errors.ForbiddenExtraKeysError):
         names = [a.name for a in attrs.fields(error.cl)]
-        return [
-            Mistake(
-                f"{path}.{key}" if path else key,
-                value.get(key) if isinstance(value, dict) else None,
-                f"unknown key{nearest(key, names)}; known here: {', '.join(names)}",
-            )
-            for key in sorted(error.extra_fields)
-        ]
+        given: Tables = value if isinstance(value, dict) else {}
+        rules = {k: f"unknown key{nearest(k, names)}; known here: {', '.join(names)}" for k in sorted(error.extra_fields)}
+        return [Mistake(f"{path}.{key}" if path else key, given.get(key), rule) for key, rule in rules.items()]
     if isinstance(error, cattrs.errors.IterableValidationError) and isinstance(value, list | tuple):
         places, _ = error.group_exceptions()
         return [m for inner, at in places for m in _mistakes(inner, value[int(at.index)], at.type, f"{path}[{at.index}]")]
@@ -262,10 +257,8 @@ def _mistakes(error: BaseException, value: object, cls: object, path: str) -> li
 
 
 def _describe(cls: Any, name: str) -> str:
-    if attrs.has(cls):
-        field = attrs.fields_dict(cls).get(name)
-        if field is not None:
-            unit = field.metadata.get("unit", "")
-            text = field.metadata.get("help", "")
-            return f": {text}{f' [{unit}]' if unit else ''}"
-    return ""
+    field = attrs.fields_dict(cls).get(name) if attrs.has(cls) else None
+    if field is None:
+        return ""
+    unit = field.metadata.get("unit", "")
+    return f": {field.metadata.get('help', '')}{f' [{unit}]' if unit else ''}"

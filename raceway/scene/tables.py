@@ -160,9 +160,7 @@ class Contact:
         ways = {"damping": self.damping, "time_constant": self.time_constant, "loss_factor": self.loss_factor}
         names = [f"`{name}`" for name, value in ways.items() if value]
         if len(names) > 1:
-            raise ValueError(
-                f"{' and '.join(names)} exclude each other: each is the damping of the contacts. Give one of them"
-            )
+            raise ValueError(f"{' and '.join(names)} exclude each other, each a damping of the contacts: give one")
 
     @property
     def dashpot(self) -> float:
@@ -212,18 +210,13 @@ class Identifying:
 _INFINITE = 1e5
 
 
-def _conductance(between_words: str) -> float | str:
-    rule = word_or(inside(1e-12, _INFINITE), "auto", "infinite")
+def _conductance(between_words: str, *words: str) -> float | str:
+    rule = word_or(inside(1e-12, _INFINITE), "auto", *words)
     return option("auto", unit="W/K", help=f"conductance between {between_words}", rule=rule)
 
 
 def _to_ambient(node: str) -> float | str:
-    return option(
-        "auto",
-        unit="W/K",
-        help=f"conductance between {node} and ambient; 'auto': by ISO 15312",
-        rule=word_or(inside(1e-12, _INFINITE), "auto"),
-    )
+    return _conductance(f"{node} and ambient; 'auto': by ISO 15312")
 
 
 @attrs.frozen
@@ -247,13 +240,13 @@ class Heat:
         "under-race lubrication: 1",
         rule=word_or(between(1e-3, 1.0), "auto"),
     )
-    inner_balls: float | str = _conductance("inner rings and balls")
-    outer_balls: float | str = _conductance("outer rings and balls")
-    inner_oil: float | str = _conductance("inner rings and oil")
-    balls_oil: float | str = _conductance("balls and oil")
-    outer_oil: float | str = _conductance("outer rings and oil")
-    inner_shaft: float | str = _conductance("inner rings and shaft")
-    outer_housing: float | str = _conductance("outer rings and housing")
+    inner_balls: float | str = _conductance("inner rings and balls", "infinite")
+    outer_balls: float | str = _conductance("outer rings and balls", "infinite")
+    inner_oil: float | str = _conductance("inner rings and oil", "infinite")
+    balls_oil: float | str = _conductance("balls and oil", "infinite")
+    outer_oil: float | str = _conductance("outer rings and oil", "infinite")
+    inner_shaft: float | str = _conductance("inner rings and shaft", "infinite")
+    outer_housing: float | str = _conductance("outer rings and housing", "infinite")
     shaft_ambient: float | str = _to_ambient("shaft")
     housing_ambient: float | str = _to_ambient("housing")
     conductance_band: float = option(
