@@ -60,9 +60,7 @@ def new_figure(width: float, height: float) -> Figure:
     try:
         from matplotlib.figure import Figure
     except ImportError:
-        raise RacewayError(
-            f"pictures need matplotlib, which is not installed: {extra('pictures')}, or leave out --pictures"
-        ) from None
+        raise RacewayError(f"matplotlib is not installed: {extra('pictures')}, or leave out --pictures") from None
     return Figure(figsize=(width, height), layout="constrained")
 
 
@@ -120,9 +118,7 @@ def save_figure(figure: Figure, path: Path, dots_per_inch: int = 300) -> Path:
     RacewayError: Another ending, or a folder or disk that cannot be written.
     """
     if path.suffix.lower() not in FORMATS:
-        raise RacewayError(
-            f"`{path}`: pictures are written as {', '.join(FORMATS[:-1])} or {FORMATS[-1]}: choose such a name"
-        )
+        raise RacewayError(f"`{path}`: pictures are written as {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
     if path.suffix.lower() == ".svg":
         return write_whole(svg(readable(figure)), path)
     if path.suffix.lower() == ".png":

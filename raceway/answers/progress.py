@@ -66,26 +66,13 @@ class ProgressBar:
             return self
         self._log(self._label)
         if self.console.is_terminal:
-            from rich.progress import (
-                BarColumn,
-                MofNCompleteColumn,
-                Progress,
-                ProgressColumn,
-                SpinnerColumn,
-                TextColumn,
-                TimeElapsedColumn,
-                TimeRemainingColumn,
-            )
+            from rich import progress as rich
 
-            columns: list[ProgressColumn] = [
-                SpinnerColumn(),
-                TextColumn("{task.description}"),
-                BarColumn(),
-                TimeElapsedColumn(),
-            ]
+            text = rich.TextColumn("{task.description}")
+            columns: list[rich.ProgressColumn] = [rich.SpinnerColumn(), text, rich.BarColumn(), rich.TimeElapsedColumn()]
             if self._remaining:
-                columns += [MofNCompleteColumn(), TextColumn("left"), TimeRemainingColumn()]
-            self._bar = Progress(*columns, console=self.console, transient=True)
+                columns += [rich.MofNCompleteColumn(), rich.TextColumn("left"), rich.TimeRemainingColumn()]
+            self._bar = rich.Progress(*columns, console=self.console, transient=True)
             self._task = self._bar.add_task(self._label, total=None)
             self._timer.start()
         return self

@@ -124,9 +124,8 @@ class Command(NamedTuple):
         pairs = (entry.partition(" : ") for entry in entries)
         words = {name.strip(): words.strip() for names, _, words in pairs for name in names.split(",")}
         signature = inspect.signature(front)
-        params = [
-            p for p in signature.parameters.values() if p.name not in _SHARED and self.options.get(p.name, True) is not None
-        ]
+        hidden = {*_SHARED, *(name for name, about in self.options.items() if about is None)}
+        params = [parameter for name, parameter in signature.parameters.items() if name not in hidden]
 
         def call(**values: Value) -> int:
             return _perform(self, front, values)
@@ -140,9 +139,8 @@ class Command(NamedTuple):
             names, usual = ("--pictures/--no-pictures", " (default)") if self.pictures else ("--pictures", "")
             command = click.option(names, is_flag=True, default=self.pictures, help=f"Draw pictures as PNG{usual}.")(command)
             form = click.Choice(["svg", "pdf"])
-            command = click.option("--picture-format", type=form, help="Write them in this format, too: for a paper.")(
-                command
-            )
+            text = "Write them in this format, too: for a paper."
+            command = click.option("--picture-format", type=form, help=text)(command)
         if self.pictures is not None or self.folder is not None:
             title = self.named_by.upper() or "TITLE"
             default = f"{RESULTS}/{title}{self.folder}" if "scene" in signature.parameters else f"{RESULTS}/{self.name}"

@@ -124,18 +124,14 @@ def quantities_at(plugin: Quantities, points: SolvedPoints) -> dict[str, np.ndar
     """Numbers (n, ...) of a plug-in by their names, or ``PluginError``."""
     title, n = f"quantity '{plugin.name}'", len(points.load)
     answer = _answer(title, "compute", lambda: plugin.compute(points), Mapping)
-    values = _answer(
-        title, "compute", lambda: {name: np.ascontiguousarray(value, dtype=float) for name, value in answer.items()}, dict
-    )
+    values = _answer(title, "compute", lambda: {k: np.ascontiguousarray(v, dtype=float) for k, v in answer.items()}, dict)
     names = [number.name for number in plugin.numbers]
     if missing := [name for name in names if name not in values] or [name for name in values if name not in names]:
         raise PluginError(f"{title}: compute() must return exactly its `numbers`: {', '.join(names)}; see '{missing[0]}'")
     for number in plugin.numbers:
         shape = values[number.name].shape
         if shape[:1] != (n,) or len(shape) != 1 + len(number.dims):
-            raise PluginError(
-                f"{title}: '{number.name}' has shape {shape}; it must be ({', '.join([str(n), *number.dims])})"
-            )
+            raise PluginError(f"{title}: '{number.name}' has shape {shape}, not ({', '.join([str(n), *number.dims])})")
     return values
 
 
@@ -193,9 +189,7 @@ def reach_of(law: ContactLaw, pairs: ContactPairs) -> np.ndarray:
         return np.zeros(n)
     reach = _of_contacts(law, pairs, "reach")
     if reach.shape != (n,) or not (reach >= 0.0).all() or not np.isfinite(reach).all():
-        raise PluginError(
-            f"contact law '{law.name}': reach() must return {n} finite lengths of 0 or more, one for each contact"
-        )
+        raise PluginError(f"contact law '{law.name}': reach() must return {n} finite lengths of 0 or more")
     return reach
 
 

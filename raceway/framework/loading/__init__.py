@@ -14,16 +14,14 @@ from functools import cache
 from importlib import import_module
 from importlib.resources import files
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, cast
 
 
 @cache
 def packages() -> dict[str, dict[str, Any]]:
     """Distribution -> its "names" with their modules, "commands" with heading and summary, "plugins" as "kind:name", others it "needs"."""
-    content: dict[str, dict[str, Any]] = json.loads(
-        files("raceway").joinpath("data/packages.json").read_text(encoding="utf-8")
-    )
-    return content
+    text = files("raceway").joinpath("data/packages.json").read_text(encoding="utf-8")
+    return cast("dict[str, dict[str, Any]]", json.loads(text))
 
 
 def names_in(variable: str) -> set[str]:
