@@ -121,10 +121,8 @@ def coefficients(
     else:
         _only_axes(selection, (SPEED, SPIN), purpose)
     if selection.unfinished:
-        raise RacewayError(
-            f"the table would have gaps: points without result: {selection.gaps}. Finish them with raceway sweep ... "
-            "--resume (failed ones: --retry-failed), or choose another part with --at"
-        )
+        remedy = "Finish them with raceway sweep ... --resume (failed: --retry-failed), or choose another part with --at"
+        raise RacewayError(f"the table would have gaps: points without result: {selection.gaps}. {remedy}")
     if LIST in selection.dataset.dims:
         raise RacewayError("the points of this sweep fill no grid over speed, and a table needs one: sweep with --grid")
     _refuse_few(selection, least)
@@ -186,10 +184,8 @@ def _band(selection: Selection) -> list[str]:
     if selection.value("contact.damping") != "band":
         return []
     low, high = TIME_CONSTANTS
-    return [
-        f"contact.damping = 'band': the damping is that of the low end, c = tau k with tau = {low:g} s; for both ends sweep "
-        f"--grid contact.time_constant={low:g},{high:g} instead and export one at a time"
-    ]
+    remedy = f"for both ends sweep --grid contact.time_constant={low:g},{high:g} instead and export one at a time"
+    return [f"contact.damping = 'band': the damping is that of the low end, c = tau k with tau = {low:g} s; {remedy}"]
 
 
 def _dry(source: str, stiffness: np.ndarray, damping: np.ndarray, with_damping: np.ndarray, substitute: float) -> list[str]:
@@ -209,17 +205,13 @@ def _refuse_few(selection: Selection, least: int) -> None:
         value = selection.value(SPEED)
         constant = f"`{SPEED}` has the one value {shown(value)}" if value is not None else "the scene has no speed"
         raise SceneError.at(SPEED, None, f"does not vary here ({constant}): sweep it, as by --grid {SPEED}=1000:15000:15")
-    few = [key for key in speeds if len(selection.axes[key]) < least]
-    if few:
-        raise SceneError([
-            Mistake(
-                key,
-                None,
-                f"has {len(selection.axes[key])} points ({listed(selection.axes[key])}); rotor programs put cubics through "
-                f"them, which takes at least {least} on an axis: sweep with --grid {key}=START:STOP:{least} or more",
-            )
-            for key in few
-        ])  # fmt: skip
+    rule, mistakes = f"rotor programs put cubics through them, which takes at least {least} on an axis", list[Mistake]()
+    for key in speeds:
+        if len(values := selection.axes[key]) < least:
+            remedy = f"sweep with --grid {key}=START:STOP:{least} or more"
+            mistakes.append(Mistake(key, None, f"has {len(values)} points ({listed(values)}); {rule}: {remedy}"))
+    if mistakes:
+        raise SceneError(mistakes)
 
 
 def _axes(selection: Selection, *arrays: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None, tuple[np.ndarray, ...]]:
@@ -235,18 +227,11 @@ def _axes(selection: Selection, *arrays: np.ndarray) -> tuple[np.ndarray | None,
 
 
 def _only_axes(selection: Selection, allowed: Sequence[str], purpose: str) -> None:
-    """Refuse axes that would have to be chosen first.
-
-    SceneError: Naming each axis, its values and what to type.
-    """
-    mistakes = [
-        Mistake(
-            key,
-            None,
-            f"has {len(values)} values ({listed(values)}), {purpose}: choose one with --at {key}={shown(values[0])}",
-        )
-        for key, values in selection.axes.items()
-        if key not in allowed
-    ]
+    """Refuse axes that would have to be chosen first: ``SceneError`` with each axis, its values and what to type."""
+    mistakes = list[Mistake]()
+    for key, values in selection.axes.items():
+        if key not in allowed:
+            choice = f"choose one with --at {key}={shown(values[0])}"
+            mistakes.append(Mistake(key, None, f"has {len(values)} values ({listed(values)}), {purpose}: {choice}"))
     if mistakes:
         raise SceneError(mistakes)

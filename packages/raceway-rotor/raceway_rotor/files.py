@@ -18,8 +18,6 @@ Mechanical APDL, Rotordynamic Analysis Guide, 3.3.2.1, "User-Defined Stiffness a
 KEYOPT(3) = 1 as in another exporter, https://github.com/FE-Berserker/Baffalo (Bearingprint.m, Tableprint.m).
 """
 
-import csv
-import io
 import json
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -28,7 +26,7 @@ import attrs
 import numpy as np
 
 from raceway import RacewayError
-from raceway.extend import DOF, Tables
+from raceway.extend import DOF, Tables, csv_text
 from raceway_rotor.coefficients import SPEED, SPIN, Coefficients, unit
 
 #: Numbers of a Nastran file: the property's, then its tables'; the next bearing's may begin behind them.
@@ -238,12 +236,9 @@ def _csv_text(table: Coefficients, head: Sequence[str]) -> str:
     columns |= {f"{name} [{unit(name)}]": values for name, values in table.columns().items()}
     columns |= dict(_entries("K", table.tangent)) | dict(_entries("C", table.tangent_damping))
     columns |= table.stated
-    text = io.StringIO()
-    text.writelines(f"# {sentence}\n" for sentence in head)
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(zip(*(values.ravel().tolist() for values in columns.values()), strict=True))
-    return text.getvalue()
+    rows = zip(*(values.ravel().tolist() for values in columns.values()), strict=True)
+    notes = "".join(f"# {sentence}\n" for sentence in head)
+    return notes + csv_text([dict(zip(columns, row, strict=True)) for row in rows])
 
 
 def _json_text(table: Coefficients, head: Sequence[str], tag: str) -> str:

@@ -143,10 +143,8 @@ def _schur_complement(matrix: np.ndarray, outside: list[int], inside: list[int])
     part = matrix[np.ix_(outside, outside)]
     if not inside:
         return np.array(part)
-    return np.asarray(
-        part
-        - matrix[np.ix_(outside, inside)] @ np.linalg.solve(matrix[np.ix_(inside, inside)], matrix[np.ix_(inside, outside)])
-    )
+    free = np.linalg.solve(matrix[np.ix_(inside, inside)], matrix[np.ix_(inside, outside)])
+    return np.asarray(part - matrix[np.ix_(outside, inside)] @ free)
 
 
 def node_bearing(

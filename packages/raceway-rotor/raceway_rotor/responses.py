@@ -215,10 +215,8 @@ def run_time_response(
     """
     bearings = _rolling_bearings(rotor, "run_time_response")
     if np.ndim(speed):
-        raise RacewayError(
-            "`speed`: nonlinear bearing forces are of one speed; for a run-up use rotor.run_time_response, whose bearings "
-            "have the stiffness of small motions at each speed"
-        )
+        remedy = "for a run-up use rotor.run_time_response, whose bearings have the stiffness of small motions at each speed"
+        raise RacewayError(f"`speed`: nonlinear bearing forces are of one speed; {remedy}")
     unknown = sorted(set(options) - set(_OPTIONS))
     if unknown:
         raise RacewayError(f"`{unknown[0]}` is no option with nonlinear bearings: gamma, beta, {', '.join(_OPTIONS)} are")

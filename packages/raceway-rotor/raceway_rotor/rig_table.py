@@ -60,9 +60,7 @@ class Rig:
     unbalance_radius: float = option(0.090, unit="m", help="distance of that mass from the axis", rule=positive())
     unbalance_angle_deg: float = option(0.0, unit="deg", help="angle of that mass from the mark", rule=finite())
     arrangement: str = option(
-        "DB",
-        help="a force on the shaft towards the disc ('DB') or away from it ('DF') preloads a bearing",
-        rule=one_of("DB", "DF"),
+        "DB", help="a force on the shaft to the disc ('DB') or from it ('DF') preloads a bearing", rule=one_of("DB", "DF")
     )
     sensor_distance: float = option(0.025, unit="m", help="from the tested bearing's centre", rule=at_least(0.0))
     sensor_side: str = option(
@@ -105,10 +103,8 @@ class Rig:
             room = 0.5 * (self.span - self.disc_thickness)
             end = "in the disc or beyond it"
         if self.sensor_distance > room:
-            raise ValueError(
-                f"`sensor_distance` = {self.sensor_distance:g} m puts the sensor {end}: at most {room:g} m {self.sensor_side} "
-                "the tested bearing"
-            )
+            remedy = f"at most {room:g} m {self.sensor_side} the tested bearing"
+            raise ValueError(f"`sensor_distance` = {self.sensor_distance:g} m puts the sensor {end}: {remedy}")
 
     @property
     def unbalance(self) -> float:

@@ -248,7 +248,5 @@ def _mass(selection: Selection) -> list[str]:
     mass = selection.dataset["mass"].values
     if not np.any(mass):
         return ["K = Re Z: the motion has no inertia (quasi-static)"]
-    return [
-        f"K = Re Z + m w^2: the mass that the sweep moved, {float(np.max(mass)):.4g} kg, is removed; the rotor model includes it, with the "
-        "inner ring where its shaft does not"
-    ]
+    included = "the rotor model includes it, with the inner ring where its shaft does not"
+    return [f"K = Re Z + m w^2: the mass that the sweep moved, {float(np.max(mass)):.4g} kg, is removed; {included}"]
