@@ -48,17 +48,6 @@ def deep_groove_candidates(size: Printed) -> list[Candidate]:
                 weight += (_METRIC if metric else 0.0) + (_MEAN if abs(factor - 1.0) < 1e-9 else 0.0)
                 for k in np.flatnonzero(np.maximum(abs(c), abs(c0)) <= _FARTHEST):
                     errors = (float(c[k]),), (float(c0[k]),)
-                    candidates.append(
-                        Candidate(
-                            "tables",
-                            int(counts[k]),
-                            float(d),
-                            CONFORMITY,
-                            CONFORMITY,
-                            *errors,
-                            float(weight[k]),
-                            None,
-                            float(factor),
-                        )  # fmt: skip
-                    )
+                    balls, grooves = (int(counts[k]), float(d)), (CONFORMITY, CONFORMITY)
+                    candidates.append(Candidate("tables", *balls, *grooves, *errors, float(weight[k]), None, float(factor)))
     return candidates

@@ -128,10 +128,8 @@ class _InferredTable(Answer):
     @property
     def summary(self) -> Tables:
         """Largest errors of ratings, median and 90 % of stiffnesses, and how many printed internals are met; what is refused is not."""
-        errors = {
-            word: [abs(check.error) for answer in self.inferred for check in answer.checks if check.quantity == word]
-            for word in QUANTITIES
-        }
+        checks = [check for answer in self.inferred for check in answer.checks]
+        errors = {word: [abs(check.error) for check in checks if check.quantity == word] for word in QUANTITIES}
         stiff = errors["pair stiffness"]
         pairs = [(a.printed.internals, a.numbers) for a in self.inferred if a.printed.internals is not None]
 

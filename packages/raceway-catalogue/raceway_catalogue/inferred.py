@@ -217,23 +217,16 @@ def infer_printed(size: Printed, maker: str | None = None, conformity: float | N
         axial, radial = both_stiffnesses(size, best, pair.preload, pair.contact_angle_deg, inner.value, outer.value)
         checks.append(_Check(angle, "pair stiffness", pair.stiffness, float(axial)))
         checks += [] if pair.radial is None else [_Check(angle, "radial stiffness", pair.radial, float(radial))]
+    of_count = f"{how[best.practice]}; {100.0 * share:.3g} % of all counts that do{doubt}"
+    of_ball = f"usual size, {size_words(best.ball_diameter)}; C alone leaves the uncertainty"
+    asked = "" if abs(best.pitch_factor - 1.0) < 1e-9 else f"as C and C0 ask for, {best.pitch_factor:.3g} of "
+    of_pitch = f"{asked}the mean of bore and outer diameter"
     return Inferred(
         printed=size,
         practice=best.practice,
-        ball_count=_Number(
-            best.ball_count, 1.0 - share, (f"{how[best.practice]}; {100.0 * share:.3g} % of all counts that do{doubt}")
-        ),
-        ball_diameter=_Number(
-            best.ball_diameter,
-            max(map(abs, best.dynamic_errors)) / 1.8,
-            f"usual size, {size_words(best.ball_diameter)}; C alone leaves the uncertainty",
-        ),
-        pitch_diameter=_Number(
-            best.pitch_factor * size.mean_diameter,
-            _PITCH,
-            ("" if abs(best.pitch_factor - 1.0) < 1e-9 else f"as C and C0 ask for, {best.pitch_factor:.3g} of ")
-            + "the mean of bore and outer diameter",
-        ),
+        ball_count=_Number(best.ball_count, 1.0 - share, of_count),
+        ball_diameter=_Number(best.ball_diameter, max(map(abs, best.dynamic_errors)) / 1.8, of_ball),
+        pitch_diameter=_Number(best.pitch_factor * size.mean_diameter, _PITCH, of_pitch),
         conformity_inner=inner,
         conformity_outer=outer,
         share=share,
@@ -272,10 +265,8 @@ def _refuse_contradiction(size: Printed) -> None:
     first = min(size.ratings, key=lambda x: x.contact_angle_deg)
     for rating in size.ratings:
         lean = math.cos(math.radians(rating.contact_angle_deg)) / math.cos(math.radians(first.contact_angle_deg))
-        for word, value, base, power in (
-            ("dynamic", rating.dynamic, first.dynamic, 0.7),
-            ("static", rating.static, first.static, 1.0),
-        ):
+        for word, power in (("dynamic", 0.7), ("static", 1.0)):
+            value, base = getattr(rating, word), getattr(first, word)
             if abs(value / base / lean**power - 1.0) > 0.06:
                 rule = (
                     f"contradicts {base:g} N at {first.contact_angle_deg:g} deg: the same balls have {base * lean**power:.4g} N, "
@@ -310,29 +301,25 @@ def _grooves(size: Printed, best: Candidate, conformity: float | None) -> tuple[
         return _Number(best.conformity_inner, _CONFORMITY, why), _Number(best.conformity_outer, _CONFORMITY, outer)
     # Median of the conformities that give each printed stiffness, and its relative scatter
     if not size.pairs:
-        fit = None
-    else:
-        curves = stiffnesses(size, best.ball_count, best.ball_diameter, _TRIED, _TRIED)
-        stiffnesses_printed = np.array([pair.stiffness for pair in size.pairs])
-        # Stiffness falls as grooves widen.
-        each = [float(np.interp(k, row[::-1], _TRIED[::-1])) for k, row in zip(stiffnesses_printed, curves.T, strict=True)]
-        middle = float(np.median(each))
-        if not _TRIED[0] < middle < _TRIED[-1]:
-            usual = stiffnesses(size, best.ball_count, best.ball_diameter, CONFORMITY, CONFORMITY)
-            rule = (
-                f"contradicts the ratings: these balls have {1e-6 * usual[0]:.3g} N/µm under {size.pairs[0].preload:g} N in grooves of "
-                f"{CONFORMITY:g} D, and no groove that is ground gives this. Is it the axial stiffness of a pair?"
-            )
-            raise SceneError.at(f"{size.title}: stiffness of a pair", f"{1e-6 * stiffnesses_printed[0]:.3g} N/µm", rule)
-        falls = np.abs(np.gradient(np.log(curves), np.log(_TRIED), axis=0))
-        by_one = _STIFFNESS / float(np.median([np.interp(middle, _TRIED, slope) for slope in falls.T]))
-        fit = round(middle, 4), max(float(np.median(np.abs(np.array(each) - middle))) / middle, by_one)
-    if fit is None:
         both = _Number(CONFORMITY, _CONFORMITY, "meets printed stiffnesses of the series 70, and is taken for all")
-    else:
-        n = len(size.pairs)
-        several = f"{n} printed stiffnesses of pairs" if n > 1 else "the printed stiffness of a pair"
-        both = _Number(fit[0], fit[1], f"meets {several}")
+        return both, both
+    curves, n = stiffnesses(size, best.ball_count, best.ball_diameter, _TRIED, _TRIED), len(size.pairs)
+    stiffnesses_printed = np.array([pair.stiffness for pair in size.pairs])
+    # Stiffness falls as grooves widen.
+    each = [float(np.interp(k, row[::-1], _TRIED[::-1])) for k, row in zip(stiffnesses_printed, curves.T, strict=True)]
+    middle = float(np.median(each))
+    if not _TRIED[0] < middle < _TRIED[-1]:
+        usual = stiffnesses(size, best.ball_count, best.ball_diameter, CONFORMITY, CONFORMITY)
+        rule = (
+            f"contradicts the ratings: these balls have {1e-6 * usual[0]:.3g} N/µm under {size.pairs[0].preload:g} N in grooves of "
+            f"{CONFORMITY:g} D, and no groove that is ground gives this. Is it the axial stiffness of a pair?"
+        )
+        raise SceneError.at(f"{size.title}: stiffness of a pair", f"{1e-6 * stiffnesses_printed[0]:.3g} N/µm", rule)
+    falls = np.abs(np.gradient(np.log(curves), np.log(_TRIED), axis=0))
+    by_one = _STIFFNESS / float(np.median([np.interp(middle, _TRIED, slope) for slope in falls.T]))
+    scatter = max(float(np.median(np.abs(np.array(each) - middle))) / middle, by_one)
+    several = f"{n} printed stiffnesses of pairs" if n > 1 else "the printed stiffness of a pair"
+    both = _Number(round(middle, 4), scatter, f"meets {several}")
     return both, both
 
 
