@@ -119,10 +119,8 @@ def columns_of(
     quantities = [quantity for quantity, _ in by_quantity]
     duplicates = [(quantity, header) for quantity, header in by_quantity if quantities.count(quantity) > 1]
     if duplicates:
-        raise ValueError(
-            f"{where}{', '.join(sorted({quantity for quantity, _ in duplicates}))} is duplicated. Found: {', '.join(map(str, columns))}. "
-            f"Ignore one: {_options([(duplicates[-1][1].text, IGNORE)], where)}"
-        )
+        advice = f"Found: {', '.join(map(str, columns))}. Ignore one: {_options([(duplicates[-1][1].text, IGNORE)], where)}"
+        raise ValueError(f"{where}{', '.join(sorted({quantity for quantity, _ in duplicates}))} is duplicated. {advice}")
     if "time" not in quantities or len(quantities) < 2:
         missing = "no column for time" if "time" not in quantities else "time alone is no record"
         words = f"found: {', '.join(map(str, columns))}; needed: {', '.join(needed.values())}"

@@ -117,10 +117,8 @@ class Fitted(Answer):
         beyond = "lies at the end of its range: the data require a value beyond the scene's rules"
         out += [f"{name} {beyond}" for name in answer.at_limit]
         if answer.widened > 1.0:
-            out.append(
-                f"the model misses the data by {answer.widened:.2g} times their stated errors: intervals are widened by it, and the "
-                "model or the stated errors are wrong"
-            )
+            effect = "intervals are widened by it, and the model or the stated errors are wrong"
+            out.append(f"the model misses the data by {answer.widened:.2g} times their stated errors: {effect}")
         return [*out, *self.notes]
 
     @door

@@ -105,10 +105,8 @@ class Identified(Answer):
         if not self.run_out.vector:
             out.append("no run-out was subtracted: give --slow-roll or --run-out")
         if abs(state.stiffness / self.scene_stiffness - 1.0) > _UNLIKE:
-            out.append(
-                f"under the same force and moment the scene's bearing has a K of {1e-6 * self.scene_stiffness:.4g} N/µm: check bearing and arrangement "
-                "of the rig; their tilt stiffness enters the result"
-            )
+            model = f"under the same force and moment the scene's bearing has a K of {1e-6 * self.scene_stiffness:.4g} N/µm"
+            out.append(f"{model}: check bearing and arrangement of the rig; their tilt stiffness enters the result")
         if abs(state.deflection) < _SMALL * abs(state.sensor):
             part = 100.0 * abs(state.deflection) / abs(state.sensor)
             out.append(f"the bearing moves by {part:.2g} % of the sensor signal; the remainder is the bow of the shaft")

@@ -123,9 +123,8 @@ class LinearResiduals:
 
     def select_excited(self, at: np.ndarray) -> None:
         """From here on only frequencies whose force the noise does not hide determine Z."""
-        before = self.stiffness(at)
+        self.before = self.stiffness(at)
         visible = (np.abs(self.spectra.force) ** 2 > _ABOVE * self.variance(at)).any(axis=1)
-        self.before = before
         self.excited = visible if visible.any() else np.ones_like(visible)
 
     def unweighted(self, at: np.ndarray) -> np.ndarray:

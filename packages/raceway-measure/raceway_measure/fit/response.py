@@ -198,10 +198,8 @@ def _read_function(source: str, table: _Set, factors: _Set | None, number: str, 
             f'--map "{number}=FORM", one of {", ".join(_FORMS)}'
         )
     if scale is None:
-        upper, lower = (
-            _data_unit(table, axis, kind, factors, number, form)
-            for axis, kind in zip(("ordinate", "orddenom"), _FORMS[form], strict=True)
-        )
+        parts = zip(("ordinate", "orddenom"), _FORMS[form], strict=True)
+        upper, lower = (_data_unit(table, axis, kind, factors, number, form) for axis, kind in parts)
         scale = upper[0] / lower[0]
         notes.append(f"{form.replace('_', ' ')} in {upper[1]} over {lower[1]}")
     hz, values = np.asarray(table["x"], float), scale * np.asarray(table["data"])

@@ -69,10 +69,8 @@ def rotation_of(recording: Recording) -> Rotation:
         )
     span = (speeds.max() - speeds.min()) / speeds.mean()
     if span > _MOST_RANGE:
-        raise RacewayError(
-            f"the speed is not constant: it changes by {100 * span:.3g} % over the record; up to {100 * _MOST_RANGE:g} % is one "
-            "operating point. Cut the record into parts"
-        )
+        remedy = f"up to {100 * _MOST_RANGE:g} % is one operating point. Cut the record into parts"
+        raise RacewayError(f"the speed is not constant: it changes by {100 * span:.3g} % over the record; {remedy}")
     return rotation
 
 

@@ -259,10 +259,8 @@ def _clipping(name: str, signal: np.ndarray) -> str:
     for word, end in (("top", values[-1]), ("bottom", values[0])):
         share = float((signal == end).mean())
         if share > 2.0 * usual + _AT_THE_END:
-            return (
-                f"{100.0 * share:.2g} % of all samples of {name} lie at the {word} of its range, {1e6 * end:.6g} µm: the signal is clipped. "
-                "Record again with a larger range of sensor or amplifier"
-            )
+            fault = f"{100.0 * share:.2g} % of all samples of {name} lie at the {word} of its range, {1e6 * end:.6g} µm"
+            return f"{fault}: the signal is clipped. Record again with a larger range of sensor or amplifier"
     return ""
 
 

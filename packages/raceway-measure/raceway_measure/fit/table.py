@@ -290,18 +290,8 @@ def fit_table(measurements: _Measurements, scene: Scene, names: list[str]) -> Fi
     unit = key_of(scene, key).unit if key else ""
     band = answer.half_widths(answer.jacobian, causes).reshape(-1, measurements.count)
     noise = answer.widened if measurements.stated else (answer.scatter or 0.0)
-    series = tuple(
-        Series(
-            name,
-            _quantity_unit(name),
-            key or "measurement",
-            unit,
-            x,
-            numbers,
-            answers[name],
-            noise * measurements.weights[name],
-            band[k] * measurements.weights[name],
-        )  # fmt: skip
-        for k, (name, numbers) in enumerate(measurements.values.items())
-    )
-    return Fitted(scene.title, measurements.source, "table", measurements.stated, answer, series, (), tuple(notes))
+    series = list[Series]()
+    for k, (name, numbers) in enumerate(measurements.values.items()):
+        axes, weights = (name, _quantity_unit(name), key or "measurement", unit), measurements.weights[name]
+        series.append(Series(*axes, x, numbers, answers[name], noise * weights, band[k] * weights))
+    return Fitted(scene.title, measurements.source, "table", measurements.stated, answer, tuple(series), (), tuple(notes))
