@@ -210,24 +210,11 @@ def map_unit(
     error_words = f"relative error at most {largest:.1e} ({of})" if of else "errors are those of each output"
     if excess.max() > tolerance:
         error_words += f", above the tolerance {tolerance:g}. {_NARROW[:-1]}"
-    return Unit(
-        name,
-        f"map over {words}; {error_words}.",
-        "map.c",
-        {
-            "TERMS": terms[0].size,
-            "MOST": max(terms.shape[1:]),
-            "degrees": np.array(terms.shape[1:]),
-            "logarithmic": np.array([int(axis.logarithmic) for axis in axes]),
-            "low": low,
-            "high": high,
-            "terms": terms.reshape(len(terms), -1),
-        },
-        f"an input is out of range: its end stands for it ({words})",
-        tuple(inputs),
-        tuple(stated),
-        tuple(errors),
-    )
+    degrees, logarithmic = np.array(terms.shape[1:]), np.array([int(axis.logarithmic) for axis in axes])
+    numbers = {"TERMS": terms[0].size, "MOST": max(terms.shape[1:]), "degrees": degrees, "logarithmic": logarithmic}
+    numbers |= {"low": low, "high": high, "terms": terms.reshape(len(terms), -1)}
+    title, beyond = f"map over {words}; {error_words}.", f"an input is out of range: its end stands for it ({words})"
+    return Unit(name, title, "map.c", numbers, beyond, tuple(inputs), tuple(stated), tuple(errors))
 
 
 def _variable(name: str) -> Variable:
