@@ -166,10 +166,8 @@ class Precision(Answer):
         lines = [f"reference: {reference.how}; relative bound {reference.bound:.1g}"]
         at_bound = [row for row in self.judged if row["at_bound"] and row["physics"] == self.base]
         if at_bound:
-            lines.append(
-                f"the reference is not {EXACT:g} times more accurate than {len(at_bound)} of the rows (marked ~): their errors "
-                "are known to its bound only, and so is the front there"
-            )
+            bound = f"the reference is not {EXACT:g} times more accurate than {len(at_bound)} of the rows (marked ~)"
+            lines.append(f"{bound}: their errors are known to its bound only, and so is the front there")
         for threshold, index in self.cheapest(self.base).items():
             percent = f"{100.0 * float(threshold):g} %"
             if index is None:

@@ -72,9 +72,9 @@ def page(result: Tables, picture: bool = False) -> str:
         for model in models:
             parts, difference = model["differences"], model["difference"]
             changes = [difference and abs(difference), *(parts.get(name) for name in (K.name, PEAK_BALL_LOAD.name, P0.name))]
+            signs = ("", "+", "+", "+")
             cells = [
-                "" if part is None else f"{100.0 * part:{sign}.3g} %"
-                for part, sign in zip(changes, ("", "+", "+", "+"), strict=True)
+                "" if part is None else f"{100.0 * part:{sign}.3g} %" for part, sign in zip(changes, signs, strict=True)
             ]
             rows.append([_setting_words(model["model"]), *cells, _digits(model["reference"]["error"], 2)])
         table = _markdown(("model", "difference", "of K", "of peak load", "of p0", "reference's bound"), rows)

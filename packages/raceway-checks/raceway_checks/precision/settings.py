@@ -11,6 +11,7 @@ models            what changes the physics, one at a time: law, discretisation, 
 """
 
 import json
+import textwrap
 from collections.abc import Callable, Mapping
 from itertools import product
 from typing import NotRequired
@@ -110,7 +111,8 @@ def setting_at(
         scene = scene_from_dict(scene_tables, registry)
         plan = make_plan(scene)
     except RacewayError as error:
-        return Setting(family, values, model, scene_tables, None, reason=short(str(error)))
+        reason = textwrap.shorten(str(error).splitlines()[0], _REASON, placeholder="...")
+        return Setting(family, values, model, scene_tables, None, reason=reason)
     if needs_motion(scene) and not scene.integrator.method.inertial:
         model["inertia"] = False
     inertial = not needs_motion(scene) or scene.integrator.method.inertial
@@ -157,12 +159,6 @@ def _default_points(scene: Scene, registry: Registry) -> list[tuple[str, Tables]
         alternatives["identifier.kind"] = [n for n in registry.names("identifier") if n != scene.identifier.kind]
     points += [("models", {key: value}) for key, values in alternatives.items() for value in values]
     return points
-
-
-def short(text: str) -> str:
-    """The first line of a reason, cut where it would fill a table."""
-    line = text.splitlines()[0]
-    return line if len(line) <= _REASON else f"{line[: _REASON - 3]}..."
 
 
 #: Steps of the reference over the finest steps of the rows, and its least steps and turns.

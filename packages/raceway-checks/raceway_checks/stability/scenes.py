@@ -311,10 +311,8 @@ def condensed_at_rest(rows: Rows, bench: Bench) -> None:
 
 def turn(rows: Rows, bench: Bench, integrator: str) -> None:
     """The dynamic stiffness of one turn."""
-    steady, dynamic = (
-        each.changed({"integrator.kind": kind})
-        for each, kind in ((_with_calibration(bench), "periodic"), (bench, integrator))
-    )
+    steady = _with_calibration(bench).changed({"integrator.kind": "periodic"})
+    dynamic = bench.changed({"integrator.kind": integrator})
     near, stiffness = (abs(_stiffness(each.result())) for each in (steady, dynamic))
     rows.check("|Z| [N/m], predicted by Hertz on these bodies", stiffness, _COARSE, Limit.equal(near, 0.05))
 

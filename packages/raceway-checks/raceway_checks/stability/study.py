@@ -174,10 +174,8 @@ class Stability(Answer):
     def texts(self, pictures: bool) -> dict[str, str]:
         """The study as Markdown: what failed first, then a table for each case."""
         bad = [attrs.asdict(row) for row in self.failed]
-        counts = (
-            f"{self._count_words}, {self.seconds:.0f} s on {self.processes} processes ({self.reused} stored cases); "
-            f"{self.left_out} cases not asked for."
-        )
+        run = f"{self._count_words}, {self.seconds:.0f} s on {self.processes} processes ({self.reused} stored cases)"
+        counts = f"{run}; {self.left_out} cases not asked for."
         lines = [f"# {self.title}", "", counts, *(["", "## Failed", "", *_case_table(bad)] if bad else [])]
         for name in dict.fromkeys(row.case for row in self.rows):
             lines += ["", f"## {name}", "", *_case_table(attrs.asdict(row) for row in self.rows if row.case == name)]
@@ -215,10 +213,7 @@ class Stability(Answer):
 
 def _cells(row: _Row) -> dict[str, str]:
     setting = ", ".join(micro(f"{key} {value}") for key, value in row.setting.items())
-    numbers = {
-        name: "" if value is None else f"{value:.6g}"
-        for name, value in (("predicted", row.predicted), ("observed", row.observed))
-    }
+    numbers = {name: _number_text(getattr(row, name)) for name in ("predicted", "observed")}
     words = {"case": micro(row.case), "setting": setting, "quantity": row.quantity, "expected": row.expected}
     return {**words, **numbers, "verdict": row.verdict}
 

@@ -24,7 +24,7 @@ from raceway_checks.stability.catalogue import transient_integrators
 from raceway_checks.verify.reference import BASES, Case, Verified, reference_cases
 
 if TYPE_CHECKING:
-    from raceway.extend import Excitation, Integrator, Model
+    from raceway.extend import Excitation, Integrator, Model, OnProgress
 
 _INCH, _POUND, _PSI = 0.0254, 4.4482216152605, 6894.757293168361
 
@@ -257,8 +257,6 @@ def _nodal(model: Model) -> dict[str, float]:
     columns = model.bearing.ball_columns(model, solve_equilibrium(model))
     return {race: 1e-6 * float(np.max(columns[f"peak_pressure_nodal_{race}_pa"])) for race in ("inner", "outer")}
 
-
-OnProgress = Callable[[str, int, int], None]
 
 #: How each case is computed.
 COMPUTED: dict[str, Callable[[Case, Registry], Rows]] = {
