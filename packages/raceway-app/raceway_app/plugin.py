@@ -14,11 +14,8 @@ if TYPE_CHECKING:
 def raceway_commands() -> dict[str, tuple[Later, ...]]:
     from raceway.extend import Later
 
-    return {
-        "Answers": (
-            Later("app", "raceway_app.server:app_command", "A page to look at a scene and change it, on this machine."),
-        )
-    }
+    page = Later("app", "raceway_app.server:app_command", "A page to look at a scene and change it, on this machine.")
+    return {"Answers": (page,)}
 
 
 @hookimpl

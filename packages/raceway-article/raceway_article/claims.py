@@ -165,10 +165,8 @@ def _not_testable(static: Sequence[Verified]) -> list[Verdict]:
 
 def _unidirectional(curves: Curves) -> list[_Row]:
     """Claim 3: under a force along one line the stiffness falls with speed."""
-    rule = (
-        f"unidirectional force, constant amplitude: falls at every step of the speed, and by at least {LEVEL:.1%} over the range; "
-        f"{BRIDGED}"
-    )
+    falling = f"falls at every step of the speed, and by at least {LEVEL:.1%} over the range; {BRIDGED}"
+    rule = f"unidirectional force, constant amplitude: {falling}"
     rows = []
     for number, measure in (("3a", "K"), ("3b", "|Z|")):
         findings = []

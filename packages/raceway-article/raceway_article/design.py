@@ -124,10 +124,8 @@ class Design:
 
     def settings(self) -> Iterator[Setting]:
         """All of them for the first kind of bodies; for a second one, and with friction, the pairs that the claims are about."""
-        for bodies, direction, amplitude, tilt, inertia in product(
-            self.bodies, DIRECTIONS, AMPLITUDES, TILTS, (True, False)
-        ):
-            setting = Setting(direction, amplitude, tilt, inertia, bodies)
+        for bodies, direction, law, tilt, inertia in product(self.bodies, DIRECTIONS, AMPLITUDES, TILTS, (True, False)):
+            setting = Setting(direction, law, tilt, inertia, bodies)
             if bodies == self.bodies[0] or setting.claimed:
                 yield setting
         for friction, (direction, amplitude), tilt in product(self.frictions[1:], CLAIMED, TILTS):

@@ -329,10 +329,8 @@ def _stresses(out: Page, rows: list[Tables], section: bytes | None) -> None:
             })  # fmt: skip
     out.rows(lines, "Elastic bodies: largest shear stress and its depth")
     if section is not None:
-        alternative = (
-            "Sections through ball and races at the most loaded contact of each race under the heaviest load: von Mises stress, largest shear "
-            "stress, and both along the contact’s normal beside Hertz’s."
-        )
+        cuts = "Sections through ball and races at the most loaded contact of each race under the heaviest load"
+        alternative = f"{cuts}: von Mises stress, largest shear stress, and both along the contact’s normal beside Hertz’s."
         out.figures([(section, alternative, "elastic bodies under the heaviest axial load")], wide=True)
         return
     reasons = [row["no_picture"] for row in rows if row.get("no_picture")]

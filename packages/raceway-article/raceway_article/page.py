@@ -230,10 +230,8 @@ def _trends(out: Page, content: ReadTables) -> None:
 
 def _rig(out: Page, content: ReadTables) -> None:
     out.section("At the rig’s speeds and loads")
-    out.text(
-        "What claim 2 would be compared with at the rig: K under the rotating force m e w² with ball inertia. The article’s "
-        "measured values are lost, so nothing is compared."
-    )
+    compared = "What claim 2 would be compared with at the rig: K under the rotating force m e w² with ball inertia"
+    out.text(f"{compared}. The article’s measured values are lost, so nothing is compared.")
     speeds = dict.fromkeys(row["speed_rpm"] for row in content["rig"])
     cells: dict[str, list[str]] = {}
     for row in content["rig"]:

@@ -9,8 +9,6 @@ class RemainingTime:
 
     A run that takes longer than planned leaves the end unknown.
 
-    Parameters
-    ----------
     seconds : predicted time by number of every run that is to be made, in their order [s]
     kinds : what is alike in runs by the same number: none takes longer than the one of its kind before
     on_progress : called as ``on_progress(what, done, total)``, in predicted seconds; an exception stops the study

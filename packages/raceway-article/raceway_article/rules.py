@@ -73,11 +73,8 @@ class Verdict:
     def row(self) -> Tables:
         """As a row of a flat table."""
         words = f"{self.kind} {self.region}" if self.region else self.kind
-        return {
-            **attrs.asdict(self, filter=lambda field, _: field.name != "findings"),
-            "verdict": words,
-            "where": self.where,
-        }
+        plain = attrs.asdict(self, filter=lambda field, _: field.name != "findings")
+        return {**plain, "verdict": words, "where": self.where}
 
     def to_dict(self) -> Tables:
         return {**self.row(), "findings": [attrs.asdict(finding) for finding in self.findings]}

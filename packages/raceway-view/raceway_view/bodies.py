@@ -236,11 +236,9 @@ class BearingSolids:
 
     def balls(self, state: Snapshot) -> list[Solid]:
         """Each ball with the load of its inner contact."""
-        solid = ball(self.diameter)
-        return [
-            Solid(f"ball {k}", solid.moved(centre), load=float(state.load[k]), ball=k)
-            for k, centre in zip(range(len(state.azimuth)), self.centres(state), strict=True)
-        ]
+        solid, loads = ball(self.diameter), state.load.tolist()
+        centres = enumerate(self.centres(state))
+        return [Solid(f"ball {k}", solid.moved(centre), load=loads[k], ball=k) for k, centre in centres]
 
     def arrows(self, state: Snapshot, top: float) -> list[Solid]:
         """The force of each ball on the outer ring, outside of it; as long as the ball diameter at the load ``top`` [N]."""
@@ -310,10 +308,8 @@ class BearingSolids:
 
 def _groove_radius(bearing: Dimensions) -> float:
     """Radius of the circle of inner groove centres [m]."""
-    return float(
-        0.5 * bearing.pitch_diameter
-        + (bearing.conformity_inner - 0.5) * bearing.ball_diameter * np.cos(bearing.contact_angle)
-    )
+    from_balls = (bearing.conformity_inner - 0.5) * bearing.ball_diameter
+    return float(0.5 * bearing.pitch_diameter + from_balls * np.cos(bearing.contact_angle))
 
 
 def _radial(azimuth: np.ndarray) -> np.ndarray:

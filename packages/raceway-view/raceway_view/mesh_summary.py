@@ -15,8 +15,6 @@ _PATCHES = ("inner_patch", "outer_patch", "band")
 def summary(meshes: Mapping[str, HexMesh]) -> Tables:
     """Numbers of every body and of all.
 
-    Parameters
-    ----------
     meshes : name of the body -> mesh
 
     Returns
@@ -27,8 +25,6 @@ def summary(meshes: Mapping[str, HexMesh]) -> Tables:
         longer direction {min, max}, and the depth of the cells below {min, max}; None where no set is named after a
         contact), ``bodies{name: the same}``.
 
-    Notes
-    -----
     A body whose array ``cells`` is the very same object as an earlier one's, with edges as long (balls: a rigid motion of
     one mesh), takes that one's numbers over.
     """

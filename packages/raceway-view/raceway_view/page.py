@@ -51,11 +51,8 @@ def view_page(bearing: BearingSolids, state: Snapshot, words: Tables, pictures: 
     page.section("Balls")
     for inner in (True, False):
         race = "inner" if inner else "outer"
-        page.table(
-            BALL_COLUMNS,
-            ball_cells(state, inner),
-            caption=f"Contacts with the {race} race {words['when']}; a and b are the semi-axes",
-        )
+        caption = f"Contacts with the {race} race {words['when']}; a and b are the semi-axes"
+        page.table(BALL_COLUMNS, ball_cells(state, inner), caption)
     if words["quantities"]:
         page.section("Life, friction and other quantities")
         page.table(("quantity", "value", "remark"), words["quantities"])
@@ -77,10 +74,8 @@ def rings_data(bearing: BearingSolids, facets: int = 120) -> Tables:
     rings = bearing.rings(facets=facets)
     shapes = {f"ring {k}": _packing(part.surface) for k, part in enumerate(rings)}
     parts = [_part(part, f"ring {k}", np.zeros(3), list(to_rgb(part.colour or "white"))) for k, part in enumerate(rings)]
-    return {
-        "fixed_shapes": {"ball": _packing(ball(bearing.diameter, facets // 6, facets // 4)), **shapes},
-        "fixed_parts": parts,
-    }
+    shapes["ball"] = _packing(ball(bearing.diameter, facets // 6, facets // 4))
+    return {"fixed_shapes": shapes, "fixed_parts": parts}
 
 
 def state_data(bearing: BearingSolids, state: Snapshot) -> Tables:
@@ -147,11 +142,8 @@ def _packing(surface: Surface, tones: np.ndarray | None = None) -> dict[str, str
     assert len(surface.points) <= _MOST
     normals = np.zeros((len(surface.points), 4), dtype=np.int8)
     normals[:, :3] = np.round(127.0 * surface.normals)
-    out = {
-        "points": _number_text(surface.points.astype("<f4")),
-        "normals": _number_text(normals),
-        "triangles": _number_text(surface.triangles.astype("<u2")),
-    }
+    out = {"points": _number_text(surface.points.astype("<f4")), "normals": _number_text(normals)}
+    out["triangles"] = _number_text(surface.triangles.astype("<u2"))
     if tones is not None:
         colours = np.full((len(tones), 4), 255, dtype=np.uint8)
         colours[:, :3] = np.round(255.0 * tones)
@@ -178,10 +170,8 @@ def _tone(colours: str, share: np.ndarray | float) -> np.ndarray:
 
 def _bar(quantity: str, unit: str, colours: str, top: float) -> str:
     """A colour bar with its numbers."""
-    stops = ", ".join(
-        f"rgb({', '.join(str(round(255 * float(part))) for part in _tone(colours, share))})"
-        for share in np.linspace(0.0, 1.0, 11)
-    )
+    tones = [_tone(colours, share) for share in np.linspace(0.0, 1.0, 11)]
+    stops = ", ".join(f"rgb({', '.join(str(round(255 * float(part))) for part in tone)})" for tone in tones)
     numbers = "".join(f"<span>{share * top:.4g}</span>" for share in (0.0, 0.25, 0.5, 0.75, 1.0))
     return f'<div class="bar">{escape(quantity)} [{unit}]<i style="background: linear-gradient(90deg, {stops})"></i><div>{numbers}</div></div>'
 

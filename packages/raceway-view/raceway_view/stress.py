@@ -51,23 +51,20 @@ class StressFields:
         assembly = bodies.bearing.system.assembly
         displacement = assembly.nodal(ring.equilibrium).reshape(-1, 3)
         parts, begin = [], 0
-        for index, (body, first, last) in enumerate(
-            zip(assembly.bodies, assembly.starts[:-1], assembly.starts[1:], strict=True)
-        ):
+        spans = zip(assembly.bodies, assembly.starts[:-1], assembly.starts[1:], strict=True)
+        for index, (body, first, last) in enumerate(spans):
             if near is not None and index not in near:
                 continue
             u = displacement[first:last]
-            contacts = None if near is None else near[index]
             points, cells = body.operator.points, body.operator.cells
-            if contacts is not None:
-                places, reach = contacts
+            if near is not None:
+                places, reach = near[index]
                 cells = cells[np.unique(np.concatenate([cells_near(points, cells, centre, reach) for centre in places]))]
                 node_numbers, numbers = np.unique(cells, return_inverse=True)
                 points, u, cells = points[node_numbers], u[node_numbers], numbers.reshape(-1, 8).astype(np.uint32)
             stress = centre_stress(points, cells, u, body.operator.moduli, body.operator.formulation)
-            part = StressFields(points, cells.astype(np.int64), np.full(len(cells), index), u, stress)
-            parts.append(attrs.evolve(part, cells=part.cells + begin))
-            begin += len(part.points)
+            parts.append(StressFields(points, cells.astype(np.int64) + begin, np.full(len(cells), index), u, stress))
+            begin += len(points)
         return cls(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in attrs.fields(cls)))
 
     @property
