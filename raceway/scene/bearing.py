@@ -120,16 +120,11 @@ class Bearing:
         rule=one_of("groove", "pitch"),
     )
     arrangement: str = option(
-        "single",
-        help="pairs back to back 'DB', face to face 'DF', in tandem 'DT'; more rows by makers' names",
-        rule=arrangement(),
+        "single", help="back to back 'DB', face to face 'DF', in tandem 'DT'; more rows by makers' names", rule=arrangement()
     )
     row: tuple[SetRow, ...] = option((), help="one row: position, direction, preload and keys that differ from [bearing]")
     preload: float = option(
-        0.0,
-        unit="N",
-        help="axial preload between rows of opposite directions, before mounting, at standstill",
-        rule=at_least(0.0),
+        0.0, unit="N", help="axial preload between opposite rows, before mounting, at standstill", rule=at_least(0.0)
     )
     second_preload: float | None = option(
         None,
@@ -149,16 +144,10 @@ class Bearing:
         rule=one_of("rigid", "spring"),
     )
     spring_travel: float | None = option(
-        None,
-        unit="m",
-        help="travel of these rings either way from their unmounted position; default: unlimited",
-        rule=travel(),
+        None, unit="m", help="their travel either way from the unmounted position; default: unlimited", rule=travel()
     )
     row_distance: float | None = option(
-        None,
-        unit="m",
-        help="axial distance of neighbouring inner groove centres; default: the width of one bearing",
-        rule=length(),
+        None, unit="m", help="axial distance of neighbouring inner groove centres; default: a bearing's width", rule=length()
     )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")
     maker: str | None = option(
@@ -175,10 +164,9 @@ class Bearing:
             fitting = 2.0 * distance * (1.0 - cos(radians(angle)))
             if abs(fitting - clearance) > 1e-3 * distance:
                 by_clearance = degrees(acos(1.0 - clearance / (2.0 * distance)))
-                raise ValueError(
-                    f"`radial_clearance` = {clearance:g} m and `contact_angle_deg` = {angle:g} contradict each other: that "
-                    f"clearance gives {by_clearance:.3f} deg, that angle {fitting:.4g} m. Give one of them"
-                )
+                both = f"`radial_clearance` = {clearance:g} m and `contact_angle_deg` = {angle:g} contradict each other"
+                meaning = f"that clearance gives {by_clearance:.3f} deg, that angle {fitting:.4g} m"
+                raise ValueError(f"{both}: {meaning}. Give one of them")
         self._check_set()
         for profile, inner in ((self.inner_profile, True), (self.outer_profile, False)):
             if profile is not None:
@@ -325,18 +313,13 @@ class SetRow:
     """One row of a set: where it stands, which way it faces, and what of its bearing differs from the set's."""
 
     direction: str | None = option(
-        None,
-        help="'+': a positive axial motion of the inner ring loads it; default: from the arrangement",
-        rule=one_of("+", "-"),
+        None, help="'+': positive axial motion of the inner ring loads it; default: the arrangement's", rule=one_of("+", "-")
     )
     position: float | None = option(
         None, unit="m", help="axial position of its inner groove centres; default: rows `row_distance` apart", rule=finite()
     )
     preload: float | None = option(
-        None,
-        unit="N",
-        help="preload for which this row is ground (preload_of = 'row'); default: bearing.preload",
-        rule=at_least(0.0),
+        None, unit="N", help="preload it is ground for (preload_of = 'row'); default: bearing.preload", rule=at_least(0.0)
     )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")
 

@@ -291,13 +291,9 @@ def no_preset(name: str) -> str:
 def geometry_of(bearing: ReadTables, tables: ReadTables) -> Tables | None:
     """What a result says of the uncertainty of presets; None without one, or where their sources state the numbers.
 
-    Parameters
-    ----------
     bearing : the [bearing] table with the presets' numbers, in its rows, too
     tables : the table as the user wrote it, whose own numbers are no inferred ones
 
-    Notes
-    -----
     ``preset`` and ``inferences`` are those of [bearing]; rows of other presets are in ``rows``, by their numbers from 0.  Of
     several presets the uncertainties are the largest.
     """

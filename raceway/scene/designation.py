@@ -77,10 +77,8 @@ def read_designation(text: str) -> Designation | None:
     words = "; ".join(_words(part, group) for part, group in parts)
     words = f"{text}: {words}" if words else ""
     if not names:
-        has_angle = "angle" in values
-        words = (
-            f"{values['angle']} deg is not in the catalogue" if has_angle else "C is 15, AC or A5 25, A 30 deg: say which"
-        )
+        angle = values.get("angle")
+        words = "C is 15, AC or A5 25, A 30 deg: say which" if angle is None else f"{angle} deg is not in the catalogue"
     clearance, tolerance, ceramic = (str(values.get(group, "")) for group in ("clearance", "tolerance", "ceramic"))
     return Designation(names, clearance, tolerance, ceramic, words)
 
@@ -137,8 +135,6 @@ def _ranges() -> list[dict[str, str]]:
 def clearance_range(kind: str, bore: float, name: str = "CN") -> tuple[float, float] | None:
     """Least and largest radial internal clearance [m], on the diameter; None where the standard has no such bore.
 
-    Parameters
-    ----------
     kind : "ball" (deep groove) or "roller" (cylindrical), with cylindrical bores
     bore : [m];  name : one of ``CLASSES``
 
@@ -196,10 +192,8 @@ def travel() -> Rule:
 
     def check(_instance: object, _attribute: object, value: float) -> None:
         if not 0.0 < value < 1e3:
-            raise ValueError(
-                "must be greater than 0: a spring without travel is no spring; leave the key out for any travel, or take "
-                "preload_kind = 'rigid'"
-            )
+            remedy = "a spring without travel is no spring; leave the key out for any travel, or take preload_kind = 'rigid'"
+            raise ValueError(f"must be greater than 0: {remedy}")
 
     return worded(check, "greater than 0", {"exclusiveMinimum": 0})
 

@@ -205,9 +205,8 @@ class RunningBearing:
         """
         growth = self.kinematics.radial_expansion
         if self.kinematics.ring_growth and b.bore is not None and some(self.spin_speed):
-            growth = growth + b.rings.density * self.spin_speed**2 * (_growth.__wrapped__ if has_columns(b) else _growth)(
-                b, groove_depth(b)
-            )
+            of_speed = _growth.__wrapped__ if has_columns(b) else _growth
+            growth = growth + b.rings.density * self.spin_speed**2 * of_speed(b, groove_depth(b))
             if self.kinematics.ring_growth == "with_shaft":
                 loose = where(self.interference_at_standstill(b) > 0.0, 0.0, 1.0)
                 growth = growth - loose * self._fit_lost(b) * self._by_interference(b, 1.0)

@@ -26,8 +26,6 @@ _Changes: TypeAlias = list[tuple[tuple[str | int, ...], object]]
 class Key:
     """A number of a scene.
 
-    Attributes
-    ----------
     path : such as "load.radial[0]";  value : in its unit;  unit : of the key, "" for a pure number;  help : one sentence
     """
 

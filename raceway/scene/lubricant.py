@@ -12,12 +12,10 @@ from raceway.errors import Mistake
 from raceway.framework.options import at_least, between, nearest, option, positive, word_or
 
 if TYPE_CHECKING:
-    from raceway.core.quantities.rolling_friction import Lubrication
-
-if TYPE_CHECKING:
     import numpy as np
 
     from raceway.core.contact.film import Film
+    from raceway.core.quantities.rolling_friction import Lubrication
     from raceway.framework.contracts import ContactPairs
 
 T = TypeVar("T", bound=Any)
@@ -119,19 +117,16 @@ class Oil:
         if pair and (self.viscosity_40 is None or self.viscosity_100 is None):
             raise ValueError("`viscosity_40` and `viscosity_100` belong together: a line needs two points")
         if self.viscosity_40 is not None and self.viscosity_100 is not None and self.viscosity_40 <= self.viscosity_100:
-            raise ValueError(
-                f"`viscosity_100` = {self.viscosity_100:g} m2/s must be below `viscosity_40` = {self.viscosity_40:g} m2/s: oils "
-                "thin as they warm"
-            )
+            rule = f"must be below `viscosity_40` = {self.viscosity_40:g} m2/s: oils thin as they warm"
+            raise ValueError(f"`viscosity_100` = {self.viscosity_100:g} m2/s {rule}")
         if min(self._walther.at_40, self._walther.at_100) <= 0.3:
             raise ValueError("`viscosity_100` must be above 0.3e-6 m2/s, where Walther's line over the temperature ends")
         if self.temperature_c is None:
             raise ValueError("`temperature_c` is missing: the viscosity of an oil belongs to a temperature")
         if not COLDEST <= self.temperature_c <= HOTTEST:
-            raise ValueError(
-                f"`temperature_c` = {self.temperature_c:g} is outside the oil's data: Walther's line through 40 and 100 C is used from "
-                f"{COLDEST:g} to {HOTTEST:g} C. Give `viscosity` at that temperature instead"
-            )
+            rule = f"Walther's line through 40 and 100 C is used from {COLDEST:g} to {HOTTEST:g} C"
+            fault = f"`temperature_c` = {self.temperature_c:g} is outside the oil's data: {rule}"
+            raise ValueError(f"{fault}. Give `viscosity` at that temperature instead")
 
     @property
     def thins(self) -> bool:
@@ -223,9 +218,7 @@ class Lubricant(Oil):
         rule=word_or(between(0.0, 1.0), "auto"),
     )
     drag_coefficient: float = option(
-        0.25,
-        help="of a ball in oil and air; 0.44: a free sphere; 0.25: with Harris's power 1.95 of the speed",
-        rule=at_least(0.0),
+        0.25, help="of a ball in oil and air; 0.44: free sphere; 0.25: with Harris's power 1.95 of speed", rule=at_least(0.0)
     )
 
     @classmethod

@@ -39,8 +39,6 @@ Change = str | Mapping[str, object]
 class Given:
     """What the user said of a scene.
 
-    Attributes
-    ----------
     tables : as they were written, presets not resolved
     name : the title where the tables have none
     folder : where relative names of files start; None: at the working folder
@@ -255,14 +253,9 @@ def scene_from_dict(
 def as_given(source: object) -> Given:
     """What a user hands in as a scene.
 
-    Parameters
-    ----------
     source : Scene, path (str or Path), TOML text, or dict of tables
 
-    Raises
-    ------
-    SceneError
-        Something else; a file that is missing, unreadable or no TOML.
+    SceneError: Something else; a file that is missing, unreadable or no TOML.
     """
     if isinstance(source, Scene):
         return source.given if source.given is not None else Given(copy.deepcopy(source.source))

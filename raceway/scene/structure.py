@@ -214,8 +214,6 @@ _CONVERTER = _converter()
 def structure(table: object, cls: type[T], path: str, mistakes: list[Mistake]) -> T | None:
     """An object of an attrs class from a table; None when it has mistakes, which are appended.
 
-    Parameters
-    ----------
     path : where the table stands, for messages: "bearing"
     """
     try:

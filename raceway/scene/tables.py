@@ -19,6 +19,11 @@ _AROUND = (
 )
 
 
+def _seat(of: str) -> float | str:
+    text, rule = f"{of}: 'rigid' or stiffness of an elastic foundation", word_or(positive(), "rigid")
+    return option("rigid", unit="N/m3", help=text, rule=rule, no_list=_AROUND)
+
+
 @attrs.frozen
 class Supports:
     tilt: float | str = option(
@@ -32,20 +37,8 @@ class Supports:
         help="'force': load.axial acts; 'displacement': constant displacement, that of load.axial alone before mounting",
         rule=one_of("force", "displacement"),
     )
-    outer_seat: float | str = option(
-        "rigid",
-        unit="N/m3",
-        help="outer cylinder: 'rigid' or stiffness of an elastic foundation",
-        rule=word_or(positive(), "rigid"),
-        no_list=_AROUND,
-    )
-    inner_seat: float | str = option(
-        "rigid",
-        unit="N/m3",
-        help="bore: 'rigid' or stiffness of an elastic foundation",
-        rule=word_or(positive(), "rigid"),
-        no_list=_AROUND,
-    )
+    outer_seat: float | str = _seat("outer cylinder")
+    inner_seat: float | str = _seat("bore")
 
 
 @attrs.frozen
@@ -79,10 +72,7 @@ class Kinematics:
         rule=one_of("auto", "none", "outer_race", "shared", "traction"),
     )
     spin_speed_rpm: float | None = option(
-        None,
-        unit="r/min",
-        help="default: excitation.speed_rpm, which a run_up changes; 0 in a static scene",
-        rule=between(0.0, 1e9),
+        None, unit="r/min", help="default: excitation.speed_rpm, which run_up changes; 0 if static", rule=between(0.0, 1e9)
     )
     radial_expansion: float = option(0.0, unit="m", help="growth of the inner raceway (fit, temperature)", rule=finite())
     ring_growth: bool | str = option(
@@ -228,9 +218,7 @@ class Heat:
 
     oil_inlet_c: float = option(unit="°C", help="temperature of the supplied oil", rule=between(-273.15, 1e3))
     oil_flow: float | str = option(
-        unit="m3/s",
-        help="flow through all rows; 'infinite': constant oil temperature",
-        rule=word_or(inside(1e-18, 1.0), "infinite"),
+        unit="m3/s", help="through all rows; 'infinite': constant temperature", rule=word_or(inside(1e-18, 1.0), "infinite")
     )
     ambient_c: float = option(20.0, unit="°C", help="temperature around shaft and housing", rule=between(-150.0, 1e3))
     oil_heat_capacity: float = option(2000.0, unit="J/kg/K", help="of the oil; usually 1900 to 2300", rule=between(1.0, 1e5))
@@ -316,8 +304,6 @@ def told(value: object) -> str:
 class SceneTables:
     """Tables of a scene file, and plug-ins with their options; excitation, mesh, lubricant and heat may be None.
 
-    Attributes
-    ----------
     source : the tree of plain tables they were made from, presets resolved
     """
 

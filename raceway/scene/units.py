@@ -120,15 +120,10 @@ def is_quantity(text: str) -> bool:
 def number_in(unit: str, text: str) -> float:
     """The number that a text with a unit has in another unit, rounded once: "9.525 mm" in m is 0.009525.
 
-    Parameters
-    ----------
     unit : of the key, for instance "r/min"
     text : a number and its unit, for instance "200 Hz"
 
-    Raises
-    ------
-    ValueError
-        No number, an unknown unit, or one of another dimension; the sentence says what is accepted.
+    ValueError: No number, an unknown unit, or one of another dimension; the sentence says what is accepted.
     """
     match = _QUANTITY.fullmatch(text)
     rule = f"a number in {unit}, or text with its unit: {_OFFERED.get(unit, unit)}" if unit else "a number without a unit"
