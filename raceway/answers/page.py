@@ -45,8 +45,6 @@ class Cell:
 class Page:
     """A page, put together from top to bottom.
 
-    Parameters
-    ----------
     title : also of the browser's window; its second line, what was changed of a scene, goes before the subtitle;  subtitle : a line below it;  footer : where the page comes from
     """
 
@@ -78,8 +76,6 @@ class Page:
     def table(self, columns: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "") -> None:
         """A table in a box of its own that scrolls where the screen is narrow; the first cell of a row names it.
 
-        Parameters
-        ----------
         rows : cells are text, numbers (six digits are shown) or ``Cell``
         """
         body = [[cell if isinstance(cell, Cell) else Cell(_cell_text(cell)) for cell in row] for row in rows]
@@ -115,8 +111,6 @@ class Page:
     def figures(self, items: Iterable[tuple[Figure | bytes, str, str]], wide: bool = False) -> None:
         """Figures side by side as far as the screen is wide, or one below the other with ``wide``.
 
-        Parameters
-        ----------
         items : (figure of matplotlib or bytes of a PNG or SVG file, what is seen, caption)
         """
         parts = []

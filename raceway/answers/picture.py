@@ -144,8 +144,6 @@ def figure_png(figure: Figure, dots_per_inch: int = 300) -> bytes:
 class Line:
     """A curve of a panel.
 
-    Attributes
-    ----------
     x, y : (n,), broken where y is nan;  label : in the legend;  place : in the cycle of colours, lines and markers
     low, high : (n,) ends of its interval, nan where none is known;  doubt : (n,) numbers that are no part of it, crosses
     base : the curve that its difference is from, over the same x;  apart : (2, n) ends of the interval of y over the base's, relative
@@ -187,8 +185,6 @@ class Line:
 class Plot:
     """A pair of axes.
 
-    Attributes
-    ----------
     curves : what it shows;  x, y : labels, quantities with units;  title : which part of the answer it is
     names : words that stand at 0, 1, 2, ... of x, where that has no numbers;  more : draws what is no curve, on axes with limits
     """

@@ -110,8 +110,6 @@ class ProgressBar:
 def telling(progress: ShowProgress, remaining: bool = False) -> Iterator[Callable[[str, int, int], None]]:
     """What is called with the progress of a study.
 
-    Parameters
-    ----------
     progress : True for a bar where standard error is a terminal, None or False for silence, or what is called itself
     """
     if progress is True:

@@ -7,7 +7,7 @@ import textwrap
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import takewhile
-from typing import TypeVar
+from typing import Literal, TypeVar
 
 import attrs
 from rich.box import SIMPLE_HEAD
@@ -15,7 +15,7 @@ from rich.console import Console, ConsoleOptions, Group, RenderableType
 from rich.markup import escape
 from rich.measure import Measurement
 from rich.padding import Padding
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from raceway.framework.shown import number as number
@@ -49,8 +49,6 @@ def lines_of(text: str, width: int) -> list[str]:
 class Words:
     """A text on the screen, wrapped to the room that it is given.
 
-    Attributes
-    ----------
     style : colour and weight, in rich's words;  indent : blanks before every line
     """
 
@@ -97,11 +95,7 @@ def sections(rows: Iterable[Row]) -> RenderableType:
 
 
 def _section_grid() -> Table:
-    table = Table.grid(padding=(0, 2))
-    table.add_column(width=_QUANTITY)
-    table.add_column(justify="right", min_width=_VALUE, no_wrap=True)
-    table.add_column()
-    return table
+    return Table.grid(Column(width=_QUANTITY), Column(justify="right", min_width=_VALUE, no_wrap=True), "", padding=(0, 2))
 
 
 def height(rows: list[Row]) -> int:
@@ -250,12 +244,9 @@ class _Rows:
                         fixed.append(column)
                         room -= column.least + _BETWEEN
             for column in columns:
-                table.add_column(
-                    Words(column.head, "bold"),
-                    justify="right" if column.numeric else "left",
-                    width=column.least if column in fixed else None,
-                    min_width=column.least,
-                )
+                side: Literal["left", "right"] = "right" if column.numeric else "left"
+                width = column.least if column in fixed else None
+                table.add_column(Words(column.head, "bold"), justify=side, width=width, min_width=column.least)
             for cells in zip(*(column.cells for column in columns), strict=True):
                 table.add_row(*map(Words, cells))
             yield table

@@ -139,10 +139,8 @@ def faults(registry: Registry) -> list[str]:
     sentences = [str(fault) for fault in registry.faults]
     for kind, name in registry.shadowed():
         owners = " and ".join(f"{e.title} of {e.distribution}" for e in registry.entries[kind, name])
-        sentences.append(
-            f"{kind.replace('_', ' ')} '{name}' is claimed by two plug-ins: {owners}. Remove one, or name it in "
-            "RACEWAY_DISABLE"
-        )
+        claim = f"{kind.replace('_', ' ')} '{name}' is claimed by two plug-ins: {owners}"
+        sentences.append(f"{claim}. Remove one, or name it in RACEWAY_DISABLE")
     return sentences
 
 

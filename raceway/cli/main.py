@@ -126,19 +126,14 @@ class Studies(Commands):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self.list_commands(ctx):
             return None
-        from raceway.errors import PluginError, RacewayError
+        from raceway.errors import PluginError
         from raceway.framework.loading.registry import default_registry
-        from raceway.framework.loading.sources import foreign_words
+        from raceway.framework.loading.sources import blamed
 
         entry = default_registry().find("study", cmd_name)
         who = f"study '{cmd_name}' of {entry.distribution}"
-        try:
-            with foreign_words():
-                command = entry.plugin().command()
-        except RacewayError:
-            raise
-        except Exception as why:  # a third party's own code
-            raise PluginError(f"{who}: command() raises {type(why).__name__}: {why}") from why
+        with blamed(who, "command()"):
+            command = entry.plugin().command()
         if not isinstance(command, click.Command):
             raise PluginError(f"{who}: command() gives {type(command).__name__}, which is no click.Command")
         return command

@@ -11,7 +11,7 @@ from typing import ClassVar
 import attrs
 from rich.console import Group, RenderableType
 from rich.padding import Padding
-from rich.table import Table
+from rich.table import Column, Table
 
 from raceway.answers.answer import Answer, Part
 from raceway.answers.table import Row, Words, grouped, number, sections
@@ -77,9 +77,7 @@ def plan(scene: Scene, plugins: Iterable[str | Path] = ()) -> _Planned:
 
 
 def _reasons(heading: str, items: Sequence[parts.Part]) -> RenderableType:
-    table = Table.grid(padding=(0, 2))
-    table.add_column(width=32)
-    table.add_column()
+    table = Table.grid(Column(width=32), "", padding=(0, 2))
     for item in items:
         table.add_row(Words(item.part), Words(item.why, "dim"))
     return Group(Words(heading, "bold"), Padding(table, (0, 0, 0, 2)))

@@ -16,7 +16,7 @@ import click
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.padding import Padding
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from raceway import __version__
@@ -68,10 +68,7 @@ def plugins(plugins: tuple[Path, ...], as_json: bool) -> int:
     for kind in dict.fromkeys(row["kind"] for row in rows):
         parts.append(Text(plural(kind), style="bold"))
         for row in (r for r in rows if r["kind"] == kind):
-            table = Table.grid(padding=(0, 2))
-            table.add_column(min_width=20, no_wrap=True)
-            table.add_column(min_width=12)
-            table.add_column()
+            table = Table.grid(Column(min_width=20, no_wrap=True), Column(min_width=12), "", padding=(0, 2))
             for option in row["options"]:
                 default = "" if option["default"] is None else str(option["default"])
                 unit = f" [{option['unit']}]" if option["unit"] else ""
@@ -118,10 +115,7 @@ def check_plugin(name: str, plugins: tuple[Path, ...], as_json: bool) -> int:
 
     with show_progress(waiting=f"checking {name}"):
         conformity = check_named(name, registry_with(plugins))
-    table = Table.grid(padding=(0, 2))
-    table.add_column(no_wrap=True)
-    table.add_column(no_wrap=True)
-    table.add_column()
+    table = Table.grid(Column(no_wrap=True), Column(no_wrap=True), "", padding=(0, 2))
     for row in conformity.rows:
         status = Text(row.status, style="green" if row.good else "bold red")
         table.add_row(escape(row.name), status, Words(f"{row.duty}: {row.message}" if row.message else row.duty, "dim"))

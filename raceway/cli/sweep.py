@@ -101,11 +101,8 @@ def _row(row: ReadTables) -> dict[str, str]:
     short = {key: name if last.count(name) == 1 else key for key, name in zip(row["point"], last, strict=True)}
     text = {short[key]: shown(value) for key, value in row["point"].items()}
     tangent = values.get(STIFFNESS.name)
-    numbers = {
-        K.symbol: values.get(K.name),
-        "Re Z": values.get(Z_REAL.name),
-        KYY.symbol: None if tangent is None else tangent[1][1],
-    }
+    numbers = {K.symbol: values.get(K.name), "Re Z": values.get(Z_REAL.name)}
+    numbers[KYY.symbol] = None if tangent is None else tangent[1][1]
     if KYY_TILTS_FOLLOW.name in values:
         numbers[KYY_TILTS_FOLLOW.label] = values[KYY_TILTS_FOLLOW.name]
     none = "" if row["status"] == "done" else row["status"]

@@ -1,7 +1,7 @@
 """Duties of plug-ins as the program calls them: faults are put to the plug-in's name, duties that it leaves out have their defaults here."""
 
 from collections.abc import Callable, Mapping
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, TypeVar
 
 import attrs
@@ -175,10 +175,8 @@ def law_params(law: ContactLaw, pairs: ContactPairs, row: str = "ball-race pair"
     """
     params, n = _of_contacts(law, pairs, "build"), len(pairs.curvature_a)
     if params.ndim != 2 or len(params) != n:
-        raise PluginError(
-            f"contact law '{law.name}': build() returned parameters of shape {params.shape}; "
-            f"it must be ({n}, k): a row for each {row}"
-        )
+        rule = f"it must be ({n}, k): a row for each {row}"
+        raise PluginError(f"contact law '{law.name}': build() returned parameters of shape {params.shape}; {rule}")
     return params
 
 
@@ -231,10 +229,10 @@ def _array(plugin: str, duty: str, call: Callable[[], object]) -> np.ndarray:
     return _answer(plugin, duty, lambda: np.ascontiguousarray(call(), dtype=float), np.ndarray)
 
 
-def speed_rpm(excitation: Excitation | None) -> float | None:
-    """The speed of an excitation [r/min], default of the spin speed; None where it has none, or there is no excitation."""
-    rpm: float | None = said(excitation, "speed_rpm")
-    return rpm
+#: The speed of an excitation [r/min], default of the spin speed; None where it has none, or there is no excitation.
+speed_rpm: Callable[[Excitation | None], float | None] = partial(said, name="speed_rpm")
+#: Time that is integrated [s]; None, for the turns of the scene, unless the excitation says more.
+duration_s: Callable[[Excitation | None], float | None] = partial(said, name="duration_s")
 
 
 def changes_speed(excitation: Excitation | None) -> bool:
@@ -245,12 +243,6 @@ def changes_speed(excitation: Excitation | None) -> bool:
 def ramp_turns(excitation: Excitation | None) -> float:
     """Turns over which the force grows from zero; 0 unless the excitation says more."""
     return float(said(excitation, "ramp_turns"))
-
-
-def duration_s(excitation: Excitation | None) -> float | None:
-    """Time that is integrated [s]; None, for the turns of the scene, unless the excitation says more."""
-    seconds: float | None = said(excitation, "duration_s")
-    return seconds
 
 
 def has_phase(excitation: Excitation | None) -> bool:

@@ -28,8 +28,6 @@ class Part:
 class Decisions:
     """The parts of one scene, as they are decided.
 
-    Parameters
-    ----------
     force : parts that are included although the scene does not need them
     """
 
@@ -66,8 +64,6 @@ _OTHER_TURNS = "other turns"
 class Balls:
     """Requirements of the balls.
 
-    Attributes
-    ----------
     kind : "weightless" (on the line of the groove centres), "inertial" (two unknowns each) or "tangential" (friction, gyroscopic moments)
     centrifugal, gyroscopic, friction : whether they have these loads
     """
@@ -173,8 +169,6 @@ START_S = 1.2
 class Times:
     """Measured times of one kind of compiled rings with 12 balls [s].
 
-    Attributes
-    ----------
     step : of an implicit method, by the kind of the balls;  sample : of the record: lines, energies and extremes
     search : of a steady orbit, over that of rigid rings
     """

@@ -76,8 +76,6 @@ class _Inertia:
 class Problem(SceneTables):
     """What is computed: the tables of a scene, and what follows from them.
 
-    Attributes
-    ----------
     scene : what the user said, for messages and results
     points : (n,) where numbers are columns of n operating points, () of one
     kinematics : with a hypothesis for each 'auto'

@@ -306,8 +306,8 @@ class BodiesSuite(Suite):
             check_shape(f"the {word} contact angle", angle, (z,))
             matches = (np.isnan(angle) == (part == 0.0)).all()
             require(matches, f"{word} angles are nan where a contact is open, and only there")
-        *states, forces = (np.repeat(each[None], 3, axis=0) for each in (equilibrium.displacement, equilibrium.ball, force))
-        several = model.bearing.contact_angles(model, *states, forces, np.zeros(3))
+        q, ball, forces = (np.repeat(each[None], 3, axis=0) for each in (equilibrium.displacement, equilibrium.ball, force))
+        several = model.bearing.contact_angles(model, q, ball, forces, np.zeros(3))
         check_shape("the angles of three states", several, (2, 3, z))
         check_shape("over_edges() of three states", model.bearing.over_edges(model, *several, forces), (3,))
         # Sum of the inner races' forces against the loads on the free translations.

@@ -144,9 +144,7 @@ class ExcitationSuite(Suite):
             minor = np.linalg.svd(np.array([line.real, line.imag]), compute_uv=False)[1]
             require(minor <= _SAMPLED * size, "`sense` = 0, but the force leaves its direction")
 
-    @duty(
-        "direction and phase are those of the options direction_deg and phase_lag_deg, where there are such", _not_periodic
-    )
+    @duty("direction and phase are those of direction_deg and phase_lag_deg, where these are options", _not_periodic)
     def test_direction_and_phase(self, excitation: Excitation) -> str:
         direction, lag = (getattr(excitation, word, None) for word in ("direction_deg", "phase_lag_deg"))
         if lag is None and direction is None:

@@ -31,10 +31,8 @@ def names_in(variable: str) -> set[str]:
 
 def available(package: str) -> bool:
     """Whether one of the packages is installed and not disabled."""
-    return (
-        not names_in("RACEWAY_DISABLE") & {package, package.removeprefix("raceway-")}
-        and find_spec(package.replace("-", "_")) is not None
-    )
+    disabled = names_in("RACEWAY_DISABLE") & {package, package.removeprefix("raceway-")}
+    return not disabled and find_spec(package.replace("-", "_")) is not None
 
 
 def missing_package(word: str, part: str) -> str:

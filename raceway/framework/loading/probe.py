@@ -156,14 +156,9 @@ def _probe_slopes(kernel: Kernel, params: np.ndarray, state: np.ndarray, gap: fl
 def probe_excitation(excitation: Excitation, kernel: Kernel, params: np.ndarray) -> None:
     """Refuse an excitation that breaks its contract at a few times.
 
-    Parameters
-    ----------
     kernel : what its ``kernel()`` returned;  params : what its ``parameters()`` returned, (k,)
 
-    Raises
-    ------
-    PluginError
-        As ``probe_law``.
+    PluginError: As ``probe_law``.
     """
     period = excitation.period_s or 1.0 / excitation.frequency_hz
     mark = _mark(kernel, params, period)
