@@ -6,7 +6,6 @@ from raceway.bodies.basis import Basis
 from raceway.core.contact.hertz import Ellipse
 from raceway.core.ring.ring import COORDINATES, Ring
 from raceway.core.ring.system import System, surrogate
-from raceway.errors import ConvergenceError
 from raceway.framework.duties import is_foundation
 from raceway.planning.resolve import Problem
 from raceway.scene.growth import groove_depth, groove_edge, load_at_edge
@@ -59,23 +58,6 @@ def ellipse_ends(basis: Basis, inner: np.ndarray, outer: np.ndarray, force: np.n
         np.abs(inner) + basis.inner.semi_axes(force[..., :z])[0] / radius,
         np.abs(outer) + basis.outer.semi_axes(force[..., z:])[0] / radius,
     )
-
-
-def refuse_impossible_ellipses(basis: Basis, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
-    """Loads (2 Z,) [N] that no ball can carry: a contact ellipse longer than half its circumference.
-
-    ConvergenceError: With ``state``, the solution that says so.
-    """
-    z, radius = len(force) // 2, basis.ball_radius
-    for race, ellipse, load in (("inner", basis.inner, force[:z]), ("outer", basis.outer, force[z:])):
-        half = ellipse.semi_axes(load)[0] / radius
-        if half.max(initial=0.0) >= 0.5 * np.pi:
-            raise ConvergenceError(
-                f"the contact ellipse on the {race} race would be {np.degrees(2.0 * half.max()):.0f} deg of the ball, more than half its "
-                f"circumference, under {load[np.argmax(half)]:.3g} N per ball: no such contact exists. Check units and loads "
-                "(bearing.rings.young in Pa, lengths in m)",
-                state,
-            )
 
 
 #: Halvings of an interval of approaches: to the last bit.

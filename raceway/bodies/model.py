@@ -17,7 +17,6 @@ from raceway.bodies.contacts import (
     ellipse_ends,
     groove_edges,
     law_of_pair,
-    refuse_impossible_ellipses,
 )
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import Ellipse
@@ -25,7 +24,7 @@ from raceway.core.record import Motion, Record
 from raceway.core.ring.orbit import Orbit, at_rest, from_orbit, static_orbit
 from raceway.core.ring.ring import Ring
 from raceway.core.ring.system import compiled
-from raceway.errors import PluginError, SceneError
+from raceway.errors import ConvergenceError, PluginError, SceneError
 from raceway.framework.contracts import Traits
 from raceway.framework.doors import door, reader
 from raceway.framework.duties import renews
@@ -127,11 +126,21 @@ class BuiltBearing(ABC):
         return contact_ellipse(model.problem, self.basis, model.system, race, load)
 
     def refuse_impossible(self, model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
-        """Loads (2 Z,) that no contact can carry.
+        """Loads (2 Z,) [N] that no contact can carry: an ellipse longer than half the ball's circumference.
 
         ConvergenceError: With ``state``, the solution that says so.
         """
-        refuse_impossible_ellipses(self.basis, force, state)
+        basis, radius = self.basis, self.basis.ball_radius
+        inner, outer = np.split(force, 2)
+        for race, ellipse, load in (("inner", basis.inner, inner), ("outer", basis.outer, outer)):
+            half = ellipse.semi_axes(load)[0] / radius
+            if half.max(initial=0.0) >= 0.5 * np.pi:
+                raise ConvergenceError(
+                    f"the contact ellipse on the {race} race would be {np.degrees(2.0 * half.max()):.0f} deg of the ball, more than half its "
+                    f"circumference, under {load[np.argmax(half)]:.3g} N per ball: no such contact exists. Check units and loads "
+                    "(bearing.rings.young in Pa, lengths in m)",
+                    state,
+                )
 
     def edge_warnings(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
         """A sentence for each race whose contacts run over its edge; angles (Z,), forces (2 Z,)."""

@@ -4,11 +4,8 @@ import time
 from typing import Any
 
 import numpy as np
-from numba import boolean, float64, int64
 
-from raceway.core.jit import jit
 from raceway.core.record import Observation, OnChunk, Record, Schedule, State, SteppedSystem, ramp, work
-from raceway.core.signatures import VECTOR
 from raceway.errors import ConvergenceError, RacewayError, StabilityError
 
 #: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
@@ -66,9 +63,8 @@ class Recorder:
         StabilityError: A displacement or rotation that no bearing makes, or that is no number.
         """
         outer = self.load(self.time_of(self.done + 1)) if outer is None else outer
-        step_work = self._outer_work(state, outer)
         system = self.system
-        self._work += step_work
+        self._work += self._outer_work(state, outer)
         self._outer = outer
         penetration, peak, _ = system.contacts()
         self._penetration, self._peak = max(self._penetration, penetration), max(self._peak, peak)
@@ -150,7 +146,7 @@ class Recorder:
 
         def block_work(number: int) -> None:
             part = _BLOCK * number, min(_BLOCK * (number + 1), size)
-            fine[number] = _within_bound(*part, BOUND, arrays[-1])
+            fine[number] = (np.abs(arrays[-1][slice(*part)]) < BOUND).all()
             works[number] = work(*part, *arrays)
 
         self.system.threads.do(count, block_work)
@@ -184,12 +180,3 @@ class Recorder:
         motion = self.system.motion(self.state)
         state = {"t": np.array(self.time_of(self.done)), "q": motion.q, "v": motion.v, "a": motion.a, "ball": motion.ball}
         return state | dict(motion.full_state or {})
-
-
-@jit(boolean(int64, int64, float64, VECTOR), releases=True)
-def _within_bound(first, last, bound, u):  # type: ignore[no-untyped-def]
-    """Whether the entries ``first`` to ``last - 1`` are numbers below the bound in size."""
-    beyond = 0
-    for i in range(first, last):
-        beyond += 0 if abs(u[i]) < bound else 1
-    return beyond == 0

@@ -98,11 +98,6 @@ class Growth:
     common: np.ndarray  # (5,) of the scalars REST_AXIAL, REST_RADIAL, OFFSET_INNER, OFFSET_OUTER, TILT_ARM
     by_ball: np.ndarray  # (Z, 5) of the rows' own columns of the same, beyond that
 
-    @classmethod
-    def of_inner_raceways(cls, growth: float, balls: int) -> "Growth":
-        """All inner raceways have grown alike, radially [m]."""
-        return cls(np.array([0.0, growth, 0.0, 0.0, 0.0]), np.zeros((balls, 5)))
-
 
 #: Steps at most; a dozen do.
 _ITERATIONS = 120

@@ -20,7 +20,7 @@ More, Sorensen: Computing a trust region step, SIAM J. Sci. Stat. Comput. 4 (198
 """
 
 import numpy as np
-from numba import boolean, float64, void
+from numba import float64, void
 
 from raceway.core.contact.damping import stored_energy
 from raceway.core.jit import jit
@@ -178,14 +178,6 @@ def _decrease_ratio(before, after, H, g, g_new, step):
     return (before - after) / model_decrease
 
 
-@jit(float64(float64, float64, float64))
-def _next_radius(ratio, radius, size):
-    """Trust radius after a step of length ``size`` that the potential fell over by so much of the predicted decrease."""
-    if ratio < 0.25:
-        return 0.25 * min(radius, size)
-    return 3.0 * radius if ratio > 0.75 and size >= 0.7 * radius else radius
-
-
 @jit(void(STATIC, RESPONSE, STATIC, RESPONSE))
 def _accept(trial, new, state, now):
     """The state and its response become the trial ones."""
@@ -254,7 +246,10 @@ def solve_equilibrium(forces, linear, tolerance, t, state, response, report):
                     return BALLS_FAILED
             energy = _potential_energy(contacts, constants, linear, trial.q, trial.ball, work, energies)
             ratio = _decrease_ratio(potential, energy, H, g, g_new, step)
-            radius = _next_radius(ratio, radius, size)
+            if ratio < 0.25:
+                radius = 0.25 * min(radius, size)
+            elif ratio > 0.75 and size >= 0.7 * radius:
+                radius *= 3.0
             if radius < 1e-22:  # no step helps any more: rounding, where the imbalance is small already
                 break
             if not ratio > 1e-4:
@@ -303,21 +298,12 @@ def find_root(forces, linear, tolerance, t, state, response, report):
                 q[i] -= step[i]
             continue
         before = norm
-        if not _newton_step(linear, now.K, r, ones, J, step):
+        _hessian(linear, now.K, ones, 1.0, J)
+        for i in range(5):
+            J[i, 5] = -r[i]
+        if not solve(J):
             return NOT_CONVERGED
         for i in range(5):
+            step[i] = J[i, 5]
             q[i] += step[i]
     return NOT_CONVERGED
-
-
-@jit(boolean(LINEAR, MATRIX, VECTOR, VECTOR, MATRIX, VECTOR))
-def _newton_step(linear, K, r, ones, J, step):
-    """step (5,) that the tangent K (5, 5) of the contacts asks for; J (5, 6) is scratch.  False where it is singular."""
-    _hessian(linear, K, ones, 1.0, J)
-    for i in range(5):
-        J[i, 5] = -r[i]
-    if not solve(J):
-        return False
-    for i in range(5):
-        step[i] = J[i, 5]
-    return True

@@ -135,13 +135,6 @@ TRIAL = record(_Trial, *[VECTOR] * 5)
 TANGENT = record(_Tangent, *[MATRIX] * 3)
 
 
-@jit(FORMULA(VECTOR, float64), inline=True)
-def _formula_of(coefficients, dt):
-    """From am, af, beta, gamma and the step [s]."""
-    beta, gamma = coefficients[2], coefficients[3]
-    return _Formula(coefficients[0], coefficients[1], beta, gamma, dt, 1.0 / (beta * dt * dt), gamma / (beta * dt))
-
-
 @jit(void(FORMULA, VECTOR, MATRIX, TRIAL), inline=True)
 def _differences(formula, free, motion, trial):
     """v and a at the end of the step from q there and the motion (4, 5) at its begin."""
@@ -263,7 +256,8 @@ def _commit(trial, motion):
 def implicit(forces, linear, outer, coefficients, steps, state, recording):
     """See ``raceway.core.time.compiled``."""
     dt, constants, motion, counters = steps.dt, forces.constants, state.motion, recording.counters
-    arm, formula = constants.scalars[TILT_ARM], _formula_of(coefficients, dt)
+    arm, beta, gamma = constants.scalars[TILT_ARM], coefficients[2], coefficients[3]
+    formula = _Formula(coefficients[0], coefficients[1], beta, gamma, dt, 1.0 / (beta * dt * dt), gamma / (beta * dt))
     tolerance, rounding = coefficients[4], coefficients[5]
     trial = _Trial(np.empty(5), np.empty(5), np.empty(5), np.empty(5), np.empty(5))
     tangent = _Tangent(np.zeros((5, 5)), np.zeros((5, 5)), np.zeros((5, 10)))
@@ -446,14 +440,6 @@ def _accept(equilibrium, state):
     copy_matrix(equilibrium.ball, ball)
 
 
-@jit(float64(int64))
-def _reason_of(status):
-    """Why a loop ends, of what a solver says."""
-    if status == BALLS_FAILED:
-        return BALLS
-    return UNBOUNDED if status >= NOT_FINITE else NEWTON
-
-
 @cache
 def quasi_static(solver: Kernel) -> Kernel:
     """The loop around a kernel of signature ``EQUILIBRIUM``, which finds an equilibrium: ``raceway.core.ring.equilibrium``."""
@@ -479,7 +465,9 @@ def quasi_static(solver: Kernel) -> Kernel:
             status = solver(forces, under_load, coefficients[0], t, equilibrium, response, report)
             counters[EVALUATIONS] += report[ITERATIONS] + 1.0
             if status != CONVERGED:
-                counters[REASON], counters[RESIDUAL] = _reason_of(status), report[LEFT]
+                counters[REASON], counters[RESIDUAL] = UNBOUNDED if status >= NOT_FINITE else NEWTON, report[LEFT]
+                if status == BALLS_FAILED:
+                    counters[REASON] = BALLS
                 return step
             if state.memory.shape[1] > 0 and not _remember(forces, t, equilibrium, state.ball, response):
                 counters[REASON] = BALLS

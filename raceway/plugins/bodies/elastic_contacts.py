@@ -93,9 +93,10 @@ class ElasticBodies(BuiltBearing):
         """The table ``model`` of result.json."""
         contacts = self.contact_table(model, equilibrium)
         y, bodies = _elastic(model.system).equilibrium, self.bearing.system
-        cage = self.bearing.cage_forces(y)[:, 0]
+        a = bodies.assembly
+        cage = np.zeros(self.bearing.ball_count) if a.cage is None else a.cage.force(a.nodal(y))[::4]  # along the orbit [N]
         across = np.stack([self.bearing.setup.turn(k)[:, 2] for k in range(len(cage))])
-        force = bodies.assembly.reactions(y) - cage @ across  # the ideal cage stands on the ground
+        force = a.reactions(y) - cage @ across  # the ideal cage stands on the ground
         energies = bodies.energies(y, np.zeros_like(y)) | {"external": float(bodies.load @ y)}
         return {
             "rigid_rings": rigid_rings(self.rigid, self.guess)[0],

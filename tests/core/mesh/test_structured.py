@@ -48,7 +48,11 @@ def rings(inner):
         mesh = ring_mesh(shape, *lines, np.linspace(0.0, 2.0 * pi, divisions, endpoint=False), band=band)
         found.append((mesh.volume(), mesh.facet_areas("raceway").sum()))
         lines = [halved(line) for line in lines]
-    return found, (shape.volume, shape.raceway_area)
+    low, high = shape.edges
+    radius = shape.centre_r + shape.sign * shape.groove * (np.sin(high) - np.sin(low)) / (
+        high - low
+    )  # of the arc's centroid
+    return found, (shape.volume, 2.0 * pi * radius * shape.groove * (high - low))
 
 
 def balls():

@@ -473,10 +473,6 @@ class Assembly:
         """(frame_size, frame_size) what the frames' bodies gain as rigid ones by added mass."""
         return np.asarray(self.carried.T @ (np.repeat(self.added_mass, 3)[:, None] * self.carried))
 
-    def elastic_energy(self, y: np.ndarray, u: np.ndarray) -> float:
-        """Strain energy of the bodies and their beds and what the frames' springs and the cage hold [J]."""
-        return float(0.5 * y @ self.internal(y, u))
-
     def reactions(self, y: np.ndarray) -> np.ndarray:
         """(3,) force of the ground on the bodies, through held nodes and beds [N]."""
         u, out = self.nodal(y), np.zeros(3)
@@ -487,10 +483,6 @@ class Assembly:
             if not ride.any():
                 out -= (foundation @ u).reshape(-1, 3).sum(axis=0)
         return out
-
-    def hourglass_energy(self, u: np.ndarray) -> float:
-        """The part that hourglass control holds [J]."""
-        return self.body_forces.hourglass_energy(u, self.threads)
 
     def loose_motions(self, contacts: list[tuple[int, int]]) -> list[str]:
         """Rigid motions that nothing holds: for each body in words; ``contacts`` are pairs of bodies that touch and so hold each other.

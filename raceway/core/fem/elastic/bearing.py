@@ -308,11 +308,11 @@ class ElasticSystem:
         u = a.nodal(y)
         added = {"added mass": float(0.5 * np.repeat(a.added_mass, 3) @ a.nodal(v) ** 2)} if a.added_mass.any() else {}
         return added | {
-            "elastic": a.elastic_energy(y, u),
+            "elastic": float(0.5 * y @ a.internal(y, u)),  # of bodies, beds, the frames' springs and the cage
             "kinetic": float(0.5 * v @ self.mass_times(v)),
             "contact": 0.0 if self.contact is None else self.contact.energy(),
             "friction": 0.0 if self.contact is None else self.contact.friction_energy(),
-            "hourglass": a.hourglass_energy(u),
+            "hourglass": a.body_forces.hourglass_energy(u, a.threads),
         }
 
 
@@ -473,11 +473,6 @@ class ElasticBearing:
             mean = mass @ u[a.part(k + 2)].reshape(-1, 3) / mass.sum()
             out[k] = mean[0] - centre[0], mean @ self.setup.radial(k) + 0.5 * self.setup.geometry.pitch_diameter - centre[1]
         return out
-
-    def cage_forces(self, y: np.ndarray) -> np.ndarray:
-        """(Z, 4) what the ideal cage carries: force along the orbit [N], moments about orbit, radius and axis [N m]."""
-        a = self.system.assembly
-        return np.zeros((self.ball_count, 4)) if a.cage is None else a.cage.force(a.nodal(y)).reshape(-1, 4)
 
     def _ring(self, mesh: HexMesh, inner: bool) -> Body:
         s = self.setup

@@ -130,7 +130,8 @@ class ElasticRing(SteppedRing):
     def _alone(self, q: np.ndarray, axial: float) -> np.ndarray:
         """(size,) equilibrium as mounted under an axial load [N] alone, the ring's other motions held."""
         only, load = np.arange(5) == 0, np.array([axial, 0.0, 0.0, 0.0, 0.0])
-        rigid = self.surrogate.standing(Growth.of_inner_raceways(self.bodies.setup.growth, self.ball_count))
+        inner_raceways = Growth(np.array([0.0, self.bodies.setup.growth, 0.0, 0.0, 0.0]), np.zeros((self.ball_count, 5)))
+        rigid = self.surrogate.standing(inner_raceways)
         rigid = attrs.evolve(rigid, free=only.astype(float), load=load)
         with self.bodies.mounted(), self._letting_free(only):
             y, _ = self.equilibrium_under(self._undeformed(rigid, q * only), load)

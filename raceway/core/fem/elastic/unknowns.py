@@ -162,15 +162,10 @@ class MeanMotions:
 
     def jobs(self, u: np.ndarray, out: np.ndarray) -> list[Callable[[], None]]:
         """Jobs that set out (m,) to L u; they may run at the same time."""
-        return [partial(self._sum, block, u, out) for block in self.blocks]
+        return [partial(_sums, values, begin, u, out[row : row + len(values)]) for row, begin, values in self.blocks]
 
     def add(self, first: int, last: int, amounts: np.ndarray, force: np.ndarray) -> None:
         """Add L^T amounts (m,) to the entries ``first`` to ``last - 1`` of force (n,)."""
         for row, begin, values in self.blocks:
             if begin < last and first < begin + values.shape[1]:
                 _add_transposed(first, last, values, begin, amounts[row : row + len(values)], force)
-
-    @staticmethod
-    def _sum(block: tuple[int, int, np.ndarray], u: np.ndarray, out: np.ndarray) -> None:
-        row, begin, values = block
-        _sums(values, begin, u, out[row : row + len(values)])

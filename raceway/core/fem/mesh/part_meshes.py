@@ -119,13 +119,6 @@ class RingShape:
         return tube - 2.0 * pi * radius * area
 
     @property
-    def raceway_area(self) -> float:
-        """Exact area of the groove [m2]: its arc swept at the radius of the arc's centroid (Pappus)."""
-        low, high = self.edges
-        radius = self.centre_r + self.sign * self.groove * (sin(high) - sin(low)) / (high - low)
-        return 2.0 * pi * radius * self.groove * (high - low)
-
-    @property
     def moments(self) -> tuple[float, float, float]:
         """Volume [m3], and the integrals of r^2 / 2 + x^2 and r^2 over it [m5]: inertia about y and x over density."""
         at, weights = np.polynomial.legendre.leggauss(48)

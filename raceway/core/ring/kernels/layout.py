@@ -67,14 +67,6 @@ def place(t, q, v, constants, work, rows):
         work[velocity, n + k] = vy * c + vz * s - lever * u_rate
 
 
-@jit(void(MATRIX, int64, int64))
-def move_centres(work, centre, velocity):
-    """Add to e and its velocity what the rings' elasticity moves the groove centres of condensed bodies by."""
-    for c in range(work.shape[1]):
-        work[centre, c] += work[rows.MOVED, c]
-        work[velocity, c] += work[rows.MOVED_RATE, c]
-
-
 @jit(void(float64, VECTOR, MATRIX))
 def stop(t, scalars, table):
     """Let orbiting balls stand still where they are at a time: a static state has no rates."""

@@ -240,8 +240,9 @@ def rigid_inertial(t, q, v, balls, contacts, constants, response):
     z, arm, elastic_bodies = table.shape[0], scalars[ring.TILT_ARM], work.shape[0] > rows.WORK_ROWS
     rolls = ring.slips_end(scalars, ball) > ring.SLIPS
     ring.place(t, q, v, constants, work, (at.DIRECTION, ring.BALL_CENTRE, ring.BALL_VELOCITY))
-    if elastic_bodies:
-        ring.move_centres(work, ring.BALL_CENTRE, ring.BALL_VELOCITY)
+    for c in range(2 * z if elastic_bodies else 0):  # their elasticity moves the groove centres
+        work[ring.BALL_CENTRE, c] += work[rows.MOVED, c]
+        work[ring.BALL_VELOCITY, c] += work[rows.MOVED_RATE, c]
     for k in range(z):
         _first_guess(k, rolls, q, scalars, table, ball, ball_history, work)
     for attempt in range(_ITERATIONS):

@@ -128,15 +128,6 @@ def _factorise(scalars, work):
 
 
 @jit(void(MATRIX, int64))
-def _solve_shifts(work, row):
-    """work[row] := (I - C S)^-1 work[row]."""
-    z = work.shape[1] // 2
-    for k in range(z):
-        a, b, m = work[row, k], work[row, z + k], tensor_of(work, ring.INVERSE, k)
-        work[row, k], work[row, z + k] = m.aa * a + m.ar * b, m.ra * a + m.rr * b
-
-
-@jit(void(MATRIX, int64))
 def _solve_transposed(work, row):
     """work[row] := work[row] (I - C S)^-1."""
     z = work.shape[1] // 2
@@ -160,19 +151,6 @@ def _rests(first, scalars, ball, work):
         norm = max(norm, abs(residual))
         deepest = max(deepest, -work[rows.GAP, c])
     return norm, deepest
-
-
-@jit(void(int64, boolean, MATRIX, MATRIX), inline=True)
-def _half_way_back(first, coupled, ball, work):
-    """Take half of the last step off ``ball`` again."""
-    z = ball.shape[0]
-    for c in range(2 * z):
-        k, side = (c, 0) if c < z else (c - z, 1)
-        work[ring.LAST, c] *= 0.5
-        ball[k, first + side] -= work[ring.LAST, c]
-        if coupled:
-            work[ring.MOVED_LAST, c] *= 0.5
-            ball[k, first + 2 + side] -= work[ring.MOVED_LAST, c]
 
 
 @jit(boolean(int64, boolean, float64, MATRIX, MATRIX), inline=True)
@@ -240,13 +218,21 @@ def _correct(scalars, table, ball, ball_gain, work, f):
     if not np.isfinite(norm):
         return FAILED
     if norm > work[ring.NORM, 0] and norm > 1e-9 * deepest:
-        # Worse than before the last step.
-        _half_way_back(first, coupled, ball, work)
+        # Worse than before the last step, half of which is taken back.
+        for c in range(2 * z):
+            k, side = (c, 0) if c < z else (c - z, 1)
+            work[ring.LAST, c] *= 0.5
+            ball[k, first + side] -= work[ring.LAST, c]
+            if coupled:
+                work[ring.MOVED_LAST, c] *= 0.5
+                ball[k, first + 2 + side] -= work[ring.MOVED_LAST, c]
         return GOES_ON
     work[ring.NORM, 0] = norm
     if not _factorise(scalars, work):
         return FAILED
-    _solve_shifts(work, ring.STEP)
+    for k in range(z):
+        a, b, m = work[ring.STEP, k], work[ring.STEP, z + k], tensor_of(work, ring.INVERSE, k)
+        work[ring.STEP, k], work[ring.STEP, z + k] = m.aa * a + m.ar * b, m.ra * a + m.rr * b
     if coupled and not step(scalars, table, ball_gain, work):
         return FAILED
     if not _go(first, coupled, deepest, ball, work):
