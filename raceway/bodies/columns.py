@@ -27,9 +27,8 @@ from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels.layout import OWN_OFFSET_INNER, OWN_OFFSET_OUTER, elastic_columns
 from raceway.core.ring.kernels.rigid_inertial import rigid_inertial, rigid_tangential
 from raceway.core.ring.kernels.structural import condensed
-from raceway.core.ring.states import LOOSE, Kernels, Points, States
 from raceway.core.ring.system import System, no_force
-from raceway.core.signatures import FORCE, Linear
+from raceway.core.signatures import FORCE, LOOSE, Kernels, Linear, Points, States
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import force_params, is_elementwise_force, law_params, reach_of, renews
 from raceway.framework.loading.probe import plugin_kernel

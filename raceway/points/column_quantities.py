@@ -14,7 +14,7 @@ from raceway.bodies.columns import ColumnBearing, impedance, solved_columns
 from raceway.core.periodic.floquet import NEUTRAL
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.ring import COORDINATES
-from raceway.core.ring.states import States
+from raceway.core.signatures import States
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, turn_samples
 from raceway.framework.loading.registry import Registry, default_registry

@@ -7,7 +7,7 @@ import raceway as rw
 from raceway.bodies import columns
 from raceway.core.ring.equilibria import equilibria
 from raceway.core.ring.lockstep import POINT_ROWS, WORK_ROWS, lockstep
-from raceway.core.ring.states import States
+from raceway.core.signatures import States
 from raceway.extend import layout
 
 LOADS = {"load.axial": (5.0, 3000.0), "load.radial[0]": (-800.0, 500.0), "load.radial[1]": (-100.0, 100.0)}

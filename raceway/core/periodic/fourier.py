@@ -7,8 +7,7 @@ from numba import float64, int64, void
 
 from raceway.core.jit import jit
 from raceway.core.ring.elimination import solve
-from raceway.core.ring.states import POINTS, STATES
-from raceway.core.signatures import CUBE, FORCE_POINTER, LINEAR, MATRIX, VECTOR, record
+from raceway.core.signatures import CUBE, FORCE_POINTER, LINEAR, MATRIX, POINTS, STATES, VECTOR, record
 
 #: Status beside those of equilibria.
 SOLVED, NOT_SOLVED, UNRESOLVED = 0, 10, 11

@@ -57,8 +57,19 @@ from raceway.core.ring.lockstep import (
     rolling_of,
     seats,
 )
-from raceway.core.ring.states import KERNELS, POINTS, STATES
-from raceway.core.signatures import CUBE, LAW_POINTER, MATRIX, VECTOR, Balls, Constants, Contacts, Response
+from raceway.core.signatures import (
+    CUBE,
+    KERNELS,
+    LAW_POINTER,
+    MATRIX,
+    POINTS,
+    STATES,
+    VECTOR,
+    Balls,
+    Constants,
+    Contacts,
+    Response,
+)
 
 #: Iterations of a level, and with balls found in every sample; the last step over the motion.
 _ITERATIONS, _NESTED, _ROUNDED = 15, 30, 1e-8

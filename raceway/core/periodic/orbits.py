@@ -21,8 +21,7 @@ from raceway.core.ring.elimination import copy_matrix
 from raceway.core.ring.kernels import CONTACT_FORCE
 from raceway.core.ring.kernels.layout import DAMPING, TILT_ARM, TIME_CONSTANT, are_condensed, work_rows
 from raceway.core.ring.lockstep import ARM, DQ, LOAD, PLACE, SHAFT, TANGENT, WORK_ROWS, Q, asks_for_rates, gather
-from raceway.core.ring.states import KERNELS, POINTS, STATES
-from raceway.core.signatures import CUBE, LINEAR, MATRIX, VECTOR, record
+from raceway.core.signatures import CUBE, KERNELS, LINEAR, MATRIX, POINTS, STATES, VECTOR, record
 
 #: Change of the stiffness along a motion, over its mean, beyond which no more samples are tried: balls leave their races.
 _WILD = 1.0

@@ -20,14 +20,19 @@ from raceway.core.ring.kernels.layout import (
 )
 from raceway.core.ring.lockstep import POINT_ROWS, lockstep
 from raceway.core.ring.lockstep import WORK_ROWS as LANES_ROWS
-from raceway.core.ring.states import KERNELS, LEAST, LOOSE, POINTS, STATES, TOLERANCE
 from raceway.core.signatures import (
     CONSTANTS,
     CONTACTS,
     CUBE,
+    KERNELS,
+    LEAST,
     LINEAR,
+    LOOSE,
     MATRIX,
+    POINTS,
     RESPONSE,
+    STATES,
+    TOLERANCE,
     VECTOR,
     Balls,
     Constants,

@@ -32,8 +32,7 @@ from raceway.core.ring.kernels.tensors import (
     put_tensors,
     tensors_of,
 )
-from raceway.core.ring.states import LEAST, POINTS, STATES, TOLERANCE
-from raceway.core.signatures import LAW_POINTER, LINEAR, MATRIX, VECTOR
+from raceway.core.signatures import LAW_POINTER, LEAST, LINEAR, MATRIX, POINTS, STATES, TOLERANCE, VECTOR
 
 #: Rows of ``work`` behind the law's, halves of 4 Z: azimuth; side and lever [m]; reach of the tilts [m] and centrifugal force [N]; e at
 #: rest [m]; offsets [m]; of balls that nothing pushes off the line of the groove centres the outer race's share of the approach, else 0;

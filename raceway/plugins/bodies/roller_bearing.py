@@ -13,9 +13,8 @@ from raceway.core.columns import Number, per_ball
 from raceway.core.quantities.ratings import STRIBECK
 from raceway.core.ring.kernels import layout as ring
 from raceway.core.ring.kernels import rollers as lines
-from raceway.core.ring.states import States
 from raceway.core.ring.system import System
-from raceway.core.signatures import LAW
+from raceway.core.signatures import LAW, States
 from raceway.errors import ConvergenceError
 from raceway.framework.contracts import ContactPairs
 from raceway.framework.duties import law_params
