@@ -106,11 +106,7 @@ class Recorder:
         z = self.system.ball_count
 
         def stack(name: str, shape: tuple[int, ...]) -> np.ndarray:
-            return (
-                np.array([getattr(observation, name) for observation in observations])
-                if observations
-                else np.zeros((0, *shape))
-            )
+            return np.array([getattr(each, name) for each in observations], dtype=float).reshape(len(observations), *shape)
 
         first: Observation | None = observations[0] if observations else None
         return Record(

@@ -25,6 +25,7 @@ from raceway.core.fem.revolution.body import (
     groove_compliance,
     offset_weights,
     solved_harmonics,
+    symmetric_factors,
 )
 from raceway.core.fem.revolution.sections import Profile, coarse_profile
 from raceway.core.ring.kernels.structural import condensed
@@ -155,8 +156,6 @@ def _load_columns(
     body: Revolution, shape: RingShape, table: np.ndarray, half: float, depths: np.ndarray, offsets: np.ndarray
 ) -> np.ndarray:
     """(angles, angles, offsets) mean normal displacement over the depths below each angle, under a unit line load at another [m/N]."""
-    from scipy.sparse.linalg import splu
-
     profile, sign = body.profile, shape.sign
     size = 3 * len(profile.points)
     loads, responses = np.zeros((size, len(table))), np.zeros((size, len(table)))
@@ -188,10 +187,7 @@ def _load_columns(
     even, _ = offset_weights(body.divisions, harmonics, offsets)
     harmonic = np.empty((len(harmonics), len(table), len(table)))
     for i, n in enumerate(harmonics):
-        factor = splu(
-            body.harmonic(int(n)), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0
-        )
-        harmonic[i] = responses.T @ factor.solve(loads)
+        harmonic[i] = responses.T @ symmetric_factors(body.harmonic(int(n)), ordered=False).solve(loads)
     return np.ascontiguousarray(np.moveaxis(np.tensordot(even, harmonic, axes=1), 0, 2))
 
 

@@ -33,7 +33,7 @@ class Problem:
     speed: float
     symmetry: Symmetry
     share: float = 1.0
-    clock: float = attrs.field()
+    clock: float = attrs.field(default=attrs.Factory(lambda self: self.speed, takes_self=True))
     rule: GaussRule = attrs.field(factory=gauss_rule)
     by_parameter: float = 0.0
     watch: Callable[[], None] = lambda: None
@@ -41,10 +41,6 @@ class Problem:
     free: np.ndarray = attrs.field(init=False)
     weight: np.ndarray = attrs.field(init=False)
     closing: np.ndarray = attrs.field(init=False)
-
-    @clock.default
-    def _clock(self) -> float:
-        return self.speed
 
     @free.default
     def _free(self) -> np.ndarray:

@@ -21,8 +21,8 @@ from numba import boolean, float64, int64, types, void
 
 from raceway.core.jit import jit
 from raceway.core.lanes import LANES, MASK, WIDTH, any_of, larger, live_of, put, smaller, spread, take, where
-from raceway.core.periodic import block as at
 from raceway.core.periodic import fourier
+from raceway.core.periodic import steps as at
 from raceway.core.periodic.steps import invert, newton_steps
 from raceway.core.ring import kernels as ring_rows
 from raceway.core.ring.elimination import copy_matrix

@@ -11,8 +11,8 @@ from numba import boolean, float64, int64, void
 
 from raceway.core.jit import jit
 from raceway.core.lanes import WIDTH, live_of, put, where
-from raceway.core.periodic import block as at
 from raceway.core.periodic import fourier, lockstep
+from raceway.core.periodic import steps as at
 from raceway.core.periodic.extremes import force_extremes
 from raceway.core.periodic.monodromy import span_transfer
 from raceway.core.periodic.steps import COLUMNS

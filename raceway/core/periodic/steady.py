@@ -32,23 +32,20 @@ _WAYS = {
 
 def orbit_tables(motions: Sequence[PeriodicMotion]) -> list[Tables]:
     """``motion.orbits`` of result.json: every motion that was found, the one that is taken first."""
-    return [_orbit(motion, motion is motions[0]) for motion in motions]
-
-
-def _orbit(motion: PeriodicMotion, reported: bool) -> Tables:
-    """Z [N/m] and amplitude [m] of the 1x line of one motion, and what becomes of disturbances."""
-    floquet = motion.floquet
-    z, amplitude = synchronous_response(motion.refined.solved)
-    return {
-        "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
-        "amplitude_m": amplitude,
-        "multiplier": floquet.largest,
-        "verdict": floquet.verdict,
-        "leaves_by": floquet.leaves_by or None,
-        "stable": floquet.verdict != "unstable",
-        "found": motion.how,
-        "taken": reported,
-    }
+    tables = []
+    for motion in motions:
+        floquet, (z, amplitude) = motion.floquet, synchronous_response(motion.refined.solved)  # of the 1x line
+        tables.append({
+            "dynamic_stiffness": {"real": z.real, "imag": z.imag, "abs": abs(z)},
+            "amplitude_m": amplitude,
+            "multiplier": floquet.largest,
+            "verdict": floquet.verdict,
+            "leaves_by": floquet.leaves_by or None,
+            "stable": floquet.verdict != "unstable",
+            "found": motion.how,
+            "taken": motion is motions[0],
+        })  # fmt: skip
+    return tables
 
 
 def synchronous_response(solution: Solved, angles: np.ndarray = _OF_A_TURN) -> tuple[complex, float]:
@@ -144,20 +141,20 @@ def static_equilibrium(system: System, start: Motion) -> tuple[np.ndarray, np.nd
 
 def refuse(system: Ring, schedule: Schedule) -> None:
     """Raise ``SceneError`` for what has no motion that repeats every turn, or none that depends on the force alone."""
-    if compiled(system) is None:
-        why = "bodies that are stepped from Python have no compiled forces to linearise thousands of states with. Use 'newmark'"
-        raise SceneError.at("integrator.kind", "periodic", why)
-    if system.law_state.shape[1] > 0:
-        why = "the periodic motion of a contact law with memory cannot be solved for directly. Use 'newmark'"
-        raise SceneError.at("integrator.kind", "periodic", why)
-    if system.scalars[FRICTION] != 0.0:
-        why = "with friction, sticking depends on the start of the motion, and no steady orbit is unique. Use 'newmark'"
-        raise SceneError.at("integrator.kind", "periodic", why)
     turn = schedule.dt * schedule.steps_per_turn
     pairs = [(system.outer_force(part * turn), system.outer_force((1.0 + part) * turn)) for part in (0.0, 0.31, 0.77)]
     largest = max(float(np.abs(now).max()) for now, _ in pairs)
-    if any(np.abs(now - later).max() > 1e-9 * largest for now, later in pairs):
-        raise SceneError.at("integrator.kind", "periodic", "the force does not repeat every turn. Use 'newmark'")
+    if compiled(system) is None:
+        why = "bodies that are stepped from Python have no compiled forces to linearise thousands of states with"
+    elif system.law_state.shape[1] > 0:
+        why = "the periodic motion of a contact law with memory cannot be solved for directly"
+    elif system.scalars[FRICTION] != 0.0:
+        why = "with friction, sticking depends on the start of the motion, and no steady orbit is unique"
+    elif any(np.abs(now - later).max() > 1e-9 * largest for now, later in pairs):
+        why = "the force does not repeat every turn"
+    else:
+        return
+    raise SceneError.at("integrator.kind", "periodic", f"{why}. Use 'newmark'")
 
 
 def _warnings(motion: PeriodicMotion, tolerance: float) -> tuple[str, ...]:

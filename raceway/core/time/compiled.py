@@ -35,7 +35,6 @@ from raceway.core.signatures import (
     OUTER,
     RECORDING,
     RESPONSE,
-    STATE,
     STATIC,
     VECTOR,
     Balls,
@@ -429,17 +428,6 @@ def _remember(forces, t, equilibrium, before, response):
     return True
 
 
-@jit(void(STATIC, STATE))
-def _accept(equilibrium, state):
-    """Move the state to an equilibrium; motion[1] is the change over the step."""
-    motion, ball, before = state.motion, state.ball, state.ball_before
-    for i in range(5):
-        motion[1, i] = equilibrium.q[i] - motion[0, i]
-        motion[0, i] = equilibrium.q[i]
-    copy_matrix(ball, before)
-    copy_matrix(equilibrium.ball, ball)
-
-
 @cache
 def quasi_static(solver: Kernel) -> Kernel:
     """The loop around a kernel of signature ``EQUILIBRIUM``, which finds an equilibrium: ``raceway.core.ring.equilibrium``."""
@@ -472,9 +460,11 @@ def quasi_static(solver: Kernel) -> Kernel:
             if state.memory.shape[1] > 0 and not _remember(forces, t, equilibrium, state.ball, response):
                 counters[REASON] = BALLS
                 return step
-            _accept(equilibrium, state)
             for i in range(5):
-                still[0, i] = equilibrium.q[i]
+                state.motion[1, i] = equilibrium.q[i] - state.motion[0, i]
+                state.motion[0, i] = still[0, i] = equilibrium.q[i]
+            copy_matrix(state.ball, state.ball_before)
+            copy_matrix(equilibrium.ball, state.ball)
             _note_step(recording, number, t, still, push, work, state.ball)
         return steps.total
 

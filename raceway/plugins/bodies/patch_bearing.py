@@ -255,7 +255,14 @@ def _system(
         pairs = at_points(contact_pairs(problem, basis), np.array([0, len(basis.azimuth)]), np.full(2, spacing.area))
         kernel = plugin_kernel(law, "contact law", LAW, "LAW")
         laws = [PointLaw(kernel, row, spacing.area) for row in law_params(law, pairs, "race")]
-    pool = Pool(make(reach), (laws[0], laws[1]), _widening(basis, reach, make), problem.contact.friction)
+
+    def wider(beyond: BeyondPatch) -> tuple[Patch, Patch]:
+        nonlocal reach
+        ellipse = basis.inner if beyond.sense < 0.0 else basis.outer
+        reach = reach.grown(beyond, ellipse, 0.5 * basis.geometry.ball_diameter, _ROOM)
+        return make(reach)
+
+    pool = Pool(make(reach), (laws[0], laws[1]), wider, problem.contact.friction)
     mass = basis.geometry.ball_mass(problem.bearing.balls.density) if problem.kinematics.ball_inertia else 0.0
     fields = {f.name: getattr(ring, f.name) for f in attrs.fields(Ring)}
     return PatchSystem(**{**fields, "table": ring.table.copy()}, rigid=surrogate(ring), pool=pool, ball_mass=mass), spacing
@@ -310,17 +317,3 @@ def _maker(problem: Problem, spacing: Spacing) -> Callable[[Reach], tuple[Patch,
         return first, second
 
     return make
-
-
-def _widening(
-    basis: Basis, reach: Reach, make: Callable[[Reach], tuple[Patch, Patch]]
-) -> Callable[[BeyondPatch], tuple[Patch, Patch]]:
-    """What a pool calls when a contact leaves its patch."""
-    now = [reach]
-
-    def wider(beyond: BeyondPatch) -> tuple[Patch, Patch]:
-        ellipse = basis.inner if beyond.sense < 0.0 else basis.outer
-        now[0] = now[0].grown(beyond, ellipse, 0.5 * basis.geometry.ball_diameter, _ROOM)
-        return make(now[0])
-
-    return wider

@@ -35,9 +35,15 @@ class _Ring:
         behind = np.zeros_like(ride)
         if inertia.any():
             for k in range(ride.shape[1]):
-                force = np.zeros(size)
+                force, solution = np.zeros((2, size))
                 force[part] = inertia * ride[:, k]
-                behind[:, k] = self._solution(force, apply)[part]
+                for _ in range(REFINED):
+                    loads, interior = element.forward(force - apply(solution))
+                    back: Any = interior
+                    step = np.zeros(size)
+                    element.backward(back, element.respond(loads), step)
+                    solution += step
+                behind[:, k] = solution[part]
         self.follow = ride - behind
         self.carried = self.follow[of_nodes(element.nodes.ravel()) - part.start]
         #: (m, m) what the ring's free nodes add to the frame's matrix: R^T M (R - W) d / c.
@@ -62,16 +68,6 @@ class _Ring:
         deformation = displacement - self.carried @ frame
         self.element.backward(interior, deformation.reshape(len(self.element.nodes), -1), out)
         out[self.part] += self.follow @ frame
-
-    def _solution(self, force: np.ndarray, apply: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        solution = np.zeros_like(force)
-        for _ in range(REFINED):
-            loads, interior = self.element.forward(force - apply(solution))
-            back: Any = interior
-            step = np.zeros_like(force)
-            self.element.backward(back, self.element.respond(loads), step)
-            solution += step
-        return solution
 
 
 def free_nodes(assembly: Assembly, index: int) -> np.ndarray:
@@ -340,19 +336,17 @@ class Interface:
         reach = np.union1d(self._flexibility.nodes, nodes) if self._flexibility else nodes
         if len(reach) > 2 * len(nodes):
             reach = nodes
-        if self._flexibility is None or not np.array_equal(reach, self._flexibility.nodes):
-            self._flexibility = self._among(reach)
-        return self._flexibility
-
-    def _among(self, nodes: np.ndarray) -> _RingFlexibility:
-        frame_motion = np.zeros((3 * len(nodes), self.frame_size))
-        blocks, ends = [], 3 * np.searchsorted(nodes, self._first)
+        if self._flexibility is not None and np.array_equal(reach, self._flexibility.nodes):
+            return self._flexibility
+        frame_motion = np.zeros((3 * len(reach), self.frame_size))
+        blocks, ends = [], 3 * np.searchsorted(reach, self._first)
         for k, ring in enumerate(self.rings):
             rows = slice(int(ends[k]), int(ends[k + 1]))
-            local = nodes[rows.start // 3 : rows.stop // 3] - self._first[k]
+            local = reach[rows.start // 3 : rows.stop // 3] - self._first[k]
             blocks.append((rows, ring.element.among(local)))
             frame_motion[rows, : ring.carried.shape[1]] = ring.carried[of_nodes(local)]
-        return _RingFlexibility(nodes, blocks, frame_motion)
+        self._flexibility = _RingFlexibility(reach, blocks, frame_motion)
+        return self._flexibility
 
 
 #: Facets of the rings beyond those under a ball's points: bodies move by tens of micrometres, their facets there are as large.

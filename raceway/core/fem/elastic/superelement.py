@@ -234,11 +234,12 @@ class Loose:
     hold : stiffness [N/m] of springs on the six mean motions of the contacts' nodes, where nothing else holds the body; the caller
         takes them off again
 
+    nodes : (copies, k) numbers of the contacts' nodes
     motions : (3 k, 6) what the springs act on, orthonormal; (3 k, 0) where ``hold`` is zero
     """
 
     def __init__(self, part: Part, flexibility: np.ndarray, hold: float = 0.0) -> None:
-        self.part, self.flexibility, self.hold = part, flexibility, hold
+        self.part, self.nodes, self.flexibility, self.hold = part, part.nodes, flexibility, hold
         self._order = part.places(part.contact)
         self.motions = _mean_motions(part, hold)
 
@@ -262,11 +263,6 @@ class Loose:
     def arrays(self) -> dict[str, np.ndarray]:
         """What to keep."""
         return self.part.fronts.arrays() | {"flexibility": self.flexibility, "hold": np.array([self.hold])}
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """(copies, k) numbers of the contacts' nodes."""
-        return self.part.nodes
 
     def respond(self, loads: np.ndarray) -> np.ndarray:
         """Displacements (1, 3 k) of the contacts' nodes under forces (1, 3 k) there, of a body that is one copy."""
@@ -385,7 +381,7 @@ class Closed:
     """
 
     def __init__(self, part: Part, factors: np.ndarray, across: np.ndarray, blocks: np.ndarray) -> None:
-        self.part, self._factors, self._across, self.blocks = part, factors, across, blocks
+        self.part, self.nodes, self._factors, self._across, self.blocks = part, part.nodes, factors, across, blocks
         self._before, self._behind, self._order = _places(part)
         self._next = part.copies.turns[1]
         self._loaded: tuple[np.ndarray, np.ndarray] | None = None
@@ -425,11 +421,6 @@ class Closed:
     def arrays(self) -> dict[str, np.ndarray]:
         """What to keep."""
         return self.part.fronts.arrays() | {"planes": self._factors, "across": self._across, "blocks": self.blocks}
-
-    @property
-    def nodes(self) -> np.ndarray:
-        """(copies, k) numbers of the contacts' nodes."""
-        return self.part.nodes
 
     def respond(self, loads: np.ndarray) -> np.ndarray:
         """Displacements (copies, 3 k) of the contacts' nodes under forces (copies, 3 k) there.

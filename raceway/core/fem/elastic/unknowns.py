@@ -162,7 +162,7 @@ class MeanMotions:
 
     def jobs(self, u: np.ndarray, out: np.ndarray) -> list[Callable[[], None]]:
         """Jobs that set out (m,) to L u; they may run at the same time."""
-        return [partial(_sums, values, begin, u, out[row : row + len(values)]) for row, begin, values in self.blocks]
+        return [partial(_sums, values, begin, u, out[row : row + len(values)]) for row, begin, values in self.blocks]  # type: ignore[misc]
 
     def add(self, first: int, last: int, amounts: np.ndarray, force: np.ndarray) -> None:
         """Add L^T amounts (m,) to the entries ``first`` to ``last - 1`` of force (n,)."""

@@ -329,9 +329,15 @@ class PatchSystem(SteppedRing):
                 return self._roll(*self.pool.widened(lambda: self._newton(q, np.asarray(ball), self.load, tolerance)))
             except ConvergenceError:
                 pass  # from rigid bodies, then
-        for parts in (1, 4, 16):
+        for parts in (1, 4, 16):  # of the load, the first from the equilibrium of rigid bodies
             try:
-                return self._roll(*self._by_load(q, parts, tolerance))
+                rigid = attrs.evolve(self.surrogate, load=self.load / parts)
+                (q_part, where, _), total = rigid.solve_equilibrium(q), 0
+                for part in range(1, parts + 1):
+                    task = partial(self._newton, q_part, where, self.load * (part / parts), tolerance)
+                    q_part, where, count = self.pool.widened(task)
+                    total += count
+                return self._roll(q_part, where, total)
             except ConvergenceError as why:
                 if parts == 16 or "nothing holds" in str(why):
                     raise
@@ -357,16 +363,6 @@ class PatchSystem(SteppedRing):
         """Energy that friction has taken at the end of a record that began without history [J]."""
         memory = self.law_state if record.final.memory is None else record.final.memory
         return float(SlipHistory.of(memory, self.ball_count).lost.sum())
-
-    def _by_load(self, q: np.ndarray, parts: int, tolerance: float) -> tuple[np.ndarray, np.ndarray, int]:
-        """Equilibrium under the load in so many parts, the first from the equilibrium of rigid bodies."""
-        q_part, ball, _ = attrs.evolve(self.surrogate, load=self.load / parts).solve_equilibrium(q)
-        total = 0
-        for part in range(1, parts + 1):
-            task = partial(self._newton, q_part, ball, self.load * (part / parts), tolerance)
-            q_part, ball, count = self.pool.widened(task)
-            total += count
-        return q_part, ball, total
 
     def _newton(
         self, q: np.ndarray, ball: np.ndarray, load: np.ndarray, tolerance: float
