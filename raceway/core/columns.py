@@ -65,7 +65,6 @@ def elliptic_integrals(m1: Number) -> tuple[Number, Number]:
 
 
 def _column_values(part: attrs.AttrsInstance) -> dict[str, Any]:
-    """What stands in a table, by the names of its keys."""
     return {name: getattr(part, name) for name in _names(type(part))}
 
 

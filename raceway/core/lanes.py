@@ -120,7 +120,6 @@ _lanewise(MASK, (MASK,), of=operator.invert)(lambda builder, x: builder.not_(x))
 
 
 def _call(builder: _Numba, name: str, answer: _Numba, *args: _Numba) -> _Numba:
-    """A call of one of LLVM's own functions."""
     kind = ir.FunctionType(answer, [arg.type for arg in args])
     return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}"), args)
 
@@ -200,7 +199,6 @@ def sum_of(builder: _Numba, x: _Numba) -> _Numba:
 
 
 def _place(context: _Numba, builder: _Numba, matrix: _Numba, row: _Numba, column: _Numba) -> _Numba:
-    """Address of an entry."""
     array = context.make_array(MATRIX)(context, builder, matrix)
     columns = builder.extract_value(array.shape, 1)
     return builder.gep(array.data, [builder.add(builder.mul(row, columns), column)])

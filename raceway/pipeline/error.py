@@ -169,7 +169,6 @@ def error_warnings(errors: Errors, identified: bool) -> list[str]:
 
 
 def _no_total(run: Identified, parts: dict[str, Part]) -> Note | None:
-    """Why the total is not known; None where it is."""
     if run.model.traits.every_node:
         return Estimate.MESH_UNKNOWN()
     if not run.motions:

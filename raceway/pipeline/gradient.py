@@ -310,7 +310,6 @@ class Gradients:
         return answers[key.path]
 
     def _model(self, key: Key, by: float) -> Model:
-        """The model at another number; the plan stays."""
         model = self.model
         problem = resolve(with_number(model.scene, key.path, key.value + by))
         if why := other_meshes(model.problem, problem):
@@ -321,7 +320,6 @@ class Gradients:
             raise NoDerivative(f"no model can be built at {key.value + by:.6g}: {why}") from None
 
     def _solution(self, model: Model) -> _Solutions:
-        """Of a neighbouring model, from this one's."""
         q = self.equilibrium.displacement
         equilibrium = solve_equilibrium(model, near=q)
         line = None if self.orbit is None else self.orbit.near(model, equilibrium.displacement - q)

@@ -228,7 +228,6 @@ def model_spread(
 
 
 def _state_numbers(model: Model, equilibrium: Equilibrium) -> dict[str, float | None]:
-    """Of an equilibrium, by their names."""
     k, forces = equilibrium.stiffness, equilibrium.contact_force
     return {
         KXX.name: float(k[0, 0]), KYY.name: float(k[1, 1]),

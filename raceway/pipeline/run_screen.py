@@ -23,7 +23,6 @@ _OF_Z = (
 
 
 def _answer_rows(result: Content) -> list[Row]:
-    """The first section."""
     identification = result["identification"]
     if identification is None:
         spin = result["scene"]["kinematics"].get("spin_speed_rpm")

@@ -218,7 +218,6 @@ def _step_warnings(
 
 
 def _motion(model: Model, equilibrium: Equilibrium, start: Start, dt: float) -> Motion:
-    """The first moment."""
     q, ball = equilibrium.displacement, equilibrium.ball
     system, method = model.system.at_speed(0.0), model.problem.integrator.method
     if method.steady:

@@ -111,7 +111,6 @@ def _with_zero(change: Iterable[float]) -> Range:
 
 
 def _squares(changes: Iterable[Iterable[float]]) -> Range:
-    """Root of the sum of squares of each side."""
     sides = [_with_zero(change) for change in changes]
     return -hypot(*(low for low, _ in sides)), hypot(*(high for _, high in sides))
 

@@ -221,7 +221,6 @@ def _at(keys: tuple[str, ...], level: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def _one(scene: Scene) -> dict[str, np.ndarray]:
-    """A scene as one point."""
     return {"load.axial": np.array([scene.load.axial])}
 
 

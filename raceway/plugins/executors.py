@@ -153,7 +153,6 @@ class _Worker:
         self.ready.add_done_callback(self._start)
 
     def _start(self, *_: object) -> None:
-        """The time of its batch begins."""
         self.begun = time.monotonic()
 
     def begin(self, work: Work, batch: Batch) -> Future[object]:
@@ -186,7 +185,6 @@ class _Worker:
 
 
 def _begin(parent: int) -> None:
-    """In a process, before its first batch."""
     from joblib.externals.loky import process_executor
 
     # Otherwise loky replaces, with a warning, a process that grows by 300 MB, as elastic bodies make it.
@@ -307,7 +305,6 @@ class _Flight:
         return bool(self.fit)
 
     def _look(self) -> None:
-        """See who came and who went; ask who is new."""
         now = time.monotonic()
         if now - self.looked < _LOOK_S:
             return

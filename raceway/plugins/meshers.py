@@ -94,7 +94,6 @@ class Structured:
         return prediction
 
     def _suffixes(self, bearing: Bearing) -> list[str]:
-        """Suffixes of the names of the bodies of each row."""
         count = len(bearing.rows)
         return [f"_row{row + 1}" if count > 1 else "" for row in range(count)]
 

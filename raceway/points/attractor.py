@@ -146,7 +146,6 @@ def _beside(orbit: Solved, over: np.ndarray, parameter: float, turns: int, on_pr
 def _end_of(
     system: Ring, start: Callable[[Ring], Motion], schedule: Schedule, parameter: float, turns: int, on_progress: OnProgress | None
 ) -> Attractor:  # fmt: skip
-    """The motion from a start, by its last turns."""
     on_steps = None if on_progress is None else (lambda step, total: on_progress("beside unstable orbits", step, total))
 
     def moved(ring: Ring) -> Record:

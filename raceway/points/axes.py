@@ -164,7 +164,6 @@ def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Ax
 
 
 def _axis(key: str, values: Sequence[Any]) -> Axis:
-    """An axis whose values are all different."""
     names = [(isinstance(v, bool), v if is_number(v) else repr(v)) for v in values]
     if len(set(names)) < len(names):
         repeated = next(value for k, value in enumerate(values) if names[k] in names[:k])

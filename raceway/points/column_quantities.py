@@ -149,7 +149,6 @@ def lasting(multiplier: float) -> bool:
 
 
 def _tilts_follow(c: Computed) -> np.ndarray:
-    """Condensation of the tilts, see ``raceway.bodies.model.tilts_follow``."""
     K, shaft = c.states.stiffness, c.bearing.points.shaft
     a, b, e, d = K[:, 3, 3] + shaft, K[:, 3, 4], K[:, 4, 3], K[:, 4, 4] + shaft
     det = a * d - b * e

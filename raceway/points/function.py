@@ -130,7 +130,6 @@ class Function:
 
     @cached_property
     def _of_plugins(self) -> dict[str, tuple[str, Quantity]]:
-        """Quantities of plug-ins."""
         return plugin_quantities(default_registry())
 
     @cached_property
@@ -266,7 +265,6 @@ class Function:
         return with_columns(self.scene, {key: float(number) for key, number in point.items()})
 
     def _by_key(self, columns: Sequence[ArrayLike], by_name: Mapping[str, ArrayLike]) -> dict[str, ArrayLike]:
-        """All inputs by their keys."""
         if len(columns) > len(self.inputs):
             raise SceneError.at(
                 "inputs", len(columns), f"are more columns than the {len(self.inputs)} inputs of this function"
@@ -300,7 +298,6 @@ class Function:
         return shape, {key: np.ascontiguousarray(np.broadcast_to(array, shape)).ravel() for key, array in arrays.items()}
 
     def _dataset(self, values: Mapping[str, ArrayLike]) -> xarray.Dataset:
-        """The data set of inputs some of which are DataArrays."""
         import xarray
 
         arrays = [
@@ -412,7 +409,6 @@ class Function:
         return self.scene_at(point)
 
     def _run_all(self, flat: Mapping[str, np.ndarray], rows: np.ndarray, answer: Columns) -> Columns:
-        """Runs of some rows, their values put into the answer."""
         n = len(next(iter(flat.values())))
         answer.setdefault("status", np.full(n, _FAILED))
         answer.setdefault("reason", np.full(n, "", dtype=object))
@@ -534,7 +530,6 @@ def function(
 
 
 def _name(output: str) -> str:
-    """The name of a quantity that is asked for by its name or symbol."""
     names = {name: name for name in (*QUANTITIES, *plugin_quantities(default_registry()))}
     symbols = {quantity.symbol: name for name, quantity in KNOWN.items() if name in QUANTITIES}
     name = {**symbols, **names}.get(output)

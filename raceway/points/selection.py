@@ -164,7 +164,6 @@ def same(a: Any, b: Any) -> bool:
 
 
 def _value_text(value: object) -> str:
-    """What is no number has its JSON text on an axis."""
     return value if isinstance(value, str) else json.dumps(value)
 
 

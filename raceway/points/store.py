@@ -253,7 +253,6 @@ def _has_tables(connection: sqlite3.Connection) -> bool:
 
 
 def _holds_rows(connection: sqlite3.Connection) -> bool:
-    """Whether anything finished is stored."""
     query = "SELECT 1 FROM points WHERE state IN ('done', 'failed') LIMIT 1"
     return _has_tables(connection) and connection.execute(query).fetchone() is not None
 
@@ -341,7 +340,6 @@ def _own_sources() -> str:
 
 @cache
 def _sources_of(name: str) -> str:
-    """Hash of a plug-in's module, or of its whole package."""
     spec = None
     with suppress(ImportError, ValueError):  # no such module, or one that was made by a program
         spec = find_spec(name)

@@ -191,7 +191,6 @@ def _digest(key: str, arrays: Tables, parts: Iterable[memoryview | bytes]) -> st
 
 
 def _chunks(arrays: Mapping[str, np.ndarray]) -> Iterator[memoryview | bytes]:
-    """Bytes of the arrays, without copies."""
     for array in arrays.values():
         if array.nbytes:
             yield array.reshape(-1).data.cast("B")

@@ -208,7 +208,6 @@ class Branch:
         return out
 
     def _linearise(self, problem: Problem, path: Path, parameter: float) -> tuple[Eliminated, np.ndarray] | None:
-        """The linearisation, with the derivative by the parameter, and its report."""
         push = problem.push(path.nodes)
         own = self.slope is None and problem.by_parameter == 0.0
         by = self._difference(problem, path, parameter) if own else self.slope and self.slope(problem, path)
@@ -289,7 +288,6 @@ def _shifted_path(path: Path, free: np.ndarray, linear: Eliminated, first: np.nd
 
 
 def _two_spans(problem: Problem) -> Problem:
-    """The same problem with a period of two spans."""
     span = problem.symmetry
     turn, order = span.rotation @ span.rotation, span.order[span.order]
     return attrs.evolve(problem, symmetry=Symmetry(2.0 * span.span, turn, 2.0 * span.angle, order, span.pitch))

@@ -332,6 +332,5 @@ def chosen(
 
 
 def _alike(first: Refined, second: Refined) -> bool:
-    """Whether two motions of one problem are the same."""
     pair = [displacements(refined.solved, _COMPARED) / refined.solved.problem.weight for refined in (first, second)]
     return bool(np.abs(pair[0] - pair[1]).max() <= _SAME * max(first.solved.size, second.solved.size))

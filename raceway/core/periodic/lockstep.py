@@ -259,7 +259,6 @@ def dampers(points, p):
 
 @jit(void(int64, float64, VECTOR, VECTOR, CUBE))
 def _derivatives(n, sense, d1, d2, rows):
-    """Of the motion by the angle."""
     live, stride = live_of(0, WIDTH), rows.shape[0] // n
     for j in range(n):
         r = rows[j * stride]

@@ -44,7 +44,6 @@ LIMITS = record(Limits, float64, float64, int64, int64)
 
 @jit(void(intervals.SAMPLES, intervals.CHANGE, float64))
 def _move(samples, change, factor):
-    """Add a part of a change to a path."""
     for k in range(samples.q.shape[0]):
         for c in range(5):
             samples.q[k, c] += factor * change.q[k, c]

@@ -180,7 +180,6 @@ def _decrease_ratio(before, after, H, g, g_new, step):
 
 @jit(void(STATIC, RESPONSE, STATIC, RESPONSE))
 def _accept(trial, new, state, now):
-    """The state and its response become the trial ones."""
     for i in range(5):
         state.q[i], now.f[i] = trial.q[i], new.f[i]
     copy_matrix(new.K, now.K)

@@ -145,7 +145,6 @@ def beyond_oil(temperature_c: float) -> str:
 
 
 def _within(ends: Sequence[Any] | None, less: float, unit: str) -> str:
-    """Ends of a band in words."""
     if ends is None:
         return ""
     if None in ends:

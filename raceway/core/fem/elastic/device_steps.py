@@ -68,7 +68,6 @@ def _elements(first, stride, mesh, u):  # type: ignore[no-untyped-def]
 
 
 def _move(first, stride, onward, dt, mesh, nodes, corners, cage, points):  # type: ignore[no-untyped-def]
-    """As ``explicit_kernels.move``, of forces that each node gathers."""
     for i in range(first, nodes.u.size, stride):
         n, c, f = i // 3, i % 3, 0.0
         for k in range(mesh.starts[n], mesh.starts[n + 1]):
@@ -89,8 +88,6 @@ def _move(first, stride, onward, dt, mesh, nodes, corners, cage, points):  # typ
 
 @cache
 def _kernel(law):  # type: ignore[no-untyped-def]
-    """As ``explicit_kernels.advance``, with a contact law."""
-
     def advance(first, begin, end, count, numbers, mesh, nodes, corners, cage, frame, points):  # type: ignore[no-untyped-def]
         """Steps ``begin`` to ``end - 1`` of those from ``first`` to ``count - 1``, fewer where points have moved or stiffened too far."""
         me, stride, grid = cuda.grid(1), cuda.gridsize(1), cuda.cg.this_grid()

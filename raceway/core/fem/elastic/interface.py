@@ -148,8 +148,6 @@ OnProgress = Callable[[str, int, int], None]
 
 @attrs.frozen(eq=False)
 class _Substructure:
-    """A mesh that is factored, or read from the store."""
-
     name: str  # of its body
     #: copies, operator, contact, free, mass, bed : see ``Part.of``
     copies: Copies

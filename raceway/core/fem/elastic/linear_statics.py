@@ -111,7 +111,6 @@ def _signature(real: Any) -> Signature:
 
 
 def _multiply(starts, columns, blocks, x, base, factor, out):  # type: ignore[no-untyped-def]
-    """out = factor base + A x."""
     for row in range(starts.size - 1):
         i = 3 * row
         a, b, c = factor * base[i], factor * base[i + 1], factor * base[i + 2]

@@ -20,8 +20,6 @@ DEGENERATE = 1e-6
 
 @attrs.frozen(eq=False)
 class _Quality:
-    """Quality of each cell."""
-
     #: (m,) smallest determinant of the unit edge vectors at the corners: 1 for a cuboid, <= 0 is inverted
     scaled_jacobian: np.ndarray
     aspect: np.ndarray  # (m,) longest edge / shortest edge

@@ -68,7 +68,6 @@ class ComplianceFactor:
         return dpotrs(self._lower, right, lower=1)[0]
 
     def _prepare(self, nodes: np.ndarray) -> None:
-        """Make the factor, or the border, of a set of points."""
         if self._nodes is not None and np.array_equal(nodes, self._nodes):
             return
         joining = np.isin(nodes, self._base, assume_unique=True, invert=True)
@@ -402,7 +401,6 @@ class Contact:
         return slope, curvature[[0, 1, 1, 2]].reshape(2, 2)
 
     def _ends(self, nodes: np.ndarray, force: np.ndarray) -> bool:
-        """Whether the contact is cut off by the groove's edge."""
         patch = self.patch
         row, column = nodes // patch.columns, nodes % patch.columns
         low, high = row[0] == 0, row[-1] == patch.rows - 1

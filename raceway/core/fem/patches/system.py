@@ -367,7 +367,6 @@ class PatchSystem(SteppedRing):
     def _newton(
         self, q: np.ndarray, ball: np.ndarray, load: np.ndarray, tolerance: float
     ) -> tuple[np.ndarray, np.ndarray, int]:
-        """Ring and balls in one iteration."""
         row, none = self.pool.row(self.table), np.zeros(5)
         balls = row.balls
         still = np.zeros((2 * self.ball_count, 2))

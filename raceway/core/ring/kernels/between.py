@@ -177,7 +177,6 @@ def _gather(work, row, first, balls):
 
 @jit(void(MATRIX, int64, int64, int64))
 def _scatter(work, row, first, balls):
-    """The same back."""
     z = work.shape[1] // 2
     for j in range(balls):
         work[row, first + j], work[row, z + first + j] = work[ring.LOCAL, 2 * j], work[ring.LOCAL, 2 * j + 1]

@@ -61,7 +61,6 @@ def _first_guess(k, rolls, q, scalars, table, ball, ball_history, work):
 
 @jit(void(int64, int64, MATRIX))
 def _forget(k, z, work):
-    """Begin with the steps of ball k anew."""
     work[at.SLOPE, k], work[at.MERIT, z + k], work[at.STEP, k], work[at.STEP, z + k] = 0.0, np.inf, 0.0, 0.0
 
 
