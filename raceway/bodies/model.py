@@ -45,8 +45,6 @@ Told = tuple[float | None, str]
 class BuiltBearing(ABC):
     """A bearing of one kind of bodies.
 
-    Attributes
-    ----------
     basis : geometry and contacts that do not depend on loads
     system : the ring on its balls
     guess : (5,) first guess of the equilibrium, with a held axial displacement
@@ -63,15 +61,10 @@ class BuiltBearing(ABC):
     ) -> tuple[np.ndarray, np.ndarray, int]:
         """Displacement (5,), balls (Z, k) and iterations at the equilibrium under the constant loads.
 
-        Parameters
-        ----------
         near : (5,) equilibrium of a similar bearing;  on_progress : called as ``on_progress(what, done, total)``, ``total``
             0 where nobody knows; both for bodies whose equilibria take long
 
-        Raises
-        ------
-        ConvergenceError
-            None was found.
+        ConvergenceError: None was found.
         """
         return self.system.solve_equilibrium(self.guess)
 
@@ -106,8 +99,6 @@ class BuiltBearing(ABC):
     def has_places(self, balls: str) -> bool:
         """Whether ``ball[:, :2]`` are the balls' places; False where they lie between the groove centres.
 
-        Parameters
-        ----------
         balls : the plan's "weightless", "inertial" or "tangential"
         """
         return True

@@ -27,8 +27,6 @@ def solve_equilibrium(
 ) -> Equilibrium:
     """The static equilibrium of a model; ``ConvergenceError`` for none, or a motion that nothing holds (named).
 
-    Parameters
-    ----------
     near : (5,) equilibrium of a similar model, which contacts at surface points start from; others take microseconds
     on_progress : called as ``on_progress(what, done, total)`` while elastic bodies are solved; ``total`` is 0: nobody knows
     """

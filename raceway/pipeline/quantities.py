@@ -18,8 +18,6 @@ from raceway.storage.tables import Tables
 class StatedQuantities:
     """What plug-ins of quantities state of a result.
 
-    Attributes
-    ----------
     values : name -> number, or array over the quantity's dimensions;  tables : plug-in -> what result.json has;  warnings : sentences
     missing : plug-in -> what the problem lacks for it
     """

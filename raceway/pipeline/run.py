@@ -57,8 +57,6 @@ def run(
 ) -> Result:
     """Compute one scene.
 
-    Parameters
-    ----------
     on_progress : called as ``on_progress(what, done, total)`` between chunks of steps; an exception stops the run
     near : of a similar scene: what is dear to search for (equilibria of contacts at surface points, steady motions that are
         nearly linear) is searched for from its own, which changes the result within the tolerances of the search only
@@ -66,12 +64,8 @@ def run(
         on a curve or in an iteration: which of them is found then depends on ``near``; "unstable": where it is unstable, too
     patience : times the planned time, of processor time, after which a run is stopped between its steps
 
-    Raises
-    ------
-    SceneError
-        A combination that cannot run.
-    ConvergenceError, StabilityError, BeyondPlanError
-        No solution, or none in the time allowed; ``error.state`` holds the last good arrays.
+    SceneError: A combination that cannot run.
+    ConvergenceError, StabilityError, BeyondPlanError: No solution, or none in the time allowed; ``error.state`` holds the last good arrays.
     """
     registry = registry or default_registry()
     try:
@@ -290,8 +284,6 @@ def _environment(problem: Problem, registry: Registry) -> Tables:
 class Allowance:
     """Processor time [s] and memory [B] that a run may take; kernels that compile do not count.
 
-    Attributes
-    ----------
     planned : predicted time of the run;  patience : how many times that may pass;  started : reading of the clock
     bytes : predicted memory at the peak, 0 where it has no limit;  held : what the process held before the run
     """

@@ -92,8 +92,6 @@ def simulate(
 ) -> Simulation:
     """Integrate the plan's turns; ``ConvergenceError`` where that fails, ``StabilityError`` above the stable limit of explicit steps.
 
-    Parameters
-    ----------
     steps_per_turn : instead of the scene's
     start : None: that of the scene
     near : of a similar scene, for the search for an orbit, and for integrators of the same kind, that can start from it

@@ -22,8 +22,6 @@ of them sees it.  A further run begins otherwise, with the steps of the one that
 err alike.  Free vibrations, which each run states as its own error, are taken from both.  The orbit without friction and the motions
 from rest are furthest apart; a growing force leaves the least free vibration.
 
-References
-----------
 Harris, Proc. IEEE 66 (1978), 51 (windows); Nayfeh, Mook, Nonlinear Oscillations (1979), section 4.3 (cubic terms).
 """
 

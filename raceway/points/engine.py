@@ -135,8 +135,6 @@ def worker() -> str:
 class Item:
     """A piece of work.
 
-    Attributes
-    ----------
     key : of its row: a hash of all that decides it;  name : for people
     task : what the study's function takes; plain values, or what can be pickled
     """
@@ -158,18 +156,13 @@ def work_through(
 ) -> tuple[list[Tables], int]:
     """Rows of all items, in their order, and how many of them were stored before.
 
-    Parameters
-    ----------
     function : called as ``function(item.task, registry)``, here or in another process: a row, plain values
     store : of finished rows, read and added to;  executor : follows ``raceway.framework.contracts.Executor``
     plugins : one-off plug-in files, which each process loads
     on_progress : called as ``on_progress(name, done, total)`` after each item; an exception stops the study
     lost : row of an item that took its process down, which is not stored, from the item and the reason
 
-    Raises
-    ------
-    RacewayError
-        An item took its process down, and no row was made of that.  Whatever is raised, Ctrl-C too: finished points are stored.
+    RacewayError: An item took its process down, and no row was made of that.  Whatever is raised, Ctrl-C too: finished points are stored.
     """
     records = [store.get(item.key) for item in items]
     rows = {index: row.content for index, row in enumerate(records) if row.state != "waiting"}

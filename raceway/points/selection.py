@@ -34,8 +34,6 @@ _SHOWN = 8
 class Selection:
     """Results on the axes that still vary.
 
-    Attributes
-    ----------
     dataset : with one dimension for each key of ``axes``, in that order, or ``point`` where the list is no grid
     axes : keys that vary, with their values in rising order (numbers) or in the order of the sweep
     fixed : keys of the sweep that do not vary here, and their values
@@ -109,15 +107,10 @@ def swept_keys(dataset: Dataset) -> list[str]:
 def select(dataset: Dataset, at: ReadTables) -> Selection:
     """The results at chosen values.
 
-    Parameters
-    ----------
     dataset : as a sweep gives it: a dimension for each key, or ``point`` with the keys as coordinates
     at : key -> value; it must be one of the axis' values
 
-    Raises
-    ------
-    SceneError
-        An unknown key, or a value that the sweep does not hold; the nearest one is named.
+    SceneError: An unknown key, or a value that the sweep does not hold; the nearest one is named.
     """
     keys = swept_keys(dataset)
     mistakes, fixed_values = [], Tables()

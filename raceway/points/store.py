@@ -60,8 +60,6 @@ class Row(NamedTuple):
 class Store:
     """Rows by key on disk, or in memory; ``written`` makes it.
 
-    Attributes
-    ----------
     path : the folder
     facts : what all rows depend on, schema, created
     fault : why rows are no longer stored; a study goes on without
@@ -185,14 +183,9 @@ def connected(folder: Path, patience: float = 30.0) -> sqlite3.Connection:
 def written(path: str | Path | None, facts: ReadTables | None = None, keys: Collection[Key] = ()) -> Iterator[Store]:
     """A store to write, for one process at a time; made where there is none yet.  None keeps the rows in memory.
 
-    Parameters
-    ----------
     facts : what all rows depend on;  keys : of all rows that the store will have, where they are known
 
-    Raises
-    ------
-    RacewayError
-        Another process is writing to it, it has the rows of another command, or the disk takes nothing.
+    RacewayError: Another process is writing to it, it has the rows of another command, or the disk takes nothing.
     """
     if path is None:
         with closing(sqlite3.connect(":memory:")) as connection:

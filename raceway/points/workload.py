@@ -117,8 +117,6 @@ _STARTED_BYTES, _HELD, _ON_DISK = 280 * 2**20, 23.0, 16.5
 class Workload(Answer):
     """What a command with many points would compute.
 
-    Attributes
-    ----------
     points : in all, of which ``stored`` are finished and ``refused`` by rules;  ``looped`` : in compiled loops;  runs : one by one
     seconds : wall time, with compiled kernels in the cache;  at_most : whether it is an upper limit
     bytes : resident memory of a process at the peak;  disk_bytes : of what is written, without pictures

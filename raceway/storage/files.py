@@ -78,16 +78,10 @@ _TIMES, _MORE = 40, 2**29
 def size_of(path: str | Path, most: int) -> int:
     """Bytes of a file that can be read to its end.
 
-    Parameters
-    ----------
     most : bytes that its reader takes
 
-    Raises
-    ------
-    ValueError
-        A pipe or a device, or a file that is larger; the sentence follows the file's name.
-    OSError
-        No such file; a folder is left to who opens it.
+    ValueError: A pipe or a device, or a file that is larger; the sentence follows the file's name.
+    OSError: No such file; a folder is left to who opens it.
     """
     status = Path(path).stat()
     if not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode):

@@ -60,16 +60,10 @@ class NumberTable:
 def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTable:
     """The table of a file; empty lines are left out.
 
-    Parameters
-    ----------
     judge : of the header, before the rows are read; it raises ``ValueError``
 
-    Raises
-    ------
-    ValueError
-        What is wrong with the file, with the line; the sentence follows the file's name.
-    OSError
-        A file that cannot be opened.
+    ValueError: What is wrong with the file, with the line; the sentence follows the file's name.
+    OSError: A file that cannot be opened.
     """
     import numpy as np
 

@@ -6,8 +6,6 @@ fold, where p turns back, is passed like any other point.  Newton's corrector ad
 p is a difference quotient at the same angles where the caller knows none.  Points are handed over one by one: each holds its
 linearised problem, and what a caller does not keep is given back.
 
-References
-----------
 Keller, in Rabinowitz (ed.), Applications of Bifurcation Theory (1977); Seydel, Practical Bifurcation and Stability
 Analysis, 3rd ed. (2010), chapter 4.
 """
@@ -112,14 +110,9 @@ class Branch:
     def follow(self, first: Point, step: float, longest: float | None = None) -> Iterator[Point]:
         """Points from ``first`` on, one by one, for as long as they are asked for.
 
-        Parameters
-        ----------
         step : first length along the branch, in units; ``longest`` : of all steps, four times the first by default
 
-        Raises
-        ------
-        ConvergenceError
-            Where the branch cannot be followed further.
+        ConvergenceError: Where the branch cannot be followed further.
         """
         yield first
         here, size = first, step
@@ -300,8 +293,6 @@ def doubled(branch: Branch, point: Point) -> tuple[Branch, Point]:
     first and -v along the second, are the first point of a problem of two spans, at which another branch crosses with the
     tangent (v, 0).
 
-    References
-    ----------
     Seydel, Practical Bifurcation and Stability Analysis, 3rd ed. (2010), section 7.4.
     """
     solution = point.solved

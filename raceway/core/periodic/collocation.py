@@ -18,8 +18,6 @@ from raceway.errors import ConvergenceError
 class Problem:
     """M q'' + C q' + K q + f = load + share * force(t) with q(theta + span) = P q(theta).
 
-    Attributes
-    ----------
     speed : of the force, w [rad/s]: a turn of theta is a turn of the force
     share : of the excitation that acts;  clock : speed that belongs to the excitation's own time, ``speed`` unless a branch
         is followed over speed while the bodies keep theirs: then ``by_parameter`` is the derivative of ``speed``

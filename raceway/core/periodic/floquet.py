@@ -5,8 +5,6 @@ are mu^(2 pi / span).  All inside the unit circle: disturbances die out.  One ou
 to no damping they lie on the circle but for some 1e-7, and a disturbance neither grows nor dies.  An unstable motion is
 left through +1 (fold, or symmetry breaking), -1 (period doubling) or a pair e^(+-j a) (a second frequency comes in).
 
-References
-----------
 Nayfeh, Balachandran, Applied Nonlinear Dynamics (1995), chapter 3; Seydel, Practical Bifurcation and Stability Analysis,
 3rd ed. (2010), chapter 7.
 """

@@ -10,8 +10,6 @@ G the generator of R, 0 in a frame that stands.  Balls are those of ``raceway.co
 any that a kernel finds a place for in every sample (``forces_alone``); steps are those of ``raceway.core.periodic.steps``.  Lanes do not
 feel each other beyond rounding.
 
-References
-----------
 Trefethen, Spectral Methods in MATLAB (2000), chapter 3 (differentiation matrices of periodic functions).
 Krack, Gross, Harmonic Balance for Nonlinear Vibration Problems (2019), chapters 2 and 4.
 """

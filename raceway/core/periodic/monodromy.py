@@ -5,8 +5,6 @@ their samples: y' = B y with y = (v, v').  Magnus's expansion of fourth order ta
 Pade approximant of fourth order: both are symplectic where B is Hamiltonian, so that multipliers of motions without damping
 stay on the unit circle.
 
-References
-----------
 Blanes, Casas, Oteo, Ros, The Magnus expansion and some of its applications, Physics Reports 470 (2009), equation 253.
 """
 

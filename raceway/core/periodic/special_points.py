@@ -46,8 +46,6 @@ def special_points(branch: Branch, start: Point, end: Point, size: float) -> lis
     multipliers lie on the circle: a pair leaves it where two of them meet (a Krein collision), which is reported as the last
     kind.
 
-    References
-    ----------
     Seydel, Practical Bifurcation and Stability Analysis, 3rd ed. (2010), sections 5.3, 7.4; Kuznetsov, Elements of Applied
     Bifurcation Theory (1998), section 10.2.
     """

@@ -2,8 +2,6 @@
 
 With the mean tangent of the samples the linear system falls into harmonics, whose inverses answer each column.
 
-References
-----------
 Eisenstat, Elman, Schultz, SIAM J. Numer. Anal. 20 (1983) 345.
 """
 

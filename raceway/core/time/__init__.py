@@ -22,8 +22,6 @@ Static, the motion as a series of equilibria: f(q) + K q = F at the end of each 
 extrapolated.  Without friction and gyroscopic moments the forces of the balls have a potential, which is minimised; with them a
 root is found.
 
-References
-----------
 Newmark, J. Eng. Mech. Div. ASCE 85 (1959); Chung, Hulbert, J. Appl. Mech. 60 (1993), equations 16 to 27.
 Belytschko, Liu, Moran: Nonlinear Finite Elements for Continua and Structures, box 6.1.
 """

@@ -113,8 +113,6 @@ class Explicit:
 class OneStep:
     """Equations in ``raceway.core.time``.
 
-    Attributes
-    ----------
     alpha_m, alpha_f : weights of the old step's inertia and other forces;  beta, gamma : Newmark's
     tolerance : residual of a step's iteration over the largest force of excitation and inertia
     """

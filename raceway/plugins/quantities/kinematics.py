@@ -77,8 +77,6 @@ class BallPass:
 def ball_pass(ball_count: int, ball_diameter: float, pitch_diameter: float, cosine: float | np.ndarray) -> Tables:
     """FTF, BPFO, BPFI and BSF over the shaft's frequency, of numbers or columns (n,).
 
-    Parameters
-    ----------
     ball_diameter, pitch_diameter : [m];  cosine : of the loaded contact angle
     """
     g = ball_diameter * cosine / pitch_diameter

@@ -134,14 +134,10 @@ _OnFront = Callable[[int, int], None]
 class Part:
     """Factors of c K + d M of a mesh of hexahedra, for right sides of its copies.
 
-    Parameters
-    ----------
     copies : Copies
     contact : (k,) nodes of the first copy that are retained beside its cut planes
     fronts : Fronts
 
-    Attributes
-    ----------
     nodes : (copies, k) numbers of the contacts' nodes
     own : (n,) bool, nodes whose forces belong to the copy: not the images on its second cut plane
     """

@@ -10,8 +10,6 @@ A rigid kernel finds balls and forces for given w, and their derivatives S = dQ/
 w - C Q(w) = 0 with I - C S does the rest.  Potential: U(gaps) + Q.C Q / 2, so the change of c with the angle turns the
 ring with -Q^2 c'/2 about each ball's groove, and the tangent, by implicit differentiation, is symmetric.
 
-References
-----------
 The separation into near and far field: docs/physics.md, condensed bodies.
 """
 
