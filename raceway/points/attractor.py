@@ -13,7 +13,6 @@ import attrs
 import numpy as np
 
 from raceway.bodies.model import build_model
-from raceway.core.periodic.branch import Point
 from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.floquet import transfer
 from raceway.core.periodic.refinement import states
@@ -92,11 +91,6 @@ class Attractor:
         return {**attrs.asdict(self), "section": self.section.tolist(), "words": self.words}
 
 
-def attractor_beside(point: Point, turns: int, on_progress: OnProgress | None = None) -> Attractor:
-    """Integrate from near an unstable orbit of a branch."""
-    return _beside(point.solved, point.transfer, float(point.parameter), turns, on_progress)
-
-
 def attractor_beside_run(result: Result, parameter: float, turns: int) -> Attractor:
     """The same of a run by ``integrator.kind`` = "periodic" whose orbit is unstable."""
     assert result.simulation is not None
@@ -108,7 +102,7 @@ def attractor_beside_run(result: Result, parameter: float, turns: int) -> Attrac
         over = transfer(orbit, highest_order(problem, equilibrium.stiffness))
     except ConvergenceError as why:
         return Attractor(parameter, FAILED, turns, why=str(why))
-    return _beside(orbit, over, parameter, turns, None)
+    return attractor_beside(orbit, over, parameter, turns)
 
 
 def attractor_from_rest(scene: Scene, parameter: float, turns: int) -> Attractor:
@@ -123,7 +117,9 @@ def attractor_from_rest(scene: Scene, parameter: float, turns: int) -> Attractor
     return _end_of(model.system, start, schedule, parameter, turns, None)
 
 
-def _beside(orbit: Solved, over: np.ndarray, parameter: float, turns: int, on_progress: OnProgress | None) -> Attractor:
+def attractor_beside(
+    orbit: Solved, over: np.ndarray, parameter: float, turns: int, on_progress: OnProgress | None = None
+) -> Attractor:
     """From beside an orbit, along the disturbance that grows most in a transfer ``over`` its span."""
     problem, free = orbit.problem, orbit.problem.free
     w, n = problem.speed, len(free)

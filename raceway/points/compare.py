@@ -111,8 +111,26 @@ class Comparison(Answer, Findings):
         RacewayError
             xarray is missing.
         """
-
-        return labelled(self)
+        keys = [axis.key for axis in self.axes]
+        shape = tuple(len(axis.values) for axis in self.axes)
+        moving = self.quantities is MOVING
+        ends = {name: ENDS[name] for name in (("K_low", "K_high") if moving else ("kyy_low", "kyy_high"))}
+        quantities = self.quantities | ends | (named(K_ERROR, C) if moving else {})
+        numbers = {name: np.full(shape, np.nan) for name in quantities}
+        status = np.full(shape, "waiting", dtype=object)
+        for row in self.rows:
+            entry = tuple(axis.values.index(row.point[axis.key]) for axis in self.axes)
+            status[entry] = row.result["status"] if row.failed else "done"
+            values = {name: row.value(name) for name in self.quantities}
+            values |= {name: end.of(row.result) for name, end in ends.items()}
+            if moving:
+                z = values[Z.name] if row.estimated else None
+                values |= {C.name: row.damping, K_ERROR.name: None if z is None else row.error * z}
+            for name, value in values.items():
+                numbers[name][entry] = np.nan if value is None else value
+        variables = {name: (keys, values, quantities[name].labels) for name, values in numbers.items()}
+        coordinates = {axis.key: (axis.key, axis_labels(axis.values)) for axis in self.axes}
+        return labelled_dataset({**variables, "status": (keys, status)}, coordinates, {"title": self.title})
 
     @door
     def plot(self, quantity: str | None = None, ax: Axes | None = None) -> Axes:
@@ -249,30 +267,6 @@ def _short_names(axes: tuple[Axis, ...]) -> dict[str, str]:
     """Key -> its last part, or the whole key where two axes share that part: a table has to fit a screen."""
     last = [axis.key.rpartition(".")[2] for axis in axes]
     return {axis.key: name if last.count(name) == 1 else axis.key for axis, name in zip(axes, last, strict=True)}
-
-
-def labelled(comparison: Findings) -> Dataset:
-    """Numbers and states of all runs, a dimension for each key; RacewayError without xarray."""
-    keys = [axis.key for axis in comparison.axes]
-    shape = tuple(len(axis.values) for axis in comparison.axes)
-    moving = comparison.quantities is MOVING
-    ends = {name: ENDS[name] for name in (("K_low", "K_high") if moving else ("kyy_low", "kyy_high"))}
-    quantities = comparison.quantities | ends | (named(K_ERROR, C) if moving else {})
-    numbers = {name: np.full(shape, np.nan) for name in quantities}
-    status = np.full(shape, "waiting", dtype=object)
-    for row in comparison.rows:
-        entry = tuple(axis.values.index(row.point[axis.key]) for axis in comparison.axes)
-        status[entry] = row.result["status"] if row.failed else "done"
-        values = {name: row.value(name) for name in comparison.quantities}
-        values |= {name: end.of(row.result) for name, end in ends.items()}
-        if moving:
-            z = values[Z.name] if row.estimated else None
-            values |= {C.name: row.damping, K_ERROR.name: None if z is None else row.error * z}
-        for name, value in values.items():
-            numbers[name][entry] = np.nan if value is None else value
-    variables = {name: (keys, values, quantities[name].labels) for name, values in numbers.items()}
-    coordinates = {axis.key: (axis.key, axis_labels(axis.values)) for axis in comparison.axes}
-    return labelled_dataset({**variables, "status": (keys, status)}, coordinates, {"title": comparison.title})
 
 
 def _item(tables: ReadTables, registry: Registry) -> Item:

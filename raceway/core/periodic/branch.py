@@ -186,11 +186,6 @@ class Branch:
     def _order(self, solution: Solved, parameter: float) -> float:
         return self.fastest(parameter) / solution.problem.speed
 
-    def _estimate(self, solution: Solved, tangent: np.ndarray) -> Estimate:
-        """The error across the branch, which has a value at folds too."""
-        border = self._bordered_matrix(solution.problem, solution.eliminated.span_transfer, tangent)
-        return estimate(solution, lambda end: np.linalg.solve(border, np.append(end, 0.0))[:-1])
-
     def _bordered_matrix(self, problem: Problem, span_transfer: np.ndarray, across: np.ndarray) -> np.ndarray:
         """(2 n + 1, 2 n + 1) of the closing condition in scaled state and parameter, ``across`` as its last row."""
         n2 = 2 * len(problem.free)
@@ -268,7 +263,10 @@ class Branch:
             if sweeps > 1 and correction <= 1e-2 * self.tolerance * max(size, 1e-3 * self.length) + 1e-14 * displacement:
                 tangent = solution[:, 1] / np.linalg.norm(solution[:, 1])
                 solved = Solved(problem, path, linear, size, True, sweeps, correction)
-                return parameter, tangent, solved, self._estimate(solved, tangent)
+                # The error across the branch, which has a value at folds too.
+                bordered = self._bordered_matrix(problem, span_transfer, tangent)
+                error = estimate(solved, lambda end: np.linalg.solve(bordered, np.append(end, 0.0))[:-1])  # noqa: B023
+                return parameter, tangent, solved, error
             problem = self.problem_at(parameter)
         raise ConvergenceError("the corrector does not converge")
 

@@ -168,7 +168,12 @@ def orbit_near(
     rate_columns = system.rated_columns
     f, K, C, _, _ = now = _room(system, samples, tangents=True)
     scale = max(np.abs(force).max(), np.abs(system.load).max(), 1e-300)
-    linear, diagonal = _linear_part(system, free, first, inertial), np.arange(samples)
+    # (N, n, N, n) tangent of the linear parts at all times.
+    part, linear, diagonal = np.ix_(free, free), np.zeros((samples, n, samples, n)), np.arange(samples)
+    if inertial:
+        linear += np.einsum("ij,ab->iajb", second, system.mass[part])
+        linear += np.einsum("ij,ab->iajb", first, system.damping[part])
+    linear[diagonal, :, diagonal, :] += system.stiffness[part]
     residual, worst, iterations, damping_factor = np.inf, np.inf, 0, 1.0
     step = np.zeros_like(q)
     for iterations in range(1, limit + 1):
@@ -205,17 +210,6 @@ def orbit_near(
         remainder = f"relative residual {residual:.1e}" if np.isfinite(residual) else "forces beyond all numbers"
         raise ConvergenceError(f"no periodic orbit found after {iterations} iterations, {remainder}", {"q": q})
     return Orbit(period, q, first @ q, second @ q, force, ball, K, C, residual, iterations)
-
-
-def _linear_part(system: Ring, free: np.ndarray, first: np.ndarray, inertial: bool) -> np.ndarray:
-    """(N, n, N, n) tangent of the linear parts at all times; ``first`` (N, N) differentiates."""
-    part, samples, n = np.ix_(free, free), len(first), len(free)
-    linear, diagonal = np.zeros((samples, n, samples, n)), np.arange(samples)
-    if inertial:
-        linear += np.einsum("ij,ab->iajb", first @ first, system.mass[part])
-        linear += np.einsum("ij,ab->iajb", first, system.damping[part])
-    linear[diagonal, :, diagonal, :] += system.stiffness[part]
-    return linear
 
 
 def _evaluate(system: Ring, states: States, out: Responses) -> int:

@@ -122,11 +122,8 @@ class ElasticPoints(ElasticBodies):
 
     def ball_columns(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
         key = equilibrium.displacement.tobytes()
-        if key not in self._columns:
-            self._columns[key] = self._told(model, equilibrium)
-        return dict(self._columns[key])
-
-    def _told(self, model: Model, equilibrium: Equilibrium) -> dict[str, np.ndarray]:
+        if key in self._columns:
+            return dict(self._columns[key])
         at_equilibrium(model.system)
         contact = self.contact
         out, z = super().ball_columns(model, equilibrium), model.system.ball_count
@@ -138,7 +135,8 @@ class ElasticPoints(ElasticBodies):
         }
         for race, word in enumerate(("inner", "outer")):
             out |= {name.format(word): values[race * z : (race + 1) * z] for name, values in table.items()}
-        return out
+        self._columns[key] = out
+        return dict(out)
 
     def contact_error(self, model: Model, equilibrium: Equilibrium) -> Told:
         """The overlap that a law leaves."""

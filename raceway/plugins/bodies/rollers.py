@@ -69,40 +69,27 @@ class CylindricalRollers:
 
     def faults(self, problem: Problem) -> list[Mistake]:
         """Loads and motions that rollers do not carry, contacts that are no lines, forces that are not computed."""
-        faults: list[Mistake] = []
-
-        def refuse(bad: bool, path: str, value: object, why: str) -> None:
-            if bad:
-                faults.append(Mistake(path, value, why))
-
         b, supports, contact, moving = problem.bearing, problem.supports, problem.contact, problem.kinematics
-        nothing = (
-            "cylindrical rollers carry no axial load: another bearing locates the ring, supports.axial = 'displacement'"
-        )
-        refuse(supports.axial != "displacement", "supports.axial", supports.axial, nothing)
-        refuse(
-            problem.load.axial != 0.0, "load.axial", problem.load.axial, "cylindrical rollers carry no axial load: delete it"
-        )
-        why = "is not a law of line contacts: use 'line'"
-        refuse(not line_contact(contact.law), "contact.kind", contact.kind, why)
-        refuse(
-            contact.discretisation != "resultant",
-            "contact.discretisation",
-            contact.discretisation,
-            "line contacts are resultants: use 'resultant'",
-        )
-        refuse(contact.friction > 0.0, "contact.friction", contact.friction, "is not computed for rollers: set it to 0")
-        gyroscopic = "rollers that stay parallel to the axis have no gyroscopic moment: use 'none'"
-        refuse(moving.gyroscopic != "none", "kinematics.gyroscopic", moving.gyroscopic, gyroscopic)
-        why = "assumes the ring of a ball bearing: set the growth by kinematics.radial_expansion"
-        refuse(bool(moving.ring_growth), "kinematics.ring_growth", True, why)
-        refuse(b.arrangement != "single", "bearing.arrangement", b.arrangement, "rollers are in one row: use 'single'")
-        why = "a line contact has none: set bearing.radial_clearance only"
-        refuse(bool(b.contact_angle_deg), "bearing.contact_angle_deg", b.contact_angle_deg, why)
-        refuse(problem.mesh is not None, "mesh", None, "rings and rollers are rigid and have no mesh: delete the table")
-        for key, seat in (("outer_seat", supports.outer_seat), ("inner_seat", supports.inner_seat)):
-            refuse(seat != "rigid", f"supports.{key}", seat, "rigid rings have rigid seats: use 'rigid'")
-        return faults
+        carry = "cylindrical rollers carry no axial load"
+        elsewhere = f"{carry}: another bearing locates the ring, supports.axial = 'displacement'"
+        alone = "line contacts are resultants: use 'resultant'"
+        parallel = "rollers that stay parallel to the axis have no gyroscopic moment: use 'none'"
+        grows = "assumes the ring of a ball bearing: set the growth by kinematics.radial_expansion"
+        refusals = [
+            (supports.axial != "displacement", "supports.axial", supports.axial, elsewhere),
+            (problem.load.axial != 0.0, "load.axial", problem.load.axial, f"{carry}: delete it"),
+            (not line_contact(contact.law), "contact.kind", contact.kind, "is not a law of line contacts: use 'line'"),
+            (contact.discretisation != "resultant", "contact.discretisation", contact.discretisation, alone),
+            (contact.friction > 0.0, "contact.friction", contact.friction, "is not computed for rollers: set it to 0"),
+            (moving.gyroscopic != "none", "kinematics.gyroscopic", moving.gyroscopic, parallel),
+            (bool(moving.ring_growth), "kinematics.ring_growth", True, grows),
+            (b.arrangement != "single", "bearing.arrangement", b.arrangement, "rollers are in one row: use 'single'"),
+            (bool(b.contact_angle_deg), "bearing.contact_angle_deg", b.contact_angle_deg, "a line contact has none: set bearing.radial_clearance only"),
+            (problem.mesh is not None, "mesh", None, "rings and rollers are rigid and have no mesh: delete the table"),
+            (supports.outer_seat != "rigid", "supports.outer_seat", supports.outer_seat, "rigid rings have rigid seats: use 'rigid'"),
+            (supports.inner_seat != "rigid", "supports.inner_seat", supports.inner_seat, "rigid rings have rigid seats: use 'rigid'"),
+        ]  # fmt: skip
+        return [Mistake(path, value, why) for bad, path, value, why in refusals if bad]
 
     def traits(self, problem: Problem) -> Traits:
         """Compiled contact resultants of lines."""

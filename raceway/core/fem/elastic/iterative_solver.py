@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+import attrs
 import numpy as np
 
 from raceway.core.contact.hertz import ball_compliance
@@ -13,7 +14,7 @@ from raceway.core.fem.elastic.bearing_data import BearingData
 from raceway.core.fem.elastic.contact import Contact, NodalContact, Pair, PlaceLaw, groove, penalty_stiffness
 from raceway.core.fem.elastic.friction import CoulombFriction
 from raceway.core.fem.elastic.linear_statics import BlockMatrix, Preconditioner
-from raceway.core.fem.elastic.resultant import Footprint, LoadedBody, ResultantContact, Touch, footprint
+from raceway.core.fem.elastic.resultant import LoadedBody, ResultantContact, Touch, footprint
 from raceway.core.fem.elastic.surface import Facets, SurfacePoints, surface_points
 from raceway.core.fem.elastic.unknowns import of_nodes
 from raceway.core.fem.mesh.hex_mesh import HexMesh
@@ -172,8 +173,8 @@ def resultant_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assem
             touches.append(
                 Touch(
                     name,
-                    _renumbering(on_ball, first),
-                    _renumbering(on_ring, int(assembly.starts[race])),
+                    attrs.evolve(on_ball, nodes=on_ball.nodes + first),
+                    attrs.evolve(on_ring, nodes=on_ring.nodes + int(assembly.starts[race])),
                     middle,
                     surface,
                     below.local + above - beyond[race * s.ball_count + k],
@@ -210,10 +211,6 @@ def _load_answers(
     stiffness = assembly.stiffness()[rows][:, rows]
     mass = assembly.own_mass[rows.start // 3 : rows.stop // 3] if floating else None
     return LoadedBody(body.points, body.operator.cells, stiffness, clamp[rows].reshape(-1, 3), mass, material)
-
-
-def _renumbering(contact: Footprint, first: int) -> Footprint:
-    return Footprint(contact.nodes + first, contact.weights, contact.share)
 
 
 def _groove_nodes(setup: BearingData, race: int) -> np.ndarray:
