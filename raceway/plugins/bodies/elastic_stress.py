@@ -5,7 +5,7 @@ import numpy as np
 
 from raceway.bodies.model import Equilibrium, Model, Told, overlap
 from raceway.core.contact.hertz import largest_shear
-from raceway.core.fem.elastic.contact import NodalContact, peak_at_nodes, peak_at_points
+from raceway.core.fem.elastic.contact import NodalContact
 from raceway.core.fem.elastic.ring import ElasticRing
 from raceway.core.fem.elastic.stress import ContactAxis, StressProfile, contact_axes, stress_profile
 from raceway.plugins.bodies.elastic_contacts import ElasticBodies, at_equilibrium
@@ -105,6 +105,24 @@ def below_contacts(bodies: "ElasticPoints", model: Model, equilibrium: Equilibri
             profile = stress_profile(axis, assembly.bodies[index].operator, u, _NEAR * major, deep)
             profiles.append(BelowContact(word, body, ball, index, load, peak, (major, minor), material[1], axis, profile))
     return profiles
+
+
+def peak_at_points(contact: NodalContact) -> np.ndarray:
+    """(pairs,) largest pressure at a quadrature point [Pa], at the last gaps."""
+    return np.maximum.reduceat(contact.pressure, contact.starts)
+
+
+def peak_at_nodes(contact: NodalContact) -> np.ndarray:
+    """(pairs,) largest nodal pressure [Pa]: force of the points around a node over their area, as facets share them."""
+    out = np.empty(len(contact.pairs))
+    for index, (pair, begin) in enumerate(zip(contact.pairs, contact.starts, strict=True)):
+        part = slice(begin, begin + contact.counts[index])
+        _, number = np.unique(pair.points.nodes, return_inverse=True)
+        share = contact.area[part, None] * pair.points.weights
+        area = np.bincount(number.ravel(), share.ravel())
+        force = np.bincount(number.ravel(), (contact.pressure[part, None] * share).ravel())
+        out[index] = (force / area).max()
+    return out
 
 
 @attrs.frozen(eq=False)

@@ -16,15 +16,7 @@ from raceway.bodies.mounting import place_ring
 from raceway.bodies.rigid_bearing import probe, rigid_system, with_hertz
 from raceway.core.fem.mesh.part_meshes import ring_shape
 from raceway.core.fem.patches.patch import Patch, RingBody, Solid, Spacing, make_ball, make_patch
-from raceway.core.fem.patches.pressure import (
-    BeyondPatch,
-    ContactState,
-    PointLaw,
-    PressureField,
-    Reach,
-    pressure_field,
-    reach_of,
-)
+from raceway.core.fem.patches.pressure import BeyondPatch, ContactState, PointLaw, Reach, reach_of
 from raceway.core.fem.patches.system import PatchSystem, Pool
 from raceway.core.record import Record
 from raceway.core.ring.kernels.layout import CAGE
@@ -47,6 +39,26 @@ from raceway.storage.tables import Tables
 _NOTHING = 0.02
 #: Points along a semi-axis below which the largest pressure is off by more than 1 %.
 _ENOUGH = 3.0
+
+
+@attrs.frozen(eq=False)
+class PressureField:
+    """Pressures on a ball's surface."""
+
+    along: np.ndarray  # (m,) place along the groove, from the contact angle of zero [m]
+    across: np.ndarray  # (n,) along the rolling direction [m]
+    angle: np.ndarray  # (m,) of the rows on the ball, as contact angles [rad]
+    pressure: np.ndarray  # (m, n) [Pa], zero where nothing carries
+
+
+def pressure_field(patch: Patch, state: ContactState) -> PressureField:
+    """Pressures of a contact at all points of its patch."""
+    pressure = np.zeros(patch.rows * patch.columns)
+    pressure[state.nodes] = state.load / patch.area
+    radius = patch.ball.radius
+    return PressureField(
+        radius * patch.phi, radius * patch.ball.latitude, patch.phi, pressure.reshape(patch.rows, patch.columns)
+    )
 
 
 @attrs.frozen(eq=False)

@@ -7,10 +7,12 @@ import pytest
 import raceway as rw
 from raceway import LAW, ConvergenceError, MeshError, jit
 from raceway.core.contact.hertz import Ellipse
+from raceway.core.fem.patches.compliance import ComplianceFactor
 from raceway.core.fem.patches.patch import Spacing
-from raceway.core.fem.patches.pressure import BeyondPatch, ComplianceFactor, Contact, PointLaw, Reach, pressure_field
+from raceway.core.fem.patches.pressure import BeyondPatch, Contact, PointLaw, Reach
 from raceway.core.fem.patches.system import Pool
 from raceway.extend import three_halves
+from raceway.plugins.bodies.patch_bearing import pressure_field
 from tests.core.validation.single import Single, single
 
 

@@ -12,32 +12,12 @@ from numba import boolean, int64, void
 from raceway.core.contact.damping import add_damping, stored_energy
 from raceway.core.fem.elastic.friction import CoulombFriction
 from raceway.core.fem.elastic.surface import Facets, SurfacePoints
-from raceway.core.fem.elastic.unknowns import of_nodes
+from raceway.core.fem.elastic.unknowns import Near, of_nodes
 from raceway.core.jit import Kernel, jit
 from raceway.core.signatures import CUBE, MATRIX, VECTOR
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix
-
-
-@attrs.frozen(eq=False)
-class Near:
-    """The columns of B that are not empty: a few of all nodes."""
-
-    entries: np.ndarray  # (k,) int, of the nodal displacements, sorted
-    move: csr_matrix  # (3 n, k) sparse, B at these entries
-
-    @classmethod
-    def of(cls, move: csr_matrix) -> Near:
-        """Of B (3 n, 3 nodes)."""
-        from scipy.sparse import csr_array
-
-        reach = np.zeros(move.shape[1], dtype=bool)
-        reach[move.indices] = True
-        entries = np.flatnonzero(reach)
-        number = np.cumsum(reach) - 1
-        short = csr_array((move.data, number[move.indices], move.indptr), shape=(move.shape[0], len(entries)))
-        return cls(entries, short)
 
 
 #: Of a groove: the radius of its centre circle [m].
@@ -416,21 +396,3 @@ class NodalContact(Contact):
         weights = self._weights[touching]
         rows = weights.T @ (size[touching] * np.asarray(weights.sum(axis=1)).ravel())
         return float(2.0 / np.sqrt((rows / mass).max()))
-
-
-def peak_at_points(contact: NodalContact) -> np.ndarray:
-    """(pairs,) largest pressure at a quadrature point [Pa], at the last gaps."""
-    return np.maximum.reduceat(contact.pressure, contact.starts)
-
-
-def peak_at_nodes(contact: NodalContact) -> np.ndarray:
-    """(pairs,) largest nodal pressure [Pa]: force of the points around a node over their area, as facets share them."""
-    out = np.empty(len(contact.pairs))
-    for index, (pair, begin) in enumerate(zip(contact.pairs, contact.starts, strict=True)):
-        part = slice(begin, begin + contact.counts[index])
-        _, number = np.unique(pair.points.nodes, return_inverse=True)
-        share = contact.area[part, None] * pair.points.weights
-        area = np.bincount(number.ravel(), share.ravel())
-        force = np.bincount(number.ravel(), (contact.pressure[part, None] * share).ravel())
-        out[index] = (force / area).max()
-    return out

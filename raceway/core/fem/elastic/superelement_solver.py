@@ -8,10 +8,10 @@ import numpy as np
 from numba import int64, void
 
 from raceway.core.fem.elastic.assembly import Assembly
-from raceway.core.fem.elastic.contact import Near, NodalContact
+from raceway.core.fem.elastic.contact import NodalContact
 from raceway.core.fem.elastic.interface import Interface, Motions, OnProgress, interface_of, touchable
 from raceway.core.fem.elastic.newton import searched
-from raceway.core.fem.elastic.unknowns import of_nodes
+from raceway.core.fem.elastic.unknowns import Near, of_nodes
 from raceway.core.jit import jit
 from raceway.core.signatures import CUBE, MATRIX
 from raceway.errors import ConvergenceError

@@ -89,6 +89,26 @@ class Selection:
             out[: self.ride.shape[1]] += self.ride.T @ force[self.tied]
 
 
+@attrs.frozen(eq=False)
+class Near:
+    """The columns of a contact's B that are not empty: a few of all nodes."""
+
+    entries: np.ndarray  # (k,) int, of the nodal displacements, sorted
+    move: csr_matrix  # (3 n, k) sparse, B at these entries
+
+    @classmethod
+    def of(cls, move: csr_matrix) -> Near:
+        """Of B (3 n, 3 nodes)."""
+        from scipy.sparse import csr_array
+
+        reach = np.zeros(move.shape[1], dtype=bool)
+        reach[move.indices] = True
+        entries = np.flatnonzero(reach)
+        number = np.cumsum(reach) - 1
+        short = csr_array((move.data, number[move.indices], move.indptr), shape=(move.shape[0], len(entries)))
+        return cls(entries, short)
+
+
 def _among(entries: np.ndarray, sorted_ones: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Numbers of the entries that are among the sorted ones, and where there."""
     at = np.searchsorted(sorted_ones, entries)

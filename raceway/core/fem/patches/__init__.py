@@ -1,7 +1,7 @@
 """Pressures at surface points of condensed bodies.
 
-patch      grids of surface points on which a ball meets a race, and the bodies' compliances on them
-gap        exact gap of the sphere to the torus, with its derivatives; sub-matrices of compliances
+patch      grids of surface points on which a ball meets a race, exact gaps with their derivatives, the bodies' compliances
+compliance   of points of a patch, and its factors
 pressure   one ball against one race: pressures by a law or an active set, resultant, tangent; extent of the grids
 friction   stick and slip of a contact's points along the groove
 balls      equilibrium of all balls between both races, with their gyroscopic moments

@@ -17,7 +17,7 @@ import attrs
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dpotrs
 
-from raceway.core.fem.patches.gap import between
+from raceway.core.fem.patches.compliance import between
 from raceway.core.fem.patches.patch import Patch
 from raceway.errors import ConvergenceError
 

@@ -8,15 +8,80 @@ it: the gap is that of the ball's own point, and the compliance of the race belo
 """
 
 from math import ceil, cos, pi
+from typing import NamedTuple
 
 import attrs
 import numpy as np
+from numba import float64, int64, void
 
 from raceway.core.fem.mesh.part_meshes import RingShape
-from raceway.core.fem.patches.gap import Points
 from raceway.core.fem.revolution.body import Revolution, groove_compliance
 from raceway.core.fem.revolution.sections import Profile, ball_profile, dofs, graded_profile
+from raceway.core.jit import jit
+from raceway.core.signatures import MATRIX, VECTOR, record
 from raceway.errors import MeshError
+
+
+class Points(NamedTuple):
+    """Of a sphere in a groove: geometry (4,) s, R_g, R_c, R_b, meridian (2, m) cosine and sine of phi, parallel (2, n) of l."""
+
+    geometry: np.ndarray
+    meridian: np.ndarray
+    parallel: np.ndarray
+
+
+_POINTS = record(Points, VECTOR, MATRIX, MATRIX)
+
+
+@jit(void(float64, float64, _POINTS, MATRIX))
+def sphere_in_torus(axial, radial, points, gap):  # type: ignore[no-untyped-def]
+    """gap (m, n) [m] of every point of a sphere, exactly.
+
+    With D = (axial, radial) the place of the ball's centre seen from the groove's centre in the ball's meridian plane, a
+    point at angle phi and latitude l lies at
+
+        radial  R = R_c + D_r + s R_b cos(l) cos(phi),   rolling  y = R_b sin(l),   axial  z = D_a + s R_b cos(l) sin(phi)
+
+    and its gap is g = R_g - rho with rho = hypot(hypot(R, y) - R_c, z); s = -1 on the inner race, 1 on the outer one.
+    """
+    geometry, meridian, parallel = points
+    sense, groove, circle, ball = geometry[0], geometry[1], geometry[2], geometry[3]
+    for i in range(parallel.shape[1]):
+        size = sense * ball * parallel[0, i]
+        y = ball * parallel[1, i]
+        for k in range(meridian.shape[1]):
+            away = circle + radial + size * meridian[0, k]
+            z = axial + size * meridian[1, k]
+            u = np.sqrt(away * away + y * y) - circle
+            gap[k, i] = groove - np.sqrt(u * u + z * z)
+
+
+@jit(void(float64, float64, _POINTS, int64[::1], VECTOR, MATRIX, VECTOR))
+def derivatives(axial, radial, points, nodes, load, slope, curvature):  # type: ignore[no-untyped-def]
+    """slope (n, 2): derivatives of chosen points' gaps by D; curvature (3,): aa, ar, rr of sum(load * second derivatives).
+
+    nodes : (n,) numbers k * columns + i;  load : (n,)
+    """
+    geometry, meridian, parallel = points
+    sense, circle, ball = geometry[0], geometry[2], geometry[3]
+    columns = parallel.shape[1]
+    curvature[0], curvature[1], curvature[2] = 0.0, 0.0, 0.0
+    for n in range(nodes.size):
+        k, i = nodes[n] // columns, nodes[n] % columns
+        size = sense * ball * parallel[0, i]
+        y = ball * parallel[1, i]
+        away = circle + radial + size * meridian[0, k]
+        z = axial + size * meridian[1, k]
+        reach = np.sqrt(away * away + y * y)
+        u = reach - circle
+        rho = np.sqrt(u * u + z * z)
+        lean = away / reach
+        slope[n, 0] = -z / rho
+        slope[n, 1] = -u / rho * lean
+        w = load[n] / rho
+        curvature[0] -= w * (1.0 - z * z / (rho * rho))
+        curvature[1] += w * z * u / (rho * rho) * lean
+        curvature[2] -= w * ((1.0 - u * u / (rho * rho)) * lean * lean + u * y * y / (reach * reach * reach))
 
 
 @attrs.frozen

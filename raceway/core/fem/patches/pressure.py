@@ -3,108 +3,13 @@
 import attrs
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
-from scipy.linalg.lapack import dpotrf, dpotrs
 
 from raceway.core.contact.hertz import Ellipse
+from raceway.core.fem.patches.compliance import ComplianceFactor
 from raceway.core.fem.patches.friction import Friction, Traction, only_largest
-from raceway.core.fem.patches.gap import between, derivatives, displaced, sphere_in_torus
-from raceway.core.fem.patches.patch import Patch
+from raceway.core.fem.patches.patch import Patch, derivatives, sphere_in_torus
 from raceway.core.jit import Kernel
 from raceway.errors import ConvergenceError, RacewayError
-
-_BORDER = 0.08
-
-
-class ComplianceFactor:
-    """Solves C x = r over a set of points, C the compliance of ball and race together.
-
-    patch : where the points are;  extra : compliance of the law at every point, on the diagonal [m/N]
-
-    Sets of neighbouring iterations differ in a few points.  With the factor of a set B, the solution on another set A comes
-    by bordering: points that joined are unknowns of their own, points that left get a multiplier that keeps them at zero;
-    both together make a small dense system (the Schur complement of the factor).  Beyond ``_BORDER`` of the set it is
-    cheaper to factorise anew.
-    """
-
-    def __init__(self, patch: Patch, extra: float = 0.0) -> None:
-        self._patch = patch
-        self._extra = extra
-        self._base = np.zeros(0, dtype=np.int64)
-        self._lower = np.zeros((0, 0), order="F")
-        self._nodes: np.ndarray | None = None
-        self.factorisations = 0
-
-    def block(self, to: np.ndarray, of: np.ndarray) -> np.ndarray:
-        """(len(to), len(of)) compliance without the law's own [m/N]."""
-        out = np.empty((len(to), len(of)))
-        between(self._patch.ball.compliance, self._patch.race.compliance, to, of, out)
-        return out
-
-    def displacement(self, to: np.ndarray, of: np.ndarray, load: np.ndarray) -> np.ndarray:
-        """(len(to),) displacement by loads [m], without the law's own."""
-        out = np.empty(len(to))
-        displaced(self._patch.ball.compliance, self._patch.race.compliance, to, of, np.ascontiguousarray(load), out)
-        return out
-
-    def solve(self, nodes: np.ndarray, right: np.ndarray) -> np.ndarray:
-        """x (n,) or (n, k) with C x = right on the points ``nodes`` (n,), ascending."""
-        self._prepare(nodes)
-        if not len(nodes):
-            return np.zeros_like(right)
-        columns = right.reshape(len(nodes), -1)
-        if self._same:
-            return self._plain(columns).reshape(right.shape)
-        spread = np.zeros((len(self._base), columns.shape[1]))
-        spread[self._kept_base] = columns[self._kept]
-        first = self._plain(spread)
-        small = np.concatenate([columns[self._joined] - self._cross.T @ first, -first[self._left]])
-        border = np.linalg.solve(self._schur, small)
-        first -= self._reach @ border
-        out = np.empty_like(columns)
-        out[self._kept], out[self._joined] = first[self._kept_base], border[: self._cross.shape[1]]
-        return out.reshape(right.shape)
-
-    def _plain(self, right: np.ndarray) -> np.ndarray:
-        return dpotrs(self._lower, right, lower=1)[0]
-
-    def _prepare(self, nodes: np.ndarray) -> None:
-        if self._nodes is not None and np.array_equal(nodes, self._nodes):
-            return
-        joining = np.isin(nodes, self._base, assume_unique=True, invert=True)
-        leaving = np.isin(self._base, nodes, assume_unique=True, invert=True)
-        exchanges = int(joining.sum() + leaving.sum())
-        self._nodes = nodes.copy()
-        if not len(self._base) or exchanges > max(2, _BORDER * len(nodes)):
-            self._factorise(nodes)
-            return
-        self._same = exchanges == 0
-        if self._same:
-            return
-        self._joined, self._left = np.flatnonzero(joining), np.flatnonzero(leaving)
-        self._kept, self._kept_base = np.flatnonzero(~joining), np.flatnonzero(~leaving)
-        new = nodes[self._joined]
-        self._cross = self.block(self._base, new)
-        count = len(self._joined)
-        sides = np.zeros((len(self._base), exchanges))
-        sides[:, :count] = self._cross
-        sides[self._left, count + np.arange(len(self._left))] = 1.0
-        self._reach = self._plain(sides)
-        schur = -sides.T @ self._reach
-        schur[:count, :count] += self.block(new, new) + self._extra * np.eye(count)
-        self._schur = schur
-
-    def _factorise(self, nodes: np.ndarray) -> None:
-        matrix = self.block(nodes, nodes)
-        matrix[np.diag_indices(len(nodes))] += self._extra
-        self._lower, status = dpotrf(matrix, lower=1)
-        if status != 0:
-            raise ConvergenceError(
-                "the compliance of a contact is not positive definite: its mesh is too coarse or distorted"
-            )
-        self._base = nodes.copy()
-        self._same = True
-        self.factorisations += 1
-
 
 _LIMIT = 60
 #: Residual of the gaps that counts as none, of the deepest overlap.
@@ -411,26 +316,6 @@ class Contact:
             angle = float(np.arctan2(-sense * force[0], -sense * force[1]))
             raise BeyondPatch(sense, angle, float(np.hypot(*force)), wide)
         return bool(low or high)
-
-
-@attrs.frozen(eq=False)
-class PressureField:
-    """Pressures on a ball's surface."""
-
-    along: np.ndarray  # (m,) place along the groove, from the contact angle of zero [m]
-    across: np.ndarray  # (n,) along the rolling direction [m]
-    angle: np.ndarray  # (m,) of the rows on the ball, as contact angles [rad]
-    pressure: np.ndarray  # (m, n) [Pa], zero where nothing carries
-
-
-def pressure_field(patch: Patch, state: ContactState) -> PressureField:
-    """Pressures of a contact at all points of its patch."""
-    pressure = np.zeros(patch.rows * patch.columns)
-    pressure[state.nodes] = state.load / patch.area
-    radius = patch.ball.radius
-    return PressureField(
-        radius * patch.phi, radius * patch.ball.latitude, patch.phi, pressure.reshape(patch.rows, patch.columns)
-    )
 
 
 #: Room on each side of a window [rad], and around an ellipse, of its semi-axes.
