@@ -8,7 +8,7 @@ import pytest
 
 from checks.validation.scenes import built_in
 from raceway import StabilityError
-from raceway.core.fem.elastic.assembly import threads_for
+from raceway.core.fem.elastic.body_forces import threads_for
 from raceway.extend import Schedule, ThreadPool, integrate, standstill
 from raceway.testing import settled
 from tests.core.test_elastic_scene import EXCITED, TINY
@@ -134,7 +134,7 @@ def test_threads_live_over_a_run_and_end_with_it_also_where_it_fails():
 
 
 def test_small_bodies_are_stepped_by_one_thread(monkeypatch):
-    monkeypatch.setattr("raceway.core.fem.elastic.assembly.usable_cores", lambda: 16)
+    monkeypatch.setattr("raceway.core.fem.elastic.body_forces.usable_cores", lambda: 16)
     assert threads_for(500) == 1
     assert 1 < threads_for(60_000) < 16
     assert threads_for(1_000_000) == 16

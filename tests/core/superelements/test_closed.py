@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from checks.validation.reference import elastic
-from raceway.core.fem.elastic.superelement import Closed, Copies, Loose, Part, gather_turned, sectors
+from raceway.core.fem.elastic.copies import Copies, sectors
+from raceway.core.fem.elastic.superelement import Closed, Loose, Part, gather_turned
 from raceway.extend import HexOperator
 from tests.core.superelements.bearings import STEEL, assembled, schur, unknowns
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from checks.validation.reference import elastic
-from raceway.core.fem.elastic.assembly import BodyForces, CopiedStiffness
-from raceway.core.fem.elastic.superelement import Copies, same_bodies, sectors, turn
+from raceway.core.fem.elastic.body_forces import BodyForces, CopiedStiffness
+from raceway.core.fem.elastic.copies import Copies, same_bodies, sectors, turn
 from raceway.core.fem.hexahedron.rows import BlockRows
 from raceway.extend import ThreadPool
 from tests.core.superelements.bearings import built, tiny

@@ -11,6 +11,7 @@ linear_statics   K u = f of one body with prescribed displacements: conjugate gr
 iterative_solver   conjugate gradients with multigrid, the rigid frames' own coordinates and low-rank changes by the contacts
 newton      Newton's method with a line search; the last good state is kept
 fronts      elimination down to kept nodes, with fronts of dense matrices, in the order of nested dissection
+copies      equal parts of bodies;  body_forces: K u of all, by one matrix for equal parts or element by element
 superelement   a body eliminated once, down to the nodes that contacts may touch: free copies, and sectors of a ring
 interface   all bodies, seen from the nodes of their contacts;  superelement_solver: Newton's method in the contacts alone
 explicit    compiled explicit steps of one-point elements in contact at surface points;  explicit_kernels: the parts of a step

@@ -9,11 +9,11 @@ from raceway.core.fem.elastic import device
 from raceway.core.fem.elastic.assembly import Assembly, Body, Cage, Frame
 from raceway.core.fem.elastic.bearing_data import BearingData
 from raceway.core.fem.elastic.contact import CIRCLE, Contact, NodalContact
+from raceway.core.fem.elastic.copies import Copies, Group, same_bodies, sectors
 from raceway.core.fem.elastic.explicit import ExplicitSteps, served
 from raceway.core.fem.elastic.interface import free_nodes, touchable
 from raceway.core.fem.elastic.iterative_solver import LinearSolver, nodal_contact, resultant_contact
 from raceway.core.fem.elastic.newton import TOLERANCE, StaticSolution, solve_equilibrium
-from raceway.core.fem.elastic.superelement import Copies, Group, same_bodies, sectors
 from raceway.core.fem.elastic.superelement_solver import CondensedSolver
 from raceway.core.fem.hexahedron.operator import HexOperator
 from raceway.core.fem.mesh.hex_mesh import HexMesh

@@ -7,7 +7,7 @@ import numpy as np
 
 from raceway.core.contact.geometry import BallBearing
 from raceway.core.contact.hertz import contact_modulus
-from raceway.core.fem.elastic.superelement import turn
+from raceway.core.fem.elastic.copies import turn
 from raceway.core.jit import Kernel
 
 Material = tuple[float, float, float]

@@ -9,7 +9,8 @@ import numpy as np
 
 from raceway.core.fem.elastic.assembly import Assembly, bed_of_cells
 from raceway.core.fem.elastic.contact import NodalContact
-from raceway.core.fem.elastic.superelement import REFINED, Closed, Copies, Group, Loose, Part, gather_turned
+from raceway.core.fem.elastic.copies import Copies, Group
+from raceway.core.fem.elastic.superelement import REFINED, Closed, Loose, Part, gather_turned
 from raceway.core.fem.elastic.unknowns import of_nodes
 from raceway.core.fem.hexahedron.operator import HexOperator
 from raceway.errors import MeshError
@@ -138,7 +139,10 @@ LEAST_CELLS = 8000
 #: The code that the numbers depend on.
 SOURCES = (
     "core/fem/hexahedron",
-    *(f"core/fem/elastic/{name}.py" for name in ("fronts", "linear_statics", "superelement", "interface", "unknowns")),
+    *(
+        f"core/fem/elastic/{name}.py"
+        for name in ("copies", "fronts", "linear_statics", "superelement", "interface", "unknowns")
+    ),
 )
 
 Arrays = dict[str, np.ndarray]
