@@ -253,10 +253,7 @@ def _draw_spectrum(axes: Axes, result: RunResult) -> None:
     first = float(lines[shown].max(axis=1)[np.argmin(np.abs(order[shown] - 1.0))])
     text = f"1x: {first:.4g} µm at {frequency:.4g} Hz"
     axes.annotate(text, (1.0, first), xytext=(12, 2), textcoords="offset points", fontsize=10)
-    axes.set_yscale("log")
-    axes.set_xlim(0.0, 10.4)
-    axes.set_ylim(peak * 1e-9, peak * 10.0)
-    axes.set_xticks(range(11))
+    axes.set(yscale="log", xlim=(0.0, 10.4), ylim=(peak * 1e-9, peak * 10.0), xticks=range(11))
     title = f"Spectrum of the displacement, mean removed\n{wrapped(result.title, 64)}"
     label_axes(axes, title, "frequency / excitation frequency [-]", "amplitude [µm]")
 

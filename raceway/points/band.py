@@ -42,7 +42,6 @@ from raceway.storage.tables import Tables
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-
 _SAMPLES, _LIMIT_COLOUR, _TOTAL, _FIRST = "#b9c9da", "#0b5fa5", "#b9c9da", "#0b5fa5"
 
 #: Samples of a piece of work, which is what a killed worker loses; limits of the band.
@@ -153,8 +152,7 @@ class Band(Answer):
             if with_indices:
                 panel = rows[2 * block + 1, column]
                 places = np.arange(len(keys))
-                panel.set_xlim(0.0, 1.05)
-                panel.set_ylim(len(keys) - 0.4, -0.6)
+                panel.set(xlim=(0.0, 1.05), ylim=(len(keys) - 0.4, -0.6))
                 panel.set_yticks(places, keys if column == 0 else [""] * len(keys), fontsize=8)
                 label_axes(panel, "", "Sobol' index [-]", "", 9.0)
                 # Estimates of small indices scatter about 0, those of a single cause about 1.
