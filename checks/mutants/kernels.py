@@ -116,7 +116,7 @@ def kept(places: dict[Path, Path], fault: Fault | None = None) -> list[tuple[str
 
 def carry_over(kernels: list[tuple[str, str]]) -> None:
     """Link files of kernels into this process's cache; of faulty sources, whose key is part of the digest that every file needs."""
-    from raceway.storage.kernel_cache import _DIGEST, _digest, current_folder, make
+    from raceway.storage.kernel_cache import DIGEST, current_folder, digest, make
 
     make(current_folder())
     for part, old in kernels:
@@ -124,4 +124,4 @@ def carry_over(kernels: list[tuple[str, str]]) -> None:
         new.parent.mkdir(exist_ok=True)
         if not new.exists():
             new.symlink_to(old)
-            new.with_name(new.name + _DIGEST).write_text(_digest(new), encoding="ascii")
+            new.with_name(new.name + DIGEST).write_text(digest(new), encoding="ascii")

@@ -17,7 +17,7 @@ from raceway.core.fem.elastic.contact import NodalContact, Pair, PlaceLaw, groov
 from raceway.core.fem.elastic.newton import TOLERANCE, StaticSolution
 from raceway.core.fem.elastic.surface import Facets, surface_points
 from raceway.extend import HexMesh, HexOperator, contact_modulus, ellipse, growing, linear
-from raceway.plugins.bodies.elastic_stress import peak_at_nodes, peak_at_points
+from raceway.testing import peak_at_nodes, peak_at_points
 
 YOUNG, POISSON, DENSITY = 212e9, 0.29, 7810.0
 DIAMETER, CONFORMITY, ROLLING = 9.525e-3, 0.52, 18.25e-3

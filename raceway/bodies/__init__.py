@@ -5,5 +5,5 @@ basis        what every kind starts from: geometry, contacts, loads, linear part
 mounting     preload of a pair, an axial displacement that is held
 running      contact laws at the running speed: entraining speeds, loads, parameters that fit the equilibrium
 contacts     angles, ellipses and pressures of contact resultants, edges of grooves, error of a contact law
-rigid_bearing   rigid rings and balls at one point;  columns: at many operating points at once;  builder: these from a plan
+rigid_bearing   rigid rings and balls at one point;  columns: at many operating points at once, from a plan
 """

@@ -5,7 +5,7 @@ The builders are those of one point (``raceway.bodies.basis``, ``raceway.bodies.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any, TypeVar
 
@@ -32,6 +32,7 @@ from raceway.core.signatures import FORCE, LOOSE, Kernels, Linear, Points, State
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import force_params, is_elementwise_force, law_params, reach_of, renews
 from raceway.framework.loading.probe import plugin_kernel
+from raceway.planning.columns import column_problem
 from raceway.planning.plan import ScenePlan
 from raceway.planning.resolve import Problem
 from raceway.scene.bearing import DIMENSIONS
@@ -43,12 +44,6 @@ R = TypeVar("R", Points, States, Turning, Orbits)
 #: Samples of a span at most.
 _MOST_SAMPLES = 128
 _AXIAL = np.array([1.0, 0.0, 0.0, 0.0, 0.0])
-
-
-def impedance(force: np.ndarray, line: np.ndarray) -> np.ndarray:
-    """(n,) Z = (F^H F) / (F^H x) [N/m] of synchronous (1x) components (n, 3), see ``raceway.core.signals``."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray((force.conj() * force).sum(axis=1) / (force.conj() * line).sum(axis=1))
 
 
 @attrs.frozen(eq=False)
@@ -295,7 +290,7 @@ def running_columns(bearing: ColumnBearing) -> ColumnBearing:
 def ball_columns(
     problem: Problem, plan: ScenePlan, deformed: Callable[[Problem, Basis, Tables], tuple[Tables, np.ndarray]] | None = None
 ) -> ColumnBearing:
-    """Balls in grooves, for ``raceway.bodies.builder``.
+    """Balls in grooves, for ``Builder``.
 
     deformed : kernels and numbers of bodies that deform, from those of rigid ones; (n,) whether the law is too stiff for them
     """
@@ -368,3 +363,38 @@ def _empty_states(n: int, z: int, columns: int, damped: bool = False) -> States:
     stiffness, damping = np.empty((n, 5, 5)), np.empty((n * damped, 5, 5))
     force, status = np.zeros((n, 2 * z)), np.empty(n, dtype=np.int64)
     return States(np.empty((n, 5)), np.empty((n, z, columns)), stiffness, damping, force, status)
+
+
+#: Tables of a scene that a bearing is built from, beside its speed and loads.
+_BUILT = (*OF_PRELOAD, "kinematics")
+
+
+@attrs.frozen(eq=False, slots=False)
+class Builder:
+    """Bearings at columns of a scene's keys, ``plan`` of one point; what loads leave as it is, is built once."""
+
+    plan: ScenePlan
+
+    @np.errstate(all="ignore")  # of points that contradict themselves
+    def at(self, columns: Mapping[str, np.ndarray]) -> ColumnBearing:
+        """The bearing at the points of columns (n,)."""
+        return running_columns(self.mounted(columns))
+
+    @np.errstate(all="ignore")
+    def mounted(self, columns: Mapping[str, np.ndarray]) -> ColumnBearing:
+        """The same with the contact law as at standstill."""
+        own, problem = self.plan.problem, column_problem(self.plan.problem, columns)
+        bearing = None
+        if own.traits.contacts_alone and all(getattr(problem, name) is getattr(own, name) for name in _BUILT):
+            speeds = ((p.spin_speed, p.time_constant) for p in (own, problem))
+            if problem.excitation is own.excitation or all(np.all(a == b) for a, b in zip(*speeds, strict=True)):
+                bearing = self._unloaded and self._unloaded.under(problem)
+        return problem.body_kind.columns(self.plan) if bearing is None else bearing
+
+    @cached_property
+    def _unloaded(self) -> ColumnBearing | None:
+        """At one point; None where a plug-in has changed what the law makes of its contacts."""
+        one = attrs.evolve(self.plan.problem, points=(1,))
+        bearing: ColumnBearing = one.body_kind.columns(self.plan)
+        params = law_params(one.contact.law, contact_pairs(one, bearing.basis))
+        return bearing if np.array_equal(params.ravel(), bearing.points.params.ravel()) else None

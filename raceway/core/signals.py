@@ -68,6 +68,12 @@ def stiffness(force: np.ndarray, displacement: np.ndarray) -> complex:
     return complex(power / work) if abs(work) > 0.0 and abs(power) > 0.0 else complex(np.nan, np.nan)
 
 
+def impedance(force: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """(n,) Z = (F^H F) / (F^H x) [N/m] of synchronous (1x) components (n, 3)."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray((force.conj() * force).sum(axis=1) / (force.conj() * line).sum(axis=1))
+
+
 def steady_stiffness(force: np.ndarray, displacement: np.ndarray, change: np.ndarray) -> complex:
     """Z [N/m] of the steady motion, from the 1x vectors (5,) of one that changes under the additional forces ``change`` (5,).
 

@@ -17,8 +17,7 @@ from typing import TypeAlias
 import attrs
 import numpy as np
 
-from raceway.bodies.builder import Builder
-from raceway.bodies.columns import impedance, solved_columns
+from raceway.bodies.columns import Builder, solved_columns
 from raceway.bodies.model import Equilibrium, Model, model_of
 from raceway.core.periodic.collocation import Solved, solve
 from raceway.core.periodic.search import PeriodicMotion, problem_of
@@ -26,6 +25,7 @@ from raceway.core.periodic.steady import find, growth_of_disturbances, refuse, s
 from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE
 from raceway.core.ring.system import surrogate
+from raceway.core.signals import impedance
 from raceway.errors import ConvergenceError, RacewayError, SceneError
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, renews

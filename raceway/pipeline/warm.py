@@ -16,8 +16,7 @@ from itertools import product
 import attrs
 import numpy as np
 
-from raceway.bodies.builder import Builder
-from raceway.bodies.columns import ColumnBearing, solved_columns
+from raceway.bodies.columns import Builder, ColumnBearing, solved_columns
 from raceway.bodies.model import model_of
 from raceway.bodies.mounting import preload_table
 from raceway.core.quantities.thermal import NODES

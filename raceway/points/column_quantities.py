@@ -9,11 +9,11 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import AMPLITUDE, KNOWN, OF_ORBITS, Z_IMAG, Z_REAL, C, K, Quantity, plugin_quantities
-from raceway.bodies.builder import Builder
-from raceway.bodies.columns import ColumnBearing, impedance, solved_columns
+from raceway.bodies.columns import Builder, ColumnBearing, solved_columns
 from raceway.core.periodic.floquet import NEUTRAL
 from raceway.core.periodic.orbits import Orbits
 from raceway.core.ring.ring import COORDINATES
+from raceway.core.signals import impedance
 from raceway.core.signatures import States
 from raceway.framework.contracts import SolvedPoints
 from raceway.framework.duties import fitting_quantities, quantities_at, turn_samples

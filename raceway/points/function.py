@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from raceway.answers.quantities import KNOWN, Quantity, plugin_quantities
-from raceway.bodies.builder import Builder
+from raceway.bodies.columns import Builder
 from raceway.core.threads import ThreadPool, compile_beside, usable_cores
 from raceway.errors import RacewayError, SceneError
 from raceway.framework.doors import PATHS, TEXT, TEXTS, Reader, door

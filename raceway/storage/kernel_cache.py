@@ -121,7 +121,7 @@ def clear() -> None:
         shutil.rmtree(root)
 
 
-_DIGEST = ".digest"
+DIGEST = ".digest"
 
 
 @attrs.frozen
@@ -183,10 +183,10 @@ class FilesOfKernel:
         """Write the digest of each file that has none of its own; best effort: without it, the file is not read again."""
         for path in self._files():
             if not self._sound(path):
-                beside = path.with_name(path.name + _DIGEST)
+                beside = path.with_name(path.name + DIGEST)
                 scratch = path.with_name(f"{beside.name}.tmp.{uuid4().hex[:16]}")
                 with suppress(OSError):
-                    scratch.write_text(_digest(path), encoding="ascii")
+                    scratch.write_text(digest(path), encoding="ascii")
                     scratch.replace(beside)
 
     def discard(self) -> None:
@@ -200,17 +200,17 @@ class FilesOfKernel:
 
     def _sound(self, path: Path) -> bool:
         try:
-            return path.with_name(path.name + _DIGEST).read_text(encoding="ascii") == _digest(path)
+            return path.with_name(path.name + DIGEST).read_text(encoding="ascii") == digest(path)
         except (OSError, UnicodeDecodeError):
             return False
 
 
 def _remove(path: Path) -> None:
     path.unlink(missing_ok=True)
-    path.with_name(path.name + _DIGEST).unlink(missing_ok=True)
+    path.with_name(path.name + DIGEST).unlink(missing_ok=True)
 
 
-def _digest(path: Path) -> str:
+def digest(path: Path) -> str:
     """Of the content, the name and the program's version: another kernel's file fails it, too."""
     digest = hashlib.blake2b(f"{source_key()} {path.name}\n".encode(), digest_size=16)
     digest.update(path.read_bytes())

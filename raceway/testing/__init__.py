@@ -45,6 +45,8 @@ _PUBLIC = {
     "samples": "raceway.testing.signals",
     "Model": "raceway.bodies.model",
     **dict.fromkeys(("PATIENCE", "Allowance", "run"), "raceway.pipeline.run"),
+    **dict.fromkeys(("peak_at_nodes", "peak_at_points"), "raceway.plugins.bodies.elastic_stress"),
+    "pressure_field": "raceway.plugins.bodies.patch_bearing",
     "solve_equilibrium": "raceway.pipeline.equilibrium",
     "simulate": "raceway.pipeline.simulate",
 }

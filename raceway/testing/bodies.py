@@ -13,7 +13,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import K
-from raceway.bodies.builder import Builder
+from raceway.bodies.columns import Builder
 from raceway.bodies.model import BuiltBearing, Equilibrium, Model
 from raceway.core.record import Schedule
 from raceway.core.ring.kernels.layout import CAGE

@@ -13,7 +13,7 @@ import attrs
 import numpy as np
 
 from raceway.answers.quantities import plugin_quantities
-from raceway.bodies.builder import Builder
+from raceway.bodies.columns import Builder
 from raceway.errors import RacewayError
 from raceway.framework.contracts import Batch, Executor, Format, Mesher, Quantities, Refused, SolvedPoints, Study
 from raceway.framework.duties import of_results, quantities_at, quantity_report, why_no_quantities

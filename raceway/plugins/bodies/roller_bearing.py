@@ -228,7 +228,7 @@ class RollerColumns(ColumnBearing):
 
 
 def roller_columns(problem: Problem, plan: ScenePlan) -> RollerColumns:
-    """See ``raceway.bodies.builder.Builder``."""
+    """See ``raceway.bodies.columns.Builder``."""
     basis, radii = roller_basis(problem)
     kind: Rollers = problem.bodies
     bearing = assembled_columns(RollerColumns, problem, plan, basis, roller_parts(problem, plan, basis, radii, kind))

@@ -12,7 +12,7 @@ from raceway.core.fem.patches.patch import Spacing
 from raceway.core.fem.patches.pressure import BeyondPatch, Contact, PointLaw, Reach
 from raceway.core.fem.patches.system import Pool
 from raceway.extend import three_halves
-from raceway.plugins.bodies.patch_bearing import pressure_field
+from raceway.testing import pressure_field
 from tests.core.validation.single import Single, single
 
 
