@@ -329,3 +329,14 @@ def test_film_parameters_are_quantities_of_any_scene_with_an_oil():
     for name in names:
         assert answer[name][1] == pytest.approx(result.quantities[name], rel=1e-9)
         assert answer[name][0] < answer[name][1]
+
+
+def test_soft_balls_float_on_films():
+    """On the way to the equilibrium films are thicker than the grooves stand off: a ball's longest step is no negative length."""
+    soft = {"preset": "B7206C", "balls": {"young": 1e7, "poisson": 0.49, "density": 1100.0}}
+    moving = {"ball_inertia": False, "spin_speed_rpm": 12000.0}
+    contact = {"kind": "film", "viscosity": 0.03}
+    found = rw.run({"bearing": soft, "load": {"axial": 10.0}, "kinematics": moving, "contact": contact}).to_dict()
+    balls = found["equilibrium"]["balls"]
+    pushed = sum(ball["load_inner_n"] * np.sin(np.radians(ball["contact_angle_inner_deg"])) for ball in balls)
+    assert pushed == pytest.approx(10.0, rel=1e-9)

@@ -125,7 +125,7 @@ def _follow(k, live, of_points, bodies, work):
     (ea, er), (da, dr) = centre(seat, of_points, Q, live), centre(seat, of_points, DQ, live)
     (sa, sr), t, (pa, pr) = pair_of(work, STEP, k, live), tensors_of(work, BY_CENTRE, k, live), pair_of(work, PLACE, k, live)
     sa, sr = sa + t.aa * da + t.ar * dr, sr + t.ra * da + t.rr * dr
-    size, most, scale = larger(sa, -sa) + larger(sr, -sr), 0.2 * lo, spread(1.0)
+    size, most, scale = larger(sa, -sa) + larger(sr, -sr), 0.2 * larger(lo, -lo), spread(1.0)
     if any_of(size > most):
         scale = where(size > most, most / size, 1.0)
         sa, sr = scale * sa, scale * sr

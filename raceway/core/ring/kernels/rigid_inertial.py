@@ -114,7 +114,7 @@ def _moving(k, live, rolls, attempt, ball_gain, scalars, work):
         balance = linear_balance(contacts, inner.stiffness, spread(0.0), h)
         least = 1e-10 * larger(larger(-gap_i, -gap_o), 1e-12)
     # -J^-1 R, regular where J = dR/dp is not, and no longer than a fifth of the groove's radius.
-    j, longest = at.regular(balance.j), 0.2 * lo
+    j, longest = at.regular(balance.j), 0.2 * larger(lo, -lo)  # films can be thicker than the groove stands off
     inverse = -1.0 / (j.aa * j.rr - j.ar * j.ra)
     sa, sr = (j.rr * ra - j.ar * rr) * inverse, (j.aa * rr - j.ra * ra) * inverse
     reach = sa * sa + sr * sr
