@@ -251,6 +251,12 @@ def _k(point, tilt=1.0, law=1.0):
     return 4e7 * (1.2 if point["excitation.amplitude"] == "unbalance" and law else 1.01) ** s
 
 
+def test_a_motion_that_is_larger_at_other_frequencies_is_no_basis():
+    row = _synthetic(_k).rows[0]
+    loud = attrs.evolve(row, result={**row.result, "identification": {**row.result["identification"], "residual": 1.5}})
+    assert row.doubt is None and "larger at other frequencies" in loud.doubt
+
+
 def test_the_words_rank_the_effects_and_tell_the_course_where_an_axis_changes_it():
     made = _synthetic(_k)
     ranking, text = made.words[1], "\n".join(made.words)
@@ -280,6 +286,13 @@ def test_the_first_sentence_says_what_the_table_says_where_speed_is_varied_with_
         ),
     ).short_words[1]
     assert "contact.kind from hertz to penalty changes it by +25.0 %" in first and "none of the other axes" not in first
+
+
+def test_the_first_sentence_tells_differences_in_the_order_of_the_axis():
+    axes = ["excitation.speed_rpm=10000:14000:3", "contact.kind=hertz,penalty"]
+    falling = {10000: 1.2e8, 12000: 1.15e8, 14000: 1.1e8}
+    made = _made(axes, lambda p: falling[p["excitation.speed_rpm"]] if p["contact.kind"] == "penalty" else 1e8)
+    assert made.words[0].startswith("penalty against hertz: K +20 to +10 % from 10000 to 14000")
 
 
 @pytest.mark.parametrize(

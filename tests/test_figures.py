@@ -160,6 +160,16 @@ def test_pictures_are_written_for_a_page_and_for_a_paper(tmp_path, all_pixels):
         assert b"<svg" in files[f"{name}.svg"]
 
 
+def test_names_at_the_ends_of_curves_stand_apart_beside_their_axes():
+    """Of four curves that end at the top, where names find no room above."""
+    axes = Figure().subplots()
+    axes.plot([0.0, 1.0], [0.0, 1.0])
+    axes.set_ylim(0.0, 1.0)
+    writer.name_ends(axes, [(0.97 + 0.01 * k, f"curve {k}", "k") for k in range(4)], 0.13)
+    heights = [text.xy[1] for text in axes.texts]
+    assert np.diff(heights).min() >= 0.13 - 1e-12 and max(heights) <= 1.0
+
+
 def test_no_module_makes_figures_that_are_not_looked_at_here():
     assert makers(Path(raceway.__file__).parent) == {*DRAWN, "answers/picture"}  # the last makes the figures
 

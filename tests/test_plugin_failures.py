@@ -229,6 +229,8 @@ def test_one_off_file(tmp_path):
     assert len(entry.version) == 12
     assert registry.load_file(path) == [entry], "loading it twice is loading it once"
     assert "one_off" not in Registry(third_party=False).names("contact_law")
+    path.write_text(path.read_text() + "# another content\n")
+    assert Registry(third_party=False).load_file(path)[0].version != entry.version
     changed = tmp_path / "other.py"
     changed.write_text(LAW.format(name="one_off", cls="Other"))
     registry.load_file(changed)

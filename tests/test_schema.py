@@ -53,7 +53,7 @@ WRONG = {
     "fraction for an integer": {"bearing": {"ball_count": 12.7}}, "negative": {"rotor": {"mass": -1.0}},
     "string for a number": {"load": {"axial": "much"}}, "conformity at its limit": {"bearing": {"conformity_inner": 0.5}},
     "word": {"supports": {"tilt": "looked"}}, "negative stiffness beside words": {"supports": {"tilt": -3.0}},
-    "length of a list": {"load": {"radial": [1.0]}}, "preset": {"bearing": {"preset": "B7206G"}},
+    "length of a list": {"load": {"radial": [1.0]}}, "longer list": {"load": {"radial": [1.0, 2.0, 3.0]}}, "preset": {"bearing": {"preset": "B7206G"}},
     "no kind": {"excitation": {"speed_rpm": 3.0}}, "steps below the rule": {"integrator": {"steps_per_turn": 3}},
     "mesher that is not installed": {"mesh": {"kind": "structred"}},
     "mesh without a kind has the structured mesher's keys": {"mesh": {"inner_ring": "ring.inp"}},

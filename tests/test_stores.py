@@ -79,6 +79,7 @@ def test_entries_of_arrays_have_their_own_unit():
     picture = chosen({SPEED: SPEEDS}, value="stiffness:y,y")
     assert picture.data.attrs["units"] == "N/m"
     assert chosen({SPEED: SPEEDS}, value="stiffness:tilt_y,tilt_y").data.attrs["units"] == "N m/rad"
+    assert [chosen({SPEED: SPEEDS}, value=symbol).name for symbol in ("kxx", "kyy")] == ["stiffness:x,x", "stiffness:y,y"]
     np.testing.assert_array_equal(picture.data, np.full(len(SPEEDS), 2e8))
 
 

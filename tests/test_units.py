@@ -30,6 +30,8 @@ SAME = {
     "kilonewton": ("N", "1 kN", 1000.0),
     "signs and powers of ten": ("N", "-.5e3 mN", -0.5),
     "gigapascal": ("Pa", "212 GPa", 212e9),
+    "megapascal": ("Pa", "4200 MPa", 4.2e9),
+    "flow": ("m3/s", "300 cm3/min", 5e-6),
     "gram": ("kg", "5 g", 0.005),
     "unbalance": ("kg m", "50 g mm", 5e-5),
     "inertia": ("kg m2", "3 kg mm^2", 3e-6),

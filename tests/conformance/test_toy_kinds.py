@@ -43,6 +43,26 @@ class Dangling(Box):
         return {"inner": SimpleNamespace(points=BOX, cells=np.arange(1, 9)[None])}
 
 
+class Misplaced(Box):
+    """Sets of nodes and facets that it does not have."""
+
+    name = "misplaced"
+
+    def mesh(self, bearing):
+        cells = np.arange(8)[None]
+        return {"inner": SimpleNamespace(points=BOX, cells=cells, node_sets={"seat": np.array([7, 8])})}
+
+
+class Restless(Box):
+    """Another mesh each time."""
+
+    name = "restless"
+
+    def mesh(self, bearing):
+        points = BOX + 1e-3 * np.random.default_rng().random(BOX.shape)
+        return {"inner": SimpleNamespace(points=points, cells=np.arange(8)[None])}
+
+
 @attrs.frozen
 class Json:
     """Plain tables as JSON."""
@@ -69,6 +89,18 @@ class Careless(Json):
 
     def read(self, path):
         return json.loads(Path(path).read_text(encoding="latin-1") or "{}")
+
+
+class Rounding(Json):
+    """Numbers with nine figures."""
+
+    name = "rounding"
+
+    def write(self, path, what):
+        super().write(path, what | {"points": [[float(f"{x:.9g}") for x in point] for point in what["points"]]})
+
+    def example_content(self):
+        return {"points": [[0.0, 1.0 / 3.0]], "name": "box"}
 
 
 @attrs.frozen
@@ -115,6 +147,27 @@ class OfOnePoint(Share):
     def compute(self, points):
         inner = points.load[0, 0]
         return {"largest_share": np.full(len(points.load), inner.max() / inner.sum())}
+
+
+class OfColumns(Share):
+    """Twice the number where loads are columns."""
+
+    name = "of_columns"
+    numbers = (Quantity("column_share", "1", "load of the most loaded ball over that of all", "of_columns.largest"),)
+
+    def compute(self, points):
+        factor = 2.0 if np.ndim(points.problem.load.axial) else 1.0
+        return {"column_share": factor * super().compute(points)["largest_share"]}
+
+
+class Twice(Serial):
+    """Answers each batch twice."""
+
+    name = "twice"
+
+    def compute(self, work, batches):
+        for answer in super().compute(work, batches):
+            yield from (answer, answer)
 
 
 class Greedy(Serial):
@@ -170,18 +223,28 @@ def test_sound_ones_conform(suite, plugin):
     assert suite.conformity(plugin).conforms
 
 
-@pytest.mark.parametrize(
-    ("suite", "plugin", "checks"),
-    [
-        (MesherSuite, InsideOut(), {"volumes"}),
-        (MesherSuite, Dangling(), {"meshes"}),
-        (FormatSuite, Careless(), {"declaration", "bad_files"}),
-        (FormatSuite, Forgetful(), {"results"}),
-        (QuantitySuite, OfOnePoint(), {"declaration", "columns"}),
-        (ExecutorSuite, Greedy(), {"answers", "ends"}),
-        (ExecutorSuite, Swallowing(), {"ends"}),
-        (StudySuite, Misnamed(), {"help", "command"}),
-    ],
-)
+BROKEN = [
+    (MesherSuite, InsideOut(), {"volumes"}),
+    (MesherSuite, Dangling(), {"meshes"}),
+    (FormatSuite, Careless(), {"declaration", "bad_files"}),
+    (FormatSuite, Forgetful(), {"results"}),
+    (QuantitySuite, OfOnePoint(), {"declaration", "columns"}),
+    (ExecutorSuite, Greedy(), {"answers", "ends"}),
+    (ExecutorSuite, Swallowing(), {"ends"}),
+    (StudySuite, Misnamed(), {"help", "command"}),
+    (MesherSuite, Misplaced(), {"sets"}),
+    (MesherSuite, Restless(), {"repeats"}),
+    (FormatSuite, Rounding(), {"round_trip"}),
+    (QuantitySuite, OfColumns(), {"run"}),
+    (ExecutorSuite, Twice(), {"answers"}),
+]
+
+
+def test_every_duty_can_fail():
+    for suite in {suite for suite, *_ in BROKEN}:
+        assert {"declaration"}.union(*(checks for of, _, checks in BROKEN if of is suite)) == set(suite.checks())
+
+
+@pytest.mark.parametrize(("suite", "plugin", "checks"), BROKEN)
 def test_broken_ones_do_not(suite, plugin, checks):
     assert checks <= failed(suite, plugin)

@@ -43,6 +43,7 @@ FORMS = {
     "mobility": ([function(1j * OMEGA * RECEPTANCE, 11, ("m/s", "N"))], "mobility in m/s over N"),
     "accelerance in g": ([function(-(OMEGA**2) * RECEPTANCE / 9.80665, 12, ("g", "N"))], "accelerance in g over N"),
     "inch and pounds force": ([function(-(OMEGA**2) * RECEPTANCE / 0.0254 * 4.4482216152605, 12, ("in/s^2", "lbf"))], "in/s^2 over lbf"),
+    "feet": ([function(RECEPTANCE / 0.3048, 8, ("ft", "N"))], "receptance in ft over N"),
     "units of dataset 164": ([units(7, 39.37007874015748, 0.22480894309971), function(RECEPTANCE / 0.0254 * 4.4482216152605, 8)], "dataset 164"),
     "opposite directions": ([function(-RECEPTANCE, 8, rsp_dir=-3)], "opposite directions"),
     "reaction force": ([function(RECEPTANCE, 8, orddenom_spec_data_type=9)], "receptance"),

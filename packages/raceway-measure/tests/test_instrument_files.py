@@ -66,6 +66,7 @@ VARIANTS = {
         "X_Value\tA\tB\tComment\n" + "\t1.5\t2.5\n" * 3
     ),
     "Tektronix with signs of comments": "#Model,MDO3014\n#Horizontal Units,s\n#Vertical Units,V,V\n#,,\n#TIME,A,B\n0,1.5,2.5\n5e-4,1.5,2.5\n1e-3,1.5,2.5\n",
+    "a rate in MHz": "Sampling rate 0.002 MHz\n\nA;B\n" + "1,5;2,5\n" * 3,
     "Rigol DS1000E": "Time,A,B\nSecond,Volt,Volt\n0,1.5,2.5,\n5e-4,1.5,2.5,\n1e-3,1.5,2.5,\n",
     "PicoScope with tabs": "Time\tA\tB\n(ms)\t(V)\t(V)\n\n0\t1,5\t2,5\n0,5\t1,5\t2,5\n1\t1,5\t2,5\n",
     "text in the first column": "# a\n\nnote;Time (ms);A;B\nok;0;1,5;2,5\n5 mm, ok;0,5;1,5;2,5\n;1;1,5;2,5\n",

@@ -2,6 +2,8 @@
 
 from types import SimpleNamespace
 
+import numpy as np
+import pytest
 from raceway_measure.fit.picture import draw_fit, figures
 from raceway_measure.fit.shaft_angle import rotation_of
 from raceway_measure.fit.synchronous import synchronous
@@ -20,6 +22,8 @@ def test_pictures_of_a_fit_are_readable():
     one, two = (raceway.fit(data, b7206c(), free).to_dict() for free in (names.split(",")[0], names))
     lost = {**one["free"][0], "error": None, "determined": False, "low": None, "high": None}
     wild = {**one["series"][0], "measured": [1.0, 1e3, 1e6, 1e9]}
+    region = draw_fit(two).axes[1].lines[0].get_xydata()  # at 95 % of two numbers: chi squared 5.991
+    assert 0.5 * np.ptp(region, axis=0) == pytest.approx(np.sqrt(5.991 * np.diag(two["covariance"])), rel=1e-3)
     assert_readable([draw_fit(one), draw_fit({**two, "series": [*two["series"], wild]}), draw_fit({**one, "free": [lost]})])
 
 
@@ -27,7 +31,10 @@ def test_pictures_of_a_recording_are_readable():
     rotation = rotation_of(made(noise=1e-6))
     component = synchronous(rotation)
     state = SimpleNamespace(sensor=3.0 * component.forward, deflection=9.0 * component.forward)
-    assert_readable(figures(rotation, component, state).values())
+    drawn = figures(rotation, component, state)
+    order, amplitude = drawn["spectrum"].axes[0].lines[0].get_data()
+    assert amplitude[order == 1.0] == pytest.approx(1e6 * abs(component.forward), rel=0.02)
+    assert_readable(drawn.values())
 
 
 def made_up_pictures():
