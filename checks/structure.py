@@ -21,10 +21,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from checks.robustness import Row
+from checks.robustness import Row, below
 
 ROOT = Path(__file__).resolve().parents[1]
-COMMAND = "python -m checks.structure"
 #: What one reads to follow a scene to its K: path of files below raceway/, as regular expressions.  CONTRIBUTING says how much.
 MUST_READ = re.compile(
     r"\w+\.py|framework/\w+\.py|scene/(?!catalogue|designation).*|(planning|bodies|integrators|contact_laws)/.*"
@@ -225,11 +224,6 @@ def smallest_run() -> list[str]:
     return [Path(name).relative_to(ROOT).as_posix() for name in json.loads(done.stdout.splitlines()[-1])]
 
 
-def row(quantity: str, value: float | str, bound: float, note: str = "") -> Row:
-    number = float(value) if not isinstance(value, str) else float(value.split()[0])
-    return Row(quantity, value, f"at most {bound:g}", number <= bound, COMMAND, note)
-
-
 def held() -> list[Row]:
     """Measures that lint holds."""
     single, names, words = participles()
@@ -241,25 +235,25 @@ def held() -> list[Row]:
     branches = [path for path in trees("raceway") if _BRANCH.search((ROOT / path).read_text(encoding="utf-8"))]
     rings, up, meant = circles(), climbs(), meanings()
     return [
-        row("functions whose name occurs once beside their definition", len(once), 600),
-        row(
+        below("functions whose name occurs once beside their definition", len(once), 600),
+        below(
             "names that are one participle [%]",
             round(100.0 * single / names, 2),
             2.0,
             ", ".join(w for w, _ in words.most_common(8)),
         ),
-        row("functions over 80 lines", len(long), 0, "; ".join(long)),
-        row("modules of raceway that packages import beside raceway.extend", len(deep), 0, ", ".join(sorted(deep))),
-        row(
+        below("functions over 80 lines", len(long), 0, "; ".join(long)),
+        below("modules of raceway that packages import beside raceway.extend", len(deep), 0, ", ".join(sorted(deep))),
+        below(
             "modules of raceway that examples and templates import beside its doors",
             len(beside),
             0,
             ", ".join(sorted(beside)),
         ),
-        row("branches on the name of a plug-in in raceway/", len(branches), 0, ", ".join(branches)),
-        row("circles of files, annotations counted", len(rings), 0, "; ".join(" ".join(ring) for ring in rings)),
-        row("folders' imports that run back up, annotations counted", len(up), 0, "; ".join(up)),
-        row("top-level names with more than three meanings", len(meant), 0, ", ".join(meant)),
+        below("branches on the name of a plug-in in raceway/", len(branches), 0, ", ".join(branches)),
+        below("circles of files, annotations counted", len(rings), 0, "; ".join(" ".join(ring) for ring in rings)),
+        below("folders' imports that run back up, annotations counted", len(up), 0, "; ".join(up)),
+        below("top-level names with more than three meanings", len(meant), 0, ", ".join(meant)),
     ]
 
 
@@ -269,20 +263,20 @@ def aims() -> list[Row]:
     must = [name for name in raceway if MUST_READ.fullmatch(name.removeprefix("raceway/"))]
     _, private = foreign(tests())
     return [
-        row("raceway/: lines", lines(raceway), 60_000),
-        row("raceway/: files", len(raceway), 265),
-        row("files over 400 lines", sum(lines([name]) > 400 for name in product()), 0),
-        row("lines that the smallest run imports", lines(small), 16_000, f"{len(small)} files"),
-        row("lines that a newcomer must read", lines(must), 25_000, f"{len(must)} files"),
-        row("raceway and packages: lines", lines(product()), 79_000),
-        row("tests and checks: lines", lines(tests()), 48_000),
-        row("modules of raceway that tests and checks import, beside their own", len(beside_their_own()), 80),
-        row("private names that tests and checks import", len(private), 0),
+        below("raceway/: lines", lines(raceway), 60_000),
+        below("raceway/: files", len(raceway), 265),
+        below("files over 400 lines", sum(lines([name]) > 400 for name in product()), 0),
+        below("lines that the smallest run imports", lines(small), 16_000, f"{len(small)} files"),
+        below("lines that a newcomer must read", lines(must), 25_000, f"{len(must)} files"),
+        below("raceway and packages: lines", lines(product()), 79_000),
+        below("tests and checks: lines", lines(tests()), 48_000),
+        below("modules of raceway that tests and checks import, beside their own", len(beside_their_own()), 80),
+        below("private names that tests and checks import", len(private), 0),
     ]
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog=COMMAND, description=(__doc__ or "").splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m checks.structure", description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--gate", action="store_true", help="the measures that are held, alone")
     parser.add_argument("--list", choices=["once", "participles", "circles"], help="what is counted, by name")
     arguments = parser.parse_args()

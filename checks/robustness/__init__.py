@@ -16,15 +16,9 @@ extremes              what runs at the edges say of errors that are not estimate
 
 import sys
 from collections.abc import Callable
-from math import isfinite
 from pkgutil import iter_modules
 
 import attrs
-
-
-def _finite_or_text(value: float | str) -> float | str:
-    """JSON knows no NaN and no infinity: they become words."""
-    return str(value) if isinstance(value, float) and not isfinite(value) else value
 
 
 @attrs.frozen
@@ -37,27 +31,24 @@ class Row:
     value : the number, or a few numbers as text
     limit : what it is held against: an expected value with its tolerance, or a bound
     ok : whether it holds
-    command : what to type to see it
     note : why it does not hold, or what one should know
     """
 
     quantity: str
-    value: float | str = attrs.field(converter=_finite_or_text)
+    value: float | str
     limit: str
     ok: bool = attrs.field(converter=bool)
-    command: str
     note: str = ""
 
 
-def near(quantity: str, value: float, expected: float, relative: float, command: str, note: str = "") -> Row:
-    """A row for a value that must equal ``expected`` within a relative tolerance."""
-    ok = abs(value - expected) <= relative * abs(expected)
-    return Row(quantity, float(value), f"{expected:g} within {100 * relative:g} %", ok, command, note)
+def above(quantity: str, value: float, least: float, note: str = "") -> Row:
+    """A row for a value that must reach ``least``."""
+    return Row(quantity, value, f"at least {least:g}", value >= least, note)
 
 
-def below(quantity: str, value: float, bound: float, command: str, note: str = "") -> Row:
+def below(quantity: str, value: float, bound: float, note: str = "") -> Row:
     """A row for a value that must not exceed ``bound``."""
-    return Row(quantity, float(value), f"at most {bound:g}", value <= bound, command, note)
+    return Row(quantity, value, f"at most {bound:g}", value <= bound, note)
 
 
 def show(asked: list[str], there: list[str], rows_of: Callable[[str], list[Row]]) -> int:

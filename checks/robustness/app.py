@@ -9,7 +9,6 @@ from checks.robustness import Row, below
 from checks.validation.browser.application import WIDTHS, Application, Tab, hurry
 from checks.validation.browser.chromium import Browser
 
-COMMAND = "python -m checks app"
 #: Changes of each kind, and sequences of changes without a look.
 _CHANGES, _SEQUENCES = 20, 2
 
@@ -46,18 +45,14 @@ def rows() -> list[Row]:
     load = f"load average {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores, software WebGL"
     late = max(times[int(0.95 * len(times))] for times in shown.values())
     return [
-        below(
-            "change to picture (K and curves), two scenes: median [ms]", statistics.median(shown[2]), 100.0, COMMAND, load
-        ),
-        below("the same, one scene: median [ms]", statistics.median(shown[1]), 100.0, COMMAND, load),
-        below("the same, 95th percentile of either [ms]", late, 200.0, COMMAND, load),
-        below("change to all numbers of the run, one scene: median [ms]", numbers, 1000.0, COMMAND, load),
-        below("start of the command to all numbers of two scenes [s]", start, 4.0, COMMAND, load),
-        below("words cut or overlapping at 1280, 1024 and 400 px", len(cut), 0, COMMAND, "; ".join(cut[:2])),
-        below("serious violations that axe finds", len(serious), 0, COMMAND, "; ".join(serious[:2])),
-        below("memory of server, worker and page [MB]", 1e-6 * memory, 500.0, COMMAND),
-        below(f"growth of server and worker by {_CHANGES} changes [MB]", 1e-6 * growth, 20.0, COMMAND),
-        below(
-            f"sequences of {_SEQUENCES} that leave numbers of another scene", len(faults), 0, COMMAND, "; ".join(faults[:2])
-        ),
+        below("change to picture (K and curves), two scenes: median [ms]", statistics.median(shown[2]), 100.0, load),
+        below("the same, one scene: median [ms]", statistics.median(shown[1]), 100.0, load),
+        below("the same, 95th percentile of either [ms]", late, 200.0, load),
+        below("change to all numbers of the run, one scene: median [ms]", numbers, 1000.0, load),
+        below("start of the command to all numbers of two scenes [s]", start, 4.0, load),
+        below("words cut or overlapping at 1280, 1024 and 400 px", len(cut), 0, "; ".join(cut[:2])),
+        below("serious violations that axe finds", len(serious), 0, "; ".join(serious[:2])),
+        below("memory of server, worker and page [MB]", 1e-6 * memory, 500.0),
+        below(f"growth of server and worker by {_CHANGES} changes [MB]", 1e-6 * growth, 20.0),
+        below(f"sequences of {_SEQUENCES} that leave numbers of another scene", len(faults), 0, "; ".join(faults[:2])),
     ]

@@ -144,7 +144,6 @@ def rows() -> list[Row]:
 
 
 def _stores() -> list[Row]:
-    command = "python -m checks damage"
     found = tried(_STORES)
     every = sum(found.values(), Counter[str]())
     equal, told = every[EQUAL], every[ANSWERED]
@@ -153,11 +152,11 @@ def _stores() -> list[Row]:
     mended = sum((found[name] for name in _MENDED), Counter[str]())
     tries = mended.total()
     return [
-        below(f"damaged stores, {every.total()}: silently other values", other, 0, command, note),
+        below(f"damaged stores, {every.total()}: silently other values", other, 0, note),
         below("of these, other ends than the same rows or one message: tracebacks, signals, hangs",
-              every.total() - equal - told - other, 0, command, f"{equal} the same rows bit for bit, {told} one message"),
+              every.total() - equal - told - other, 0, f"{equal} the same rows bit for bit, {told} one message"),
         Row("of these, rows that were swapped, foreign or edited, and a foreign journal: the same rows again",
-            f"{mended[EQUAL]} of {tries}", "all", mended[EQUAL] == tries, command),
+            f"{mended[EQUAL]} of {tries}", "all", mended[EQUAL] == tries),
     ]  # fmt: skip
 
 
@@ -170,10 +169,9 @@ def _caches(part: str, count: int) -> Counter[str]:
 def _of_caches(words: str, part: str, found: Counter[str], count: int) -> list[Row]:
     bad = {outcome: times for outcome, times in found.items() if outcome not in (SAME, TOLD)}
     signals = sum(times for outcome, times in bad.items() if "ended by" in outcome)
-    command = f"python -m checks.faulty_caches {part} {count}"
     note = "; ".join(bad) or f"{found[SAME]} in silence, {found[TOLD]} with a message of one line a file"
     return [
         below(f"{words}, {found.total()} tries: other ends than the same numbers, in silence or with a message",
-              found.total() - found[SAME] - found[TOLD], 0, command, note),
-        below(f"{words}: ended by a signal", signals, 0, command),
+              found.total() - found[SAME] - found[TOLD], 0, note),
+        below(f"{words}: ended by a signal", signals, 0),
     ]  # fmt: skip

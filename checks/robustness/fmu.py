@@ -9,7 +9,6 @@ import raceway as rw
 from checks.robustness import Row, below
 from checks.validation.fmu import MAP, RANGES, Instance, exported, step_time
 
-COMMAND = "python -m checks fmu"
 _RUNS = 20
 _TURNING = MAP | {"contact": {}, "excitation": MAP["excitation"] | {"force": 400.0}}
 #: Samples of a turn of the orbit whose steps are timed.
@@ -32,8 +31,8 @@ def _map(path: Path) -> list[Row]:
         result = rw.run(rw.evolve(MAP, *(f"{key}={value!r}" for key, value in zip(RANGES, map(float, point), strict=True))))
         worst = max(worst, *np.abs(instance(*point) / np.array([result.K, result.C]) - 1.0))
     return [
-        below("map of K, C over axial load, force, speed: stated relative error", stated, 1e-4, COMMAND),
-        below(f"{_RUNS} random points: difference from `rw.run` over the stated error", worst / stated, 1.0, COMMAND),
+        below("map of K, C over axial load, force, speed: stated relative error", stated, 1e-4),
+        below(f"{_RUNS} random points: difference from `rw.run` over the stated error", worst / stated, 1.0),
     ]
 
 
@@ -44,13 +43,7 @@ def _times(maps: Path, force: Path) -> list[Row]:
     jumps = orbit[rng.permutation(_SAMPLES)] * rng.uniform(0.5, 1.5, size=(_SAMPLES, 1))
     note = "fmi2SetReal, fmi2DoStep, fmi2GetReal in a loop in C; processor time"
     return [
-        below("step of the map, random points [us]", round(1e6 * step_time(maps, points), 2), 2.0, COMMAND, note),
-        below(
-            f"step of the force of 12 balls, {_SAMPLES} a turn [us]",
-            round(1e6 * step_time(force, orbit), 2),
-            2.0,
-            COMMAND,
-            note,
-        ),
-        Row("the same at random displacements [us]", round(1e6 * step_time(force, jumps), 2), "stated", True, COMMAND, note),
+        below("step of the map, random points [us]", round(1e6 * step_time(maps, points), 2), 2.0, note),
+        below(f"step of the force of 12 balls, {_SAMPLES} a turn [us]", round(1e6 * step_time(force, orbit), 2), 2.0, note),
+        Row("the same at random displacements [us]", round(1e6 * step_time(force, jumps), 2), "stated", True, note),
     ]

@@ -11,12 +11,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from checks.robustness import Row
+from checks.robustness import Row, above
 from checks.robustness._doors import fronts
 from checks.robustness._fuzz import ASLEEP_S, CALLS, CHECK_S, RUN_S
 from checks.robustness._scenes import scene_keys
 
-COMMAND = "python -m checks fuzz"
 #: Scenes, runs and processes of a whole report; the environment may ask for fewer scenes, and the report says how many there were.
 SCENES = int(os.environ.get("RACEWAY_FUZZ_SCENES", "10000"))
 RUNS, PROCESSES = 3 * SCENES // 20, 2
@@ -86,21 +85,17 @@ def rows() -> list[Row]:
     fronts_met = {one["front"] for one in found if one.get("called") == "answered"}
     bodies = sorted({one["bodies"] for one in found if one.get("run") == "finished"})
     out = [
-        _at_least("scenes through check and plan", len(found), WANTED_SCENES),
-        _at_least("scenes through run", ran.total(), WANTED_RUNS),
-        _at_least("calls of Python fronts, some with wrong types", called.total(), WANTED_SCENES // CALLS),
-        _at_least("keys of the schema that are drawn", min(len(found), len(scene_keys())), len(scene_keys())),
-        _at_least("share of scenes that are planned", checked["planned"] / max(checked.total(), 1), 0.2),
-        _at_least("share of runs that finish", ran["finished"] / max(ran.total(), 1), 0.5, f"bodies: {', '.join(bodies)}"),
-        _at_least("fronts that answered at least once", len(fronts_met), len(fronts())),
+        above("scenes through check and plan", len(found), WANTED_SCENES),
+        above("scenes through run", ran.total(), WANTED_RUNS),
+        above("calls of Python fronts, some with wrong types", called.total(), WANTED_SCENES // CALLS),
+        above("keys of the schema that are drawn", min(len(found), len(scene_keys())), len(scene_keys())),
+        above("share of scenes that are planned", checked["planned"] / max(checked.total(), 1), 0.2),
+        above("share of runs that finish", ran["finished"] / max(ran.total(), 1), 0.5, f"bodies: {', '.join(bodies)}"),
+        above("fronts that answered at least once", len(fronts_met), len(fronts())),
     ]
     for word, quantity in _FAULTS.items():
         bad = [(one["seed"], fault) for one in found for fault in one["faults"] if fault[0] == word]
         told = [(seed, " ".join(fault[2].split())[-300:]) for seed, fault in bad[:3]]
         note = "; ".join(f"scene {seed}: {words}" for seed, words in told)
-        out.append(Row(quantity, len(bad), "0", not bad, COMMAND, note))
+        out.append(Row(quantity, len(bad), "0", not bad, note))
     return out
-
-
-def _at_least(quantity: str, value: float, least: float, note: str = "") -> Row:
-    return Row(quantity, value, f"at least {least:g}", value >= least, COMMAND, note)

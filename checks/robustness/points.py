@@ -11,7 +11,6 @@ import raceway as rw
 from checks.robustness import Row, below
 from checks.validation.columns import compare
 
-COMMAND = "python -m checks points"
 _MANY, _BLOCK = 10**7, 100_000
 #: Of a worker: pages of a block's arrays stay with the process, see docs/points.md.
 _MEMORY = {"MALLOC_MMAP_THRESHOLD_": 2**25, "MALLOC_TRIM_THRESHOLD_": 2**28}
@@ -87,9 +86,8 @@ def _by_dask(point: float) -> list[Row]:
             "1e7 points by dask on two processes: processor time over that of one process",
             round(cpu / (_MANY * point), 3),
             1.1,
-            COMMAND,
         ),
-        below("memory of a worker [GB]", round(1024e-9 * after.ru_maxrss, 3), 2.0, COMMAND),
+        below("memory of a worker [GB]", round(1024e-9 * after.ru_maxrss, 3), 2.0),
     ]
 
 
@@ -111,7 +109,7 @@ def rows() -> list[Row]:
         ("friction torque of 1e5 points on top of their equilibria [%]", lambda: _on_top("torque_nm"), 20.0),
         ("a warm point over a cold one in a batch", _warm_over_cold, 8.0),
     ]  # fmt: skip
-    out += [below(quantity, round(measure(), 3), bound, COMMAND) for quantity, measure, bound in cases]
+    out += [below(quantity, round(measure(), 3), bound) for quantity, measure, bound in cases]
     two_columns = {key: loads[key] for key in ("load.axial", "kinematics.spin_speed_rpm")}
     return out + _by_dask(seconds(STATIC, ["kyy"], two_columns, 10**6) / 10**6)
 
@@ -123,6 +121,5 @@ def _equality() -> Row:
         "largest difference from runs, bearings, sets, laws, tilts, growth, moments",
         float(f"{compared.worst:.1e}"),
         1e-9,
-        COMMAND,
         note,
     )

@@ -21,7 +21,6 @@ from raceway.extend import resolve
 from raceway.planning.parts import timed
 from raceway.plugins.bodies.elastic import elastic_cost
 
-COMMAND = "python -m checks speed"
 _LOADS = {"load.axial": (300.0, 2000.0), "load.radial[0]": (0.0, 200.0), "kinematics.spin_speed_rpm": (1000.0, 24_000.0)}
 _MOTIONS = {"load.axial": (600.0, 2000.0), "excitation.speed_rpm": (3000.0, 15_000.0)}
 _LOAD = {"load": {"axial": 1000.0}}
@@ -101,4 +100,4 @@ def rows() -> list[Row]:
             ("a warm one [CPU-s]", warm, 0.6),
             *_explicit_steps(),
         ]  # fmt: skip
-    return [below(quantity, float(f"{value:.3g}"), target, COMMAND) for quantity, value, target in measured]
+    return [below(quantity, float(f"{value:.3g}"), target) for quantity, value, target in measured]

@@ -14,7 +14,6 @@ import raceway as rw
 from checks.robustness import Row, below
 from raceway.answers.quantities import IDENTIFIED
 
-COMMAND = "python -m checks types"
 ROOT = Path(__file__).parents[2]
 
 HEAD = """
@@ -80,11 +79,11 @@ def rows() -> Iterator[Row]:
     errors = [row for row in found if row["severity"] == "error"]
     unknown = [text for text in revealed if text in ("Any", "Unknown")]
     shown = f"{len(revealed)} revealed: {'; '.join(dict.fromkeys(revealed))}"
-    yield below("expressions of a user's script whose type is Any or unknown", len(unknown), 0, COMMAND, shown)
+    yield below("expressions of a user's script whose type is Any or unknown", len(unknown), 0, shown)
     early = [row["message"] for row in errors if row["range"]["start"]["line"] + 1 < first_wrong]
-    yield below("errors in lines that are right", len(early), 0, COMMAND, "; ".join(early))
+    yield below("errors in lines that are right", len(early), 0, "; ".join(early))
     late = len(errors) - len(early)
-    yield Row("errors in three wrong lines: a type, two names", late, "3", late == 3, COMMAND)
+    yield Row("errors in three wrong lines: a type, two names", late, "3", late == 3)
     yield from _completion()
 
 
@@ -100,13 +99,9 @@ def _completion() -> Iterator[Row]:
         sorted(set(rw.__all__) - names("rw.")),
         sorted({"K", "C", "Z", *(q.name for q in IDENTIFIED)} - names("result.")),
     ]
-    yield below("public names that jedi does not offer after `rw.`", len(missing[0]), 0, COMMAND, ", ".join(missing[0]))
-    yield below(
-        "symbols of identified quantities not offered after `result.`", len(missing[1]), 0, COMMAND, ", ".join(missing[1])
-    )
+    yield below("public names that jedi does not offer after `rw.`", len(missing[0]), 0, ", ".join(missing[0]))
+    yield below("symbols of identified quantities not offered after `result.`", len(missing[1]), 0, ", ".join(missing[1]))
     code = HEAD + "rw.run("
     signatures = jedi.Script(code, project=project).get_signatures()
     shown = signatures[0].to_string() if signatures else "none"
-    yield Row(
-        "signature of `rw.run(` by jedi", shown, "names `scene` and `out`", "scene" in shown and "out" in shown, COMMAND
-    )
+    yield Row("signature of `rw.run(` by jedi", shown, "names `scene` and `out`", "scene" in shown and "out" in shown)

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from checks.robustness import Row, below
 
-COMMAND = "python -m checks words"
 ROOT = Path(__file__).parents[2]
 #: Pages whose length follows from the program or from measurements.
 _NOT_FOR_USERS = ("CHANGELOG.md", "CONTRIBUTING.md", "docs/command_line.md", "docs/scene.md", "docs/glossary.md")
@@ -62,8 +61,8 @@ def rows() -> Iterator[Row]:
     users = {name: words for name, words in pages.items() if not name.startswith(_NOT_FOR_USERS)}
     longest = max(users, key=users.__getitem__)
     long = ", ".join(f"{name} {words}" for name, words in sorted(users.items(), key=lambda page: -page[1]) if words > 1500)
-    yield below("words of Markdown", sum(pages.values()), 55000, COMMAND)
-    yield below("words of the README", pages["README.md"], 800, COMMAND)
-    yield below("words of the longest page for users", users[longest], 1500, COMMAND, long)
+    yield below("words of Markdown", sum(pages.values()), 55000)
+    yield below("words of the README", pages["README.md"], 800)
+    yield below("words of the longest page for users", users[longest], 1500, long)
     terms = private_terms()
-    yield below("private terms in documents, help and sentences", len(terms), 0, COMMAND, "; ".join(terms[:20]))
+    yield below("private terms in documents, help and sentences", len(terms), 0, "; ".join(terms[:20]))

@@ -9,7 +9,7 @@ from checks import reports as files
 from checks.claims import Claim, claims_into
 from checks.night import changes
 from checks.reports import CHOSEN, chosen
-from checks.robustness import below, near, show
+from checks.robustness import above, below, show
 
 REPORTS = files.read()
 
@@ -74,12 +74,12 @@ def test_blocks_are_replaced_whole_and_unknown_ones_refused():
 
 
 def test_rows_judge():
-    assert near("k", 1.004, 1.0, 0.005, "c").ok and not near("k", 1.006, 1.0, 0.005, "c").ok
-    assert below("e", 1e-10, 1e-9, "c").ok and not below("e", float("nan"), 1e-9, "c").ok
+    assert above("k", 1.0, 1.0).ok and not above("k", float("nan"), 1.0).ok
+    assert below("e", 1e-10, 1e-9).ok and not below("e", float("nan"), 1e-9).ok
 
 
 def test_rows_on_the_screen_end_with_a_verdict(capsys):
-    rows = {"good": [below("e", 1.0, 2.0, "c")], "bad": [below("e", 3.0, 2.0, "c")]}
+    rows = {"good": [below("e", 1.0, 2.0)], "bad": [below("e", 3.0, 2.0)]}
     assert [show(asked, ["good", "bad"], rows.__getitem__) for asked in (["good"], [], ["other"])] == [0, 1, 2]
     told = capsys.readouterr()
     assert "NO  bad: e: 3.0 (at most 2)" in told.out and "nothing is called other; there are good, bad" in told.err
