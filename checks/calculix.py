@@ -24,8 +24,6 @@ HOLD = 5.0
 class CalculixRun:
     """What a run cost and said.
 
-    Attributes
-    ----------
     cpu : seconds of all threads;  memory : peak [bytes]
     iterations : of Newton, in all increments
     reaction : (3,) total force on the printed set [N];  peak_pressure : largest contact pressure [Pa]
@@ -43,8 +41,6 @@ class CalculixRun:
 class Deck:
     """Lines of an input file: bodies, sets, contact pairs.
 
-    Parameters
-    ----------
     bodies : body -> mesh [m];  young [Pa], poisson : of all bodies
     element : "C3D8", "C3D8R" or "C3D8I"
     """
@@ -181,12 +177,8 @@ def run(deck: str, seconds: float = 3600.0) -> CalculixRun:
 
 
 def _watched(process: subprocess.Popen[bytes], seconds: float) -> int:
-    """Peak memory [bytes] of a process that is waited for; 0 where the system does not tell.
-
-    Notes
-    -----
-    getrusage would not do: before a child has loaded its program, it counts the memory of its parent.
-    """
+    """Peak memory [bytes] of a process that is waited for; 0 where the system does not tell.  getrusage would not do: before
+    a child has loaded its program, it counts the memory of its parent."""
     status, peak, end = Path(f"/proc/{process.pid}/status"), 0, time.monotonic() + seconds
     while process.poll() is None:
         if time.monotonic() > end:

@@ -7,12 +7,8 @@ from typing import Any
 
 
 def in_child(function: Callable[..., Any], *given: Any, limit_s: float = 120.0) -> Any:
-    """What it returns; or in words which signal or exception ended it, or that it did not end.
-
-    Notes
-    -----
-    The child is forked: it has the modules and the compiled kernels of this process, and its own copy of everything else.
-    """
+    """What it returns; or in words which signal or exception ended it, or that it did not end.  The child is forked: it has
+    the modules and the compiled kernels of this process, and its own copy of everything else."""
     context = multiprocessing.get_context("fork")
     here, there = context.Pipe(duplex=False)
     process = context.Process(target=_answer, args=(there, function, given))

@@ -32,8 +32,6 @@ _TIMES = {"s", "CPU s", "ms", "us"}
 class Claim:
     """One row of a report.
 
-    Attributes
-    ----------
     quantity, value, unit : what was computed
     low, high : its limits; None where there is none at that end
     basis, source : what the limits rest on: one of ``BASES``, and where it stands or why the tolerance is what it is
@@ -65,13 +63,7 @@ class Claim:
 def limits_of(
     near: float | None, within: float | None, at_least: float | None, at_most: float | None
 ) -> tuple[float | None, float | None]:
-    """Both ends; ``within`` is relative to ``near``.
-
-    Raises
-    ------
-    TypeError
-        No limit, or both ways at once.
-    """
+    """Both ends; ``within`` is relative to ``near``.  TypeError: no limit, or both ways at once."""
     if (near is None) != (within is None) or (near is not None) == (at_least is not None or at_most is not None):
         raise TypeError("a claim has `near` with `within`, or `at_least`, `at_most` or both")
     if near is None or within is None:

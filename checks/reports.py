@@ -129,11 +129,8 @@ def write_pages(folder: Path = FOLDER) -> None:
 
 def page(data: dict[str, Any]) -> str:
     """The page of a report."""
-    return "\n".join([f"# {data['title']}", "", table(data), "", _origin(data), ""])
-
-
-def _origin(data: dict[str, Any]) -> str:
-    return f"`{data['command']}`, {data['seconds']} s, commit {data['commit']}, {data['date']}; machine: JSON file."
+    origin = f"`{data['command']}`, {data['seconds']} s, commit {data['commit']}, {data['date']}; machine: JSON file."
+    return "\n".join([f"# {data['title']}", "", table(data), "", origin, ""])
 
 
 def table(data: dict[str, Any]) -> str:
@@ -183,10 +180,6 @@ def holds(row: dict[str, Any]) -> bool:
     return not row["misses"]
 
 
-def _yes(good: bool) -> str:
-    return "yes" if good else "**no**"
-
-
 def shown(value: float | str | None) -> str:
     """A value with four significant digits; whole numbers and text as they are."""
     if isinstance(value, float):
@@ -228,13 +221,8 @@ def misses(reports: dict[str, dict[str, Any]], links: str = "") -> str:
 
 
 def chosen(block: str, reports: dict[str, dict[str, Any]], links: str) -> str:
-    """The rows of a block as a Markdown table; ``links`` is the folder of the reports as seen from the document.
-
-    Raises
-    ------
-    KeyError
-        A report or a row that is not there, or, for README, one that rests on ourselves.
-    """
+    """The rows of a block as a Markdown table; ``links`` is the folder of the reports as seen from the document.  KeyError:
+    a report or a row that is not there, or, for README, one that rests on ourselves."""
     cells = []
     for name, quantity, words in CHOSEN[block]:
         rows = [row for row in reports[name]["rows"] if row["quantity"] == quantity]
@@ -245,7 +233,7 @@ def chosen(block: str, reports: dict[str, dict[str, Any]], links: str) -> str:
             raise KeyError(f"README shows {', '.join(OUTSIDE)}, and {quantity!r} is {row['basis']}")
         value = f"{row['value']:.6g}" if isinstance(row["value"], float) and row["value"] > 100 else shown(row["value"])
         link = f"[{name}]({links}{name}.json)"
-        cells.append((words, value, limits(row["low"], row["high"]), _yes(holds(row)), link))
+        cells.append((words, value, limits(row["low"], row["high"]), "yes" if holds(row) else "**no**", link))
     return _markdown(("what", "number", "limit", "holds", "report"), cells)
 
 
@@ -253,10 +241,7 @@ def render(text: str, reports: dict[str, dict[str, Any]], links: str = "docs/rep
     """A document's text with every block made anew: ``evidence:summary`` is the table of reports, ``evidence:misses`` that of rows
     outside their limits, the blocks of ``CHOSEN`` show rows of several reports, all others a report.
 
-    Raises
-    ------
-    KeyError
-        A block that names a report which is not on disk.
+    KeyError: a block that names a report which is not on disk.
     """
 
     def block(match: re.Match[str]) -> str:

@@ -4,10 +4,7 @@ import json
 import os
 import signal
 import sqlite3
-import subprocess
-import sys
 import threading
-import time
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -16,7 +13,7 @@ import numpy as np
 import pytest
 
 import raceway as rw
-from checks.validation.command_line import PATIENCE_S, invoke
+from checks.validation.command_line import invoke
 from checks.validation.scenes import built_in
 from raceway.extend import COLUMNS, Lost, open_store, tables_at
 from raceway.planning.parts import slowness
@@ -171,39 +168,6 @@ def test_a_block_whose_worker_dies_is_run_point_by_point(tmp_path: Path, small: 
     assert swept.status.values.tolist() == ["run"] * 10 + ["computed"] * 2
     np.testing.assert_allclose(swept.p0, whole.p0, rtol=1e-9)
     assert filled(tmp_path / "s", design, resume=True).equals(swept)  # runs beside blocks stay
-
-
-@pytest.mark.slow
-def test_a_sweep_that_is_killed_goes_on_with_its_blocks(tmp_path: Path) -> None:
-    tables = tmp_path / "scene.toml"
-    tables.write_text(
-        'title = "t"\n[bearing]\npreset = "B7206C"\n[load]\naxial = 1.0\n[kinematics]\nspin_speed_rpm = 9000.0\n'
-    )
-    words = ["sweep", str(tables), "--grid", "load.axial=300:2000:400", "--grid", "kinematics.spin_speed_rpm=1000:24000:200"]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "raceway", *words, "--out", str(tmp_path / "s")], stdout=subprocess.DEVNULL
-    )
-    done, end = 0, time.monotonic() + PATIENCE_S
-    while not 0 < done < 80_000 and process.poll() is None and time.monotonic() < end:
-        time.sleep(0.02)
-        if (tmp_path / "s" / "points.sqlite").is_file():
-            try:
-                with open_store(tmp_path / "s") as store:
-                    done = store.status()["done"]
-            except rw.RacewayError:
-                continue  # it is being made
-    process.send_signal(signal.SIGKILL)
-    process.wait()
-    assert done > 0
-    shown = invoke(*words, "--out", str(tmp_path / "s"), "--resume")
-    assert shown.exit_code == 0 and "80000 points: 80000 done" in shown.output
-    axes = {
-        "load.axial": np.linspace(300.0, 2000.0, 400)[::37],
-        "kinematics.spin_speed_rpm": np.linspace(1000.0, 24000.0, 200)[::29],
-    }
-    with open_store(tmp_path / "s") as store:
-        some = store.to_xarray().sel(axes, method="nearest")
-    np.testing.assert_allclose(some.p0, rw.sweep(tables, axes).p0, rtol=1e-9)
 
 
 def test_ctrl_c_is_answered_by_the_end_of_a_block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

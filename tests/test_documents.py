@@ -75,10 +75,6 @@ def runs(page: Path) -> bool:
     return any(listing.commands() or listing.language in ("python", "toml") for listing in LISTINGS[page])
 
 
-def marks(page: Path) -> list[pytest.MarkDecorator]:
-    return [pytest.mark.slow] * (page.stem in SLOW) + [pytest.mark.docs] * (page.stem in SLOW | SITE)
-
-
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """A folder as the root of a checkout looks to the commands."""
@@ -88,7 +84,16 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("page", [pytest.param(p, id=p.stem, marks=marks(p)) for p in PAGES if runs(p)])
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(
+            p, id=p.stem, marks=[pytest.mark.slow] * (p.stem in SLOW) + [pytest.mark.docs] * (p.stem in SLOW | SITE)
+        )
+        for p in PAGES
+        if runs(p)
+    ],
+)
 def test_commands_and_listings_run_in_their_order(page, folder):
     namespace = {}
     for listing in LISTINGS[page]:

@@ -341,10 +341,6 @@ def test_the_command_line_calls_the_same_function(command, called, module, monke
 # --- names
 
 
-def documented(name):
-    return rw if name in VALUES else getattr(rw, name)
-
-
 #: Names whose examples draw with pyvista: the same.
 DRAWN = {"view": [pytest.mark.needs("pyvista"), pytest.mark.slow], "View": [pytest.mark.needs("pyvista"), pytest.mark.slow]}
 
@@ -352,7 +348,7 @@ DRAWN = {"view": [pytest.mark.needs("pyvista"), pytest.mark.slow], "View": [pyte
 @pytest.mark.parametrize("name", [pytest.param(one, marks=DRAWN.get(one, ())) for one in rw.__all__])
 def test_a_public_name_has_words_and_an_example_that_runs(name, monkeypatch):
     monkeypatch.chdir(ROOT)
-    one = documented(name)
+    one = rw if name in VALUES else getattr(rw, name)
     text = inspect.getdoc(one) or ""
     assert len(text) > 40, f"{name} has no docstring"
     if name in VALUES:

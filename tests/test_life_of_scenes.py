@@ -53,10 +53,8 @@ def test_without_a_speed_there_are_no_hours_and_without_a_viscosity_no_modified_
 
 
 def test_the_static_safety_is_that_of_the_largest_pressure():
-    """(4200 MPa / p_max)^3 of steel where C0 is by the geometry.
-
-    The standard's steel has 207 GPa, this one 210, and p^3 goes with E^2; grooves are curved as at the nominal angle, 0.4 % in load.
-    """
+    """(4200 MPa / p_max)^3 of steel where C0 is by the geometry.  The standard's steel has 207 GPa, this one 210, and p^3
+    goes with E^2; grooves are curved as at the nominal angle, 0.4 % in load."""
     result = rw.run(CASE_5)
     pressure = result.to_dict()["equilibrium"]["largest_pressure_pa"]
     expected = (4200e6 / pressure) ** 3 * (210.0 / 207.0) ** 2

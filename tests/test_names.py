@@ -59,17 +59,13 @@ def test_every_study_gives_one_name_one_number(free):
             "kyy_tilts_follow": content["equilibrium"]["kyy_tilts_follow_n_per_m"],
             "largest_ball_load": content["equilibrium"]["largest_ball_load_n"],
         },
-        "sweep": {"kyy_tilts_follow": float(free_sweep()["kyy_tilts_follow"].values[0])},
+        "sweep": {"kyy_tilts_follow": float(rw.sweep(FREE, {"load.axial": [400.0]})["kyy_tilts_follow"].values[0])},
     }
     for where, values in told.items():
         for name, value in values.items():
             assert value == pytest.approx(expected[name], rel=1e-12), (where, name)
     assert {*NAMES} <= set(told["sensitivities"]) <= set(told["tolerances"]) <= set(told["band"])
     assert "l10r_million_revolutions" in told["band"]
-
-
-def free_sweep():
-    return rw.sweep(FREE, {"load.axial": [400.0]})
 
 
 def test_with_locked_tilts_there_is_no_kyy_whose_tilts_follow():

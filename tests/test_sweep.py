@@ -389,12 +389,6 @@ def test_a_worker_without_the_plugin_or_of_another_version_refuses(tmp_path):
         study(prepared, Elsewhere())
 
 
-@pytest.mark.slow
-def test_processes_give_the_same_rows(tmp_path):
-    design = grid(["excitation.speed_rpm=10980:15000:6"])
-    assert swept(tmp_path / "a", design) == swept(tmp_path / "b", design, Processes(workers=2))
-
-
 GROWN: list[bytes] = []
 
 

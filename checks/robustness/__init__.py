@@ -25,8 +25,6 @@ import attrs
 class Row:
     """One line of a report.
 
-    Attributes
-    ----------
     quantity : what was measured, with its unit
     value : the number, or a few numbers as text
     limit : what it is held against: an expected value with its tolerance, or a bound

@@ -113,8 +113,6 @@ def _completed(name: str, given: Tables, tables: Tables) -> Tables:
 def called(seed: int, folder: Path) -> tuple[str, str, list[list[str]]]:
     """Name of a function or method, how its call ended, and what is wrong with that.
 
-    Parameters
-    ----------
     folder : of the files that a scene may name; what is written falls below it
     """
     chance, names = Chance(seed), [*sorted(fronts()), *methods()]

@@ -132,8 +132,6 @@ def _below(table: str, kind: str, path: tuple[str, ...], schema: Tables) -> Iter
 def scene(seed: int, folder: Path, drawn: set[str] | None = None) -> Tables:
     """One scene; each key of the schema alone first, then examples with some keys, a third of them with one to four spoiled.
 
-    Parameters
-    ----------
     folder : of the files that a scene may name, see ``fill``;  drawn : the names of keys are put there
     """
     chance, keys = Chance(seed), scene_keys()

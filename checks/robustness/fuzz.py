@@ -62,13 +62,7 @@ def _done(out: Path) -> list[dict[str, Any]]:
 
 
 def _begun(out: Path) -> int:
-    """The scene at which a process ended.
-
-    Raises
-    ------
-    RuntimeError
-        It ended before the first one, or between two.
-    """
+    """The scene at which a process ended.  RuntimeError: it ended before the first one, or between two."""
     lines = list(_lines(out))
     if not lines or "begun" not in lines[-1]:
         raise RuntimeError("a process of the fuzz ended outside its scenes: see what it wrote on standard error")

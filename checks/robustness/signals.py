@@ -41,8 +41,6 @@ COMMANDS = {
 class Ended:
     """How a process ended.
 
-    Attributes
-    ----------
     number : signal that was sent;  after_s : so long after its handler was there;  lived : whether it was still at work
     lines : of standard error;  left : processes of its session after 5 s
     """

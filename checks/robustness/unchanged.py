@@ -34,8 +34,6 @@ _HERE = Path(__file__).parents[2]
 def rows(base: str = "") -> list[Row]:
     """A row for each scene.
 
-    Parameters
-    ----------
     base : commit to compare with; the last tag if empty
     """
     base = base or _git("describe", "--tags", "--abbrev=0")

@@ -114,8 +114,6 @@ def _has(scene: rw.Scene, key: str, ring_growth: bool) -> bool:
 class Comparison:
     """Points of random cases beside runs.
 
-    Attributes
-    ----------
     worst : largest relative difference of all numbers but the displacement;  moved : of that
     status : how many points are computed, run, refused or failed, and which a run does not solve, "ONLY_COMPUTED"
     seconds : processor time

@@ -19,10 +19,8 @@ _FRICTION = (*9 * (0.0,), 0.03, 0.1, 0.3)
 
 
 def crossed(number: int) -> tuple[Tables, Tables]:
-    """The same scene for two integrators: loads, speeds, masses and forces from linear response to lift-off.
-
-    With friction both begin differently.
-    """
+    """The same scene for two integrators: loads, speeds, masses and forces from linear response to lift-off.  With friction
+    both begin differently."""
     rng = np.random.default_rng(number)
 
     def decades(low: float, high: float) -> float:

@@ -91,13 +91,7 @@ CASES = (
 
 
 def orbit_value(tables: dict[str, Any]) -> tuple[complex, float]:
-    """Z of the steady orbit and its relative change from half as many times.
-
-    Raises
-    ------
-    ConvergenceError
-        No orbit found.
-    """
+    """Z of the steady orbit and its relative change from half as many times.  ConvergenceError: no orbit found."""
     model = model_of(tables)
     start = solve_equilibrium(model).displacement
     found = []

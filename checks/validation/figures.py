@@ -20,8 +20,6 @@ ROUNDING = 1e-9
 def outside(figure: Figure) -> list[str]:
     """What lies outside its axes, a line each; empty where all is seen.
 
-    Notes
-    -----
     Looked at are lines, collections and patches along each direction in which their points are data: a line across the whole
     axes has one such direction.  Angles of polar axes have no limits.
     """

@@ -77,14 +77,9 @@ def rolled_by_regime(path: float) -> list[float]:
 def inlet_film(loading: float) -> float:
     """Film over the isothermal one by integration of the inlet, of a thermal loading L.
 
-    Notes
-    -----
     Grubin's inlet: beside a Hertz contact the gap is h = h0 (1 + z^1.5), the reduced pressure Q = 1 - e^(-alpha p) rises from 0 to
     1, and the flow that is turned back heats the oil, dQ/dz = A (H - 1) / H^3 / (1 + 0.5 F^0.85) with
     F = L / (1 - Q) ((H - 1) / H)^2.  A is proportional to h0^(-4/3) at one speed and load.
-
-    References
-    ----------
     Wilson, Sheu, J. Lubr. Technol. 105 (1983) 187, equations 1 to 3, for surfaces of one speed.
     """
 
@@ -106,12 +101,7 @@ def inlet_film(loading: float) -> float:
 def skf_reduction(speed_rpm: float, diameter: float, viscosity: float) -> float:
     """SKF's factor of the heat of the inlet in its friction moment.
 
-    Parameters
-    ----------
     diameter : mean, of bore and outside [m];  viscosity : kinematic, running [m2/s]
-
-    References
-    ----------
     SKF, Rolling bearings, general catalogue: phi_ish = 1 / (1 + 1.84e-9 (n d_m)^1.28 nu^0.64), n in r/min, d_m in mm, nu in mm2/s.
     """
     return float(1.0 / (1.0 + 1.84e-9 * (speed_rpm * 1e3 * diameter) ** 1.28 * (1e6 * viscosity) ** 0.64))
@@ -140,8 +130,6 @@ def pair(contact: dict[str, Any], kind: str, speed_rpm: float, inertia: bool = F
 def preload_by_hand(preload: float, factors: tuple[float, float], films: tuple[float, float]) -> float:
     """Force of two rows on each other [N] that were mounted dry under ``preload`` [N], with films that stand off [m].
 
-    Notes
-    -----
     Of balls without mass: F = Z Q sin(a), Q = K_n (s - B + h_i + h_o)^1.5 with the length s of the line of the groove centres,
     whose axial part the mounting holds.
     """
@@ -160,8 +148,6 @@ def preload_by_hand(preload: float, factors: tuple[float, float], films: tuple[f
 def springs(model: Any, equilibrium: Any) -> float:
     """kyy of the contacts' springs alone [N/m], of weightless balls: the tangent without the turn of the balls' forces.
 
-    Notes
-    -----
     A dashpot c = tau k damps with tau times this; the rest of the tangent, Q / s across the line of the groove centres, is
     prestress, which no dashpot has.
     """

@@ -48,8 +48,6 @@ FORCES: dict[str, dict[str, Any]] = {
 class Instance:
     """An FMU under fmpy; ``messages`` : what it has logged.
 
-    Parameters
-    ----------
     path : of the FMU;  exchange : for model exchange instead of co-simulation
     """
 
@@ -142,10 +140,8 @@ def force_difference(instance: Instance, scene: dict[str, Any], count: int = 60)
 
 
 def jeffcott(instance: Instance, scene: dict[str, Any], turns: int = 1, steps: int = 1440) -> float:
-    """Largest distance of a rotor's motion on the FMU's force from the orbit of ``raceway.run``, over its amplitude.
-
-    The classical method of Runge and Kutta from a point of the orbit and its velocity; tilts are locked.
-    """
+    """Largest distance of a rotor's motion on the FMU's force from the orbit of ``raceway.run``, over its amplitude.  The
+    classical method of Runge and Kutta from a point of the orbit and its velocity; tilts are locked."""
     result = rw.run(scene)
     orbit = result.to_xarray()
     motion, mass, speed = orbit["motion"].values, result.identification.mass_used, result.speed_rpm * np.pi / 30.0

@@ -35,8 +35,6 @@ ZONE, REACH = 1.3, 3.0
 class Groove:
     """The quarter model under a load.
 
-    Attributes
-    ----------
     load : of the whole ball [N];  nodes : elements per semi-axis of the race
     ball, block : HexMesh;  system : ElasticSystem, its first unknown moves the ball's middle plane
     penalty : stiffness of the penalty [N/m3]
@@ -58,8 +56,6 @@ class Groove:
 class Answer:
     """What a solution comes to, all of the whole ball.
 
-    Attributes
-    ----------
     cells, newton, linear : elements and iterations
     approach [m];  reaction [N];  penalty_share : of the approach, by the mean overlap weighted with pressure
     peak_points, peak_nodes : largest pressure at a quadrature point, and at a node [Pa]
@@ -106,8 +102,6 @@ def model(
 ) -> Groove:
     """The model at a load [N] with so many elements per semi-axis; ``mesh``: see ``meshes``.
 
-    Parameters
-    ----------
     prescribed : whether the first unknown keeps the value that a state gives it, and no load acts
     """
     ball, block = meshes(load, nodes, **mesh)

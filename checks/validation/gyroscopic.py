@@ -15,13 +15,8 @@ def harris_ball(
 ) -> tuple[float, float, float, float, float, np.ndarray]:
     """Load and angle of both races, moment and place of a ball from Harris' two balances, by MINPACK's hybrid method.
 
-    Parameters
-    ----------
     e : (2,) from the outer race's groove centre to the inner one's, axial and radial [m]
     start : (2,) from the outer race's groove centre to the ball [m]
-
-    Notes
-    -----
     Q_i sin a_i - Q_o sin a_o - M/D (l_i cos a_i - l_o cos a_o) = 0,
     Q_i cos a_i - Q_o cos a_o + M/D (l_i sin a_i - l_o sin a_o) + F_c = 0 with
     M = J w_R w_c sin(beta), tan(beta) = sin(a_o) / (cos(a_o) + D/d_m)
@@ -64,8 +59,6 @@ def harris_ball(
 def axial_displacement(model: Model, hypothesis: str, start: np.ndarray, between: tuple[float, float]) -> float:
     """Axial displacement [m] at which Harris' balls carry a purely axial load; it lies between the two ends.
 
-    Parameters
-    ----------
     start : (2,) from the outer race's groove centre to a ball, a guess [m]
     """
     share = SHARES[hypothesis][0] / model.geometry.ball_diameter

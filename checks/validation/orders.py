@@ -30,10 +30,8 @@ def order(steps: np.ndarray, errors: np.ndarray) -> float:
 
 
 def oscillator(damping_ratio: float) -> tuple[System, float, float]:
-    """A linear system without contacts, its natural frequency w0 [rad/s] and excitation speed [rad/s].
-
-    One ball far from both races, so that only the linear parts act: y'' + 2 D w0 y' + w0^2 y = F cos(W t) / m.
-    """
+    """A linear system without contacts, its natural frequency w0 [rad/s] and excitation speed [rad/s].  One ball far from
+    both races, so that only the linear parts act: y'' + 2 D w0 y' + w0^2 y = F cos(W t) / m."""
     tables = rotating(1.0, "locked", 12000.0, False, "newmark")
     tables["bearing"] = {
         "ball_diameter": 0.01, "pitch_diameter": 0.1, "ball_count": 1, "conformity_inner": 0.6, "conformity_outer": 0.6,

@@ -22,13 +22,8 @@ def half_line(zone: float, length: float, fine: float, coarse: float, growth: fl
 def quarter_ball(radius: float, across: np.ndarray, along: np.ndarray, up: np.ndarray, layers: np.ndarray) -> HexMesh:
     """The quarter x > 0, y > 0 of the lower half of a ball.
 
-    Parameters
-    ----------
     across, along, up : (n,) points 0 to 1: lines of the cube in x, y and z at equal angles, 1 at 45 degrees
     layers : (n,) points 0 to 1 from the inner cube to the surface
-
-    Notes
-    -----
     Sets of facets and nodes: surface, middle (z = 0), side_x (x = 0), side_y (y = 0).
     """
     u, v, w = (np.concatenate([-line[:0:-1], line]) for line in (across, along, up))
@@ -56,15 +51,10 @@ def quarter_groove(
 ) -> HexMesh:
     """The quarter x > 0, y > 0 of a block below a groove that touches the ball at (0, 0, -ball_radius).
 
-    Parameters
-    ----------
     groove, rolling : radius of the groove, and of its bottom about the axis of the ring [m]
     across : (n,) angles of points on the groove from its bottom [rad]
     along : (n,) angles about the ring's axis [rad]
     depth : (n,) distances below the groove's bottom [m]
-
-    Notes
-    -----
     Sets of facets and nodes: raceway, base, side_x (x = 0), side_y (y = 0).
     """
     circle = rolling + groove

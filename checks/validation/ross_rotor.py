@@ -83,8 +83,6 @@ def at_points(element: Any, found: Any) -> dict[str, float]:
 def rigid_rotor(ross: Any, found: Any) -> tuple[float, float]:
     """Critical speed [rad/s] by ROSS and by the closed form, for a symmetric rotor that does not bend.
 
-    Notes
-    -----
     M w^2 = 2 K(w) at the critical speed, K between the points as ROSS takes it.  The shaft is of a material a thousand times
     stiffer than steel: its own bending lowers the speed by some 1e-5.
     """

@@ -15,10 +15,8 @@ DIGITS = 5.1e-10
 
 
 def entries(text: str) -> list[tuple[str, list[str]]]:
-    """Bulk data by fixed fields: (name, fields behind the name), continuations joined.
-
-    Fields of 8 characters, or of 16 where the name or the continuation ends with *; the tenth field joins lines and is empty.
-    """
+    """Bulk data by fixed fields: (name, fields behind the name), continuations joined.  Fields of 8 characters, or of 16
+    where the name or the continuation ends with *; the tenth field joins lines and is empty."""
     found: list[tuple[str, list[str]]] = []
     for line in text.splitlines():
         if line.startswith("$"):

@@ -22,8 +22,6 @@ AXIAL = 2000.0  # N
 class Compared:
     """Ours and ROSS's, columns (n, 2).
 
-    Attributes
-    ----------
     frequencies : first three of forward whirl at the rig's first speed [rad/s]
     responses : amplitudes at the tested bearing and at the sensor, at the rig's speeds [m]
     """
@@ -38,19 +36,15 @@ class Compared:
 
 
 def compared() -> Compared:
-    """Both models at the rig's speeds.
-
-    Raises
-    ------
-    RacewayError
-        ROSS is missing.
-    """
+    """Both models at the rig's speeds.  RacewayError: ROSS is missing."""
     rig = rig_of(load_scene(EXAMPLES / "test_rig.toml"))
     line = shaft(rig)
     theirs, bearings = _in_ross(rig, line)
     speeds = np.array(rig.speeds_rpm) * pi / 30.0
     side = 1.0 if rig.arrangement == "DB" else -1.0
-    held = [_stiffness(bearings[0], speed) for speed in speeds]
+    held = [
+        np.asarray(bearings[0].node_bearing.dynamic_stiffness(speed, speed).real[np.ix_([1, 4], [1, 4])]) for speed in speeds
+    ]
     standing = line.stiffness.copy()
     for place, sign in zip(rig.bearings, (side, -side), strict=True):
         k, turn = 2 * line.node(place), np.diag([1.0, sign])
@@ -77,11 +71,6 @@ def forward_whirl(line: Beam, spin: float) -> np.ndarray:
     companion = np.block([[np.zeros((size, size)), np.eye(size)], [inverse @ line.stiffness, spin * inverse @ line.polar]])
     values = np.linalg.eigvals(companion)
     return np.sort(values.real[values.real > 0.0])
-
-
-def _stiffness(bearing: Any, speed: float) -> np.ndarray:
-    """(2, 2) of force and moment by deflection and slope."""
-    return np.asarray(bearing.node_bearing.dynamic_stiffness(speed, speed).real[np.ix_([1, 4], [1, 4])])
 
 
 def _in_ross(rig: Any, line: Beam) -> tuple[Any, list[Any]]:

@@ -11,14 +11,9 @@ def record(
 ) -> dict[str, np.ndarray]:
     """Force and displacement of a system that begins at rest under a sum of sines, each with white noise.
 
-    Parameters
-    ----------
     stiffness, damping, mass : [N/m, N s/m, kg]
     noise_db : rms of a signal over that of its noise, of force and displacement alike
     lines : sines of 10 N at frequencies that are no lines of the record's transform
-
-    Returns
-    -------
     dict : time_s, force_n, x_m, (n,) each
     """
     random = np.random.default_rng(seed)
@@ -44,8 +39,6 @@ def record(
 def turning_record(stiffness: np.ndarray, damping: np.ndarray, mass: float, seed: int) -> dict[str, np.ndarray]:
     """Periodic forces along y and z and their displacements, with 40 dB of noise each.
 
-    Parameters
-    ----------
     stiffness, damping : (2, 2) [N/m, N s/m]
     """
     random = np.random.default_rng(seed)
@@ -62,10 +55,8 @@ def turning_record(stiffness: np.ndarray, damping: np.ndarray, mass: float, seed
 
 
 def hammer_record(stiffness: float, damping: float, mass: float, seed: int, pulses: int = 4) -> dict[str, np.ndarray]:
-    """Half-sine pulses of 0.25 to 0.45 ms and the displacement, sampled without a filter, with 40 dB of noise each.
-
-    The state goes exactly through a force that is linear between times 64 times as dense as the samples.
-    """
+    """Half-sine pulses of 0.25 to 0.45 ms and the displacement, sampled without a filter, with 40 dB of noise each.  The
+    state goes exactly through a force that is linear between times 64 times as dense as the samples."""
     from scipy.signal import cont2discrete, lfilter, ss2tf
 
     random, dense = np.random.default_rng(seed), 64

@@ -34,10 +34,8 @@ U
 
 
 def squeezed(formulation, folder):
-    """What CalculiX prints on the screen; displacement (3,) of the corner far from the held one; the exact one.
-
-    Uniform strain p (1 - 2 nu) / E is exact in an element of any formulation.
-    """
+    """What CalculiX prints on the screen; displacement (3,) of the corner far from the held one; the exact one.  Uniform
+    strain p (1 - 2 nu) / E is exact in an element of any formulation."""
     assert shutil.which("ccx"), "CalculiX is not installed: apt-get install calculix-ccx, or the line of make apt-line"
     mesh = block()
     far = len(mesh.points) - 1

@@ -83,10 +83,8 @@ def overhead(count: int = 400) -> dict[str, float]:
 
 
 def quiet(patience: float = 2.0) -> bool:
-    """Whether nobody else works on this machine: its processors idle while this process sleeps.
-
-    The load average would still count this program's own last minutes.
-    """
+    """Whether nobody else works on this machine: its processors idle while this process sleeps.  The load average would
+    still count this program's own last minutes."""
     (idle, total), _ = _processor_time(), time.sleep(patience)
     idle_then, total_then = _processor_time()
     return idle_then - idle > (1.0 - _BUSY) * (total_then - total)
@@ -105,12 +103,8 @@ def rows_of(store: Path) -> list[Any]:
 
 
 def killed(times: int = 20, count: int = 120, seed: int = 8) -> dict[str, int]:
-    """Sweeps that are killed (SIGKILL) at random moments and then gone on with: how many equal the undisturbed one.
-
-    Notes
-    -----
-    The moment is drawn between the first finished chain and about the last; every fourth sweep uses two processes.
-    """
+    """Sweeps that are killed (SIGKILL) at random moments and then gone on with: how many equal the undisturbed one.  The
+    moment is drawn between the first finished chain and about the last; every fourth sweep uses two processes."""
     draw = random.Random(seed)
     found = {"killed": 0, "equal": 0, "unreadable": 0, "lost": 0, "orphans": 0}
     with tempfile.TemporaryDirectory() as folder:

@@ -68,11 +68,6 @@ def install_line() -> str:
     return f"apt-get install -y --no-install-recommends {packages[1]}"
 
 
-def everything_is_tested() -> bool:
-    """Whether what is missing is a failure, as in continuous integration."""
-    return os.environ.get("CI") == "true" or os.environ.get("RACEWAY_TEST_ALL") == "1"
-
-
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Before any fixture: a test whose needs are missing is skipped, or fails."""
@@ -81,7 +76,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
     if not lacking:
         return
     reason = _REASON + ", ".join(lacking)
-    if everything_is_tested():
+    if os.environ.get("CI") == "true" or os.environ.get("RACEWAY_TEST_ALL") == "1":
         why = "; ".join(missing(name) for name in dict.fromkeys(names) if missing(name))
         pytest.fail(f"{reason} ({why}). As root: {install_line()}", pytrace=False)
     pytest.skip(reason)

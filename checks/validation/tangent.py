@@ -54,12 +54,8 @@ def asymmetry(matrix: np.ndarray, arm: float) -> float:
 
 
 def deviation(model: Model, q: np.ndarray, ball: np.ndarray) -> float:
-    """Largest difference to central differences over the largest entry, smallest over a few step lengths.
-
-    Notes
-    -----
-    Differences of fourth order; too long a step bends over the opening of a contact, too short a one drowns in rounding.
-    """
+    """Largest difference to central differences over the largest entry, smallest over a few step lengths.  Differences of
+    fourth order; too long a step bends over the opening of a contact, too short a one drowns in rounding."""
     arm = model.system.arm
     weight = np.array([1.0, 1.0, 1.0, 1.0 / arm, 1.0 / arm])
     tangent = model.system.evaluate(q, ball=ball).stiffness * weight[:, None] * weight

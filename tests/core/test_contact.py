@@ -150,10 +150,8 @@ YOUNG, NU = 212e9, 0.29
 
 
 def displacement(a, b, along):
-    """Of the centre [m] under the no-slip traction of 1 N: u = 1 / (2 pi G) int q ((1 - nu) / s + nu cos^2 / s) dA.
-
-    Along a ray of length R(theta) the traction q0 / sqrt(1 - s^2 / R^2) integrates to q0 pi R / 2, with q0 = 1 / (2 pi a b).
-    """
+    """Of the centre [m] under the no-slip traction of 1 N: u = 1 / (2 pi G) int q ((1 - nu) / s + nu cos^2 / s) dA.  Along a
+    ray of length R(theta) the traction q0 / sqrt(1 - s^2 / R^2) integrates to q0 pi R / 2, with q0 = 1 / (2 pi a b)."""
 
     def ray(theta):
         length = 1.0 / np.hypot(np.cos(theta) / a, np.sin(theta) / b)

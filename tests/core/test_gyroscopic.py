@@ -184,8 +184,6 @@ SPEED_RPM = 12000.0
 def linear(stiffness: np.ndarray, model, polar: float, whirl: float) -> complex:
     """Z [N/m] of a force that turns with ``whirl`` times the speed, on the tangent of the equilibrium.
 
-    Notes
-    -----
     The axis of a ring tilted by (theta_y, theta_z) points along (1, theta_z, -theta_y).  Its angular momentum is
     I_p W (1, theta_z, -theta_y) + I_t (0, theta_y', theta_z'), whose rate is the moment on the ring: +I_p W theta_z' about y
     and -I_p W theta_y' about z.

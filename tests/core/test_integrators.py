@@ -50,35 +50,12 @@ def test_generalized_alpha_removes_what_is_too_fast_for_the_step():
     assert left["generalized_alpha"] < 1e-6
 
 
-@pytest.mark.parametrize("integrator", [*INTEGRATORS, "quasi_static"])
-def test_restart_equals_going_on(integrator):
-    """Two halves joined by the first's final motion are the whole, but for the clock's rounding and the steps' tolerance."""
-    model = model_of(rotating(1000.0, "locked", 12000.0, True, integrator))
-    now = solve_equilibrium(model)
-    method, steps = model.scene.integrator.method, 360
-    period = model.excitation.period_s
-    start = at_rest(model.system, now.displacement, now.ball, False)
-    whole = integrate(method, model.system, start, Schedule(period / steps, steps, 2))
-    half = integrate(method, model.system, start, Schedule(period / steps, steps, 1))
-    rest = integrate(method, model.system, half.final, Schedule(period / steps, steps, 1))
-    assert half.displacement == pytest.approx(whole.displacement[:steps], abs=1e-18)
-    # 1e-8: the tolerance of a step's iteration; quasi_static starts its second half without an extrapolation.
-    size = np.abs(whole.displacement[:, 1]).max()
-    assert np.abs(rest.displacement - whole.displacement[steps:])[:, :3].max() <= 1e-8 * size
-
-
 @pytest.mark.parametrize("integrator", ["newmark", "generalized_alpha"])
 def test_forces_of_a_smooth_motion_are_asked_for_once_a_step(integrator):
     """The tangent and the extrapolation of what it leaves foretell them within a step's tolerance; the rest are first steps."""
     model = model_of(rotating(1000.0, "locked", 12000.0, True, integrator))
     record = simulate(model, solve_equilibrium(model)).whole
     assert 1.0 <= record.counts["evaluations"] / record.counts["steps"] <= 1.1
-
-
-def test_same_answer_twice():
-    model = model_of(rotating(400.0, "free", 15000.0, True, "newmark"))
-    now = solve_equilibrium(model)
-    assert (simulate(model, now).whole.displacement == simulate(model, now).whole.displacement).all()
 
 
 def test_stable_limit_is_where_central_differences_blow_up():

@@ -132,10 +132,8 @@ def test_what_rollers_cannot_do_is_refused_by_its_key(table, keys, path):
 
 
 def of_standard(shift, misalignment, clearance, azimuth, laminae=30, crown=0.00035, length=LENGTH, diameter=9e-3):
-    """Radial force [N] along y and moment [N m] of ISO/TS 16281: q = c_s delta^(10/9), delta_jk = delta_j - x_k tan(psi_j) - 2 P(x_k).
-
-    In mm and N: c_s = 35948 L^(8/9) / n, P(x) = 0.00035 D ln[1 / (1 - (2 x / L)^2)].
-    """
+    """Radial force [N] along y and moment [N m] of ISO/TS 16281: q = c_s delta^(10/9), delta_jk = delta_j - x_k tan(psi_j) -
+    2 P(x_k).  In mm and N: c_s = 35948 L^(8/9) / n, P(x) = 0.00035 D ln[1 / (1 - (2 x / L)^2)]."""
     x = ((np.arange(laminae) + 0.5) / laminae - 0.5) * 1e3 * length
     profile = -crown * 1e3 * diameter * np.log(1.0 - (2.0 * x / (1e3 * length)) ** 2)
     cosine = np.cos(azimuth)[:, None]

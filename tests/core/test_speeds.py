@@ -31,12 +31,8 @@ SPINNING = {"polar_inertia": 8.05e-3, "transverse_inertia": 4.1e-3}
 
 
 def linear(result, spin_rpm, whirl_rpm):
-    """Z [N/m] of a force that turns with the whirl speed on the tangent: ring and rotor with their gyroscopic moments.
-
-    Notes
-    -----
-    +I_p W theta_z' about y and -I_p W theta_y' about z, see ``test_rotor_moments``; the rotor's dashpot acts on translations.
-    """
+    """Z [N/m] of a force that turns with the whirl speed on the tangent: ring and rotor with their gyroscopic moments.  +I_p
+    W theta_z' about y and -I_p W theta_y' about z, see ``test_rotor_moments``; the rotor's dashpot acts on translations."""
     model, w = result.model, whirl_rpm * np.pi / 30.0
     free = 3 if model.scene.supports.tilt == "locked" else 5
     rates = np.zeros((5, 5))
@@ -53,8 +49,6 @@ def linear(result, spin_rpm, whirl_rpm):
 def test_fit_is_that_of_the_linear_model(built, integrator, tilt):
     """2 N on 1000 N, spin 9000 r/min: K, C and misfit are those of the tangent, fitted in the same way, to 1 % of K.
 
-    Notes
-    -----
     m is ring and rotor.  With tilts locked Z is of this form: C is the dashpot's, K the tangent's.  With free tilts a rotor with
     polar inertia makes another Z of every whirl speed: the misfit is 20 % and more, and a warning says so.
     """
@@ -114,12 +108,8 @@ def test_error_of_a_fit_covers_its_distance_from_the_steady_motion(speeds):
 @pytest.mark.parametrize("speeds", [[11000.0, 15000.0], [11000.0, 12000.0, 13000.0, 14000.0, 15000.0]])
 @pytest.mark.parametrize("unbalance", [1e-4, 3.2e-4])
 def test_fit_does_not_take_what_balls_and_amplitude_change_for_mass(speeds, unbalance):
-    """400 N, 2 kg, 11 000 to 15 000 r/min: m was 53 kg, K off by 69 %; what is off now, the error tells.
-
-    Notes
-    -----
-    K of the same turning force at one speed; the error is that of the amplitude, which falls and rises with the whirl.
-    """
+    """400 N, 2 kg, 11 000 to 15 000 r/min: m was 53 kg, K off by 69 %; what is off now, the error tells.  K of the same
+    turning force at one speed; the error is that of the amplitude, which falls and rises with the whirl."""
     more = {**ROTOR, "excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "unbalance": unbalance}}
     result = run(b7206c(**more, identifier={"kind": "impedance_fit", "speeds_rpm": speeds}))
     steady = run(b7206c(**more)).identification

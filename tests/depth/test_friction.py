@@ -98,12 +98,8 @@ def test_balls_balance_with_their_tangential_forces(built):
 
 
 def test_hysteresis_loop_of_an_axial_drive(built):
-    """Work of the ring over the second, closed cycle equals what the contacts lose; none without sliding.
-
-    Notes
-    -----
-    Axially every ball does the same.  0.2 %: trapezoids over 80 steps of a cycle.
-    """
+    """Work of the ring over the second, closed cycle equals what the contacts lose; none without sliding.  Axially every
+    ball does the same.  0.2 %: trapezoids over 80 steps of a cycle."""
     for friction, slides in ((0.001, True), (0.003, True), (0.5, False)):
         system, states = driven(built, friction)
         cycle = states[80:]

@@ -40,8 +40,6 @@ def test_unloaded_pair_has_twice_the_tangent_of_one_row(built, arrangement, prel
 def test_tilt_stiffness_by_hand(built, arrangement):
     """Each row's 5x5 tangent moved by its lever, mirrored for the second row.
 
-    Notes
-    -----
     A row at X whose tangent about its own centre has k_r, k_t and the coupling c = k[y, tilt_z] (k[z, tilt_y] = -c) sees
     y + X tilt_z, so about the middle k_tt = k_t + 2 X c + X^2 k_r.  The mirror image at -X has the coupling -c and
     adds the same.

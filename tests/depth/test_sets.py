@@ -156,13 +156,8 @@ def test_two_bearings_on_a_shaft():
     assert one.bearing.preset == "B7206C"
     model = build_model(one)
     now = solve_equilibrium(model)
-    alone = [settled_alone(preset).stiffness for preset in ("B7206C", "7206A")]
+    alone = [built("single", None, {"preset": preset}, load={"axial": 250.0})[1].stiffness for preset in ("B7206C", "7206A")]
     np.testing.assert_allclose(np.diag(now.stiffness)[:3], sum(np.diag(k)[:3] for k in alone), rtol=SAME)
-
-
-def settled_alone(preset):
-    """A single row under 250 N."""
-    return built("single", None, {"preset": preset}, load={"axial": 250.0})[1]
 
 
 def test_peak_pressures_and_edges_are_those_of_each_row():

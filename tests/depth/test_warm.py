@@ -19,12 +19,8 @@ TEMPERATURES = {"inner_temperature": 14.0, "outer_temperature": 5.0, "ball_tempe
 
 
 def lame(inside: float, outside: float, pressures: tuple[float, float], radius: float, body) -> float:
-    """Radial displacement [m] of a plane-stress annulus under pressures inside and outside [Pa], at a radius.
-
-    References
-    ----------
-    Timoshenko & Goodier, Theory of Elasticity, 3rd ed., section 28.
-    """
+    """Radial displacement [m] of a plane-stress annulus under pressures inside and outside [Pa], at a radius.  Timoshenko &
+    Goodier, Theory of Elasticity, 3rd ed., section 28."""
     a, b, (p, q) = inside, outside, pressures
     first = (p * a**2 - q * b**2) / (b**2 - a**2)
     second = (p - q) * a**2 * b**2 / (b**2 - a**2)
@@ -32,12 +28,8 @@ def lame(inside: float, outside: float, pressures: tuple[float, float], radius: 
 
 
 def fits_by_hand(scene) -> tuple[float, float]:
-    """Growth of inner and outer raceway [m]: the pressure at which both surfaces of a fit meet; 0 where they do not.
-
-    Notes
-    -----
-    The axis of a solid shaft is a hole of 1 nm here, a housing without a diameter 1 km wide.
-    """
+    """Growth of inner and outer raceway [m]: the pressure at which both surfaces of a fit meet; 0 where they do not.  The
+    axis of a solid shaft is a hole of 1 nm here, a housing without a diameter 1 km wide."""
     b, warm = scene.bearing, scene.mounting
     race, bore, rings = 0.5 * (b.pitch_diameter - b.ball_diameter), 0.5 * (b.bore or 0.0), b.rings
     core, shaft, housing = max(0.5 * warm.shaft_bore, 1e-9), warm.shaft_material or rings, warm.housing_material or rings

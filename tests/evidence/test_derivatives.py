@@ -51,10 +51,8 @@ def moved(model, key, step):
 
 
 def static_errors(model, still, key, gradient):
-    """Error and size of each quantity, both times the number at the key; None where the key changes nothing or an edge is near.
-
-    The steps of the runs are twice those of the gradients, so that both do not share their error.
-    """
+    """Error and size of each quantity, both times the number at the key; None where the key changes nothing or an edge is
+    near.  The steps of the runs are twice those of the gradients, so that both do not share their error."""
     if isinstance(gradient, NoDerivative) or not key.value or gradient.statics.step == 0.0 or gradient.statics.remark:
         return None
     gradient = gradient.statics

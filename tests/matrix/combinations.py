@@ -86,12 +86,7 @@ class NeedsOptions(Exception):
 
 @cache
 def options(kind: str, name: str) -> dict[str, Any]:
-    """Options of a plug-in for a scene: its first example's, else none, if it needs none.
-
-    Raises
-    ------
-    NeedsOptions
-    """
+    """Options of a plug-in for a scene: its first example's, else none, if it needs none.  NeedsOptions"""
     plugin = default_registry().find(kind, name).plugin
     if hasattr(plugin, "examples"):
         given = {f.name: getattr(plugin.examples()[0], f.name) for f in attrs.fields(plugin) if f.init}
@@ -123,8 +118,6 @@ def runs_elastic(cell: Combination) -> bool:
 def elastic_tables(cell: Combination) -> dict[str, Any]:
     """A bearing of three balls on some thousand hexahedra, for one turn of 8 steps; nothing for other bodies.
 
-    Notes
-    -----
     Whole contacts take no refined cells, and a load of a ball as under 1000 N on twelve: a law that is calibrated there, but
     stiffer than Hertz's, has more compliance than the mesh even under five times that load.  The force is a fifth of it.
     """
@@ -176,8 +169,6 @@ def tables(cell: Combination) -> dict[str, Any]:
 class Outcome:
     """What a run is judged by (its record would take gigabytes over the whole matrix).
 
-    Attributes
-    ----------
     text : its result.json;  drift : of its energy;  stiffness : K [N/m];  dynamic : Z [N/m];  speed : w [rad/s]
     mass : carried by the bearing [kg]
     """

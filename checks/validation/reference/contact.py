@@ -6,8 +6,6 @@ import numpy as np
 def groove_gap(place: np.ndarray, middle: np.ndarray, circle: float, tube: float) -> tuple[float, np.ndarray]:
     """Distance of a point from the inside of a torus about an axis along x, and the direction that opens it.
 
-    Parameters
-    ----------
     place : (3,) [m];  middle : (3,) of the torus;  circle, tube : radii of the centre circle and of the tube [m]
     """
     x, y, z = place - middle
@@ -30,8 +28,6 @@ def contact_forces(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Pressures (n,) [Pa] of points, and the forces that nodes (m, 3) feel [N].
 
-    Parameters
-    ----------
     place : (n, 3) of undeformed points [m];  area : (n,) [m2]
     shares : for each point its nodes with their weights; those of the other surface are negative
     u : (m, 3) displacements of the nodes [m]

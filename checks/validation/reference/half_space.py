@@ -2,8 +2,6 @@
 
 x along the semi-axis a, y along b, z into the body; tension positive.
 
-References
-----------
 Johnson, Contact Mechanics (1985), equations 3.19; written with 1 / (R (R + z)), which has no 0 / 0 below the load (Love 1929).
 """
 
@@ -29,10 +27,8 @@ def pressed_stress(
     poisson: float,
     points: tuple[int, int] = (160, 960),
 ) -> np.ndarray:
-    """(n, 6) stresses at points (n, 3), z > 0, under the pressure p0 sqrt(1 - x^2/a^2 - y^2/b^2).
-
-    ``points``: Gauss points in t where the radius is sin t, which takes the root at the edge away, and equal angles.
-    """
+    """(n, 6) stresses at points (n, 3), z > 0, under the pressure p0 sqrt(1 - x^2/a^2 - y^2/b^2).  ``points``: Gauss points
+    in t where the radius is sin t, which takes the root at the edge away, and equal angles."""
     a, b = semi_axes
     at, weight = np.polynomial.legendre.leggauss(points[0])
     t = 0.25 * np.pi * (at + 1.0)

@@ -30,8 +30,6 @@ def harmonic_balance(
 ) -> np.ndarray:  # fmt: skip
     """Displacements (N, n) of the steady motion at N equidistant angles.
 
-    Parameters
-    ----------
     mass, damping : (n, n);  force : (N, n) load and excitation at the angles;  speed : w [rad/s]
     first : (N, n) first guess;  size : of the motion, of which the last correction is 1e-11
     """

@@ -16,13 +16,8 @@ def integrals(ratio: float) -> tuple[float, float]:
 def contact(curvature_a: float, curvature_b: float, modulus: float, load: float) -> dict[str, float]:
     """Semi-axes a, b [m], approach [m] and peak pressure p0 [Pa] for a gap A x^2 + B y^2 (A <= B) under a load [N].
 
-    Notes
-    -----
     With e^2 = 1 - (b/a)^2 and p0 = 3 Q / (2 pi a b), integrating the half-space's displacement over the ellipse gives
     A = p0 b (K - E) / (E* e^2 a^2), B = p0 b (a^2/b^2 E - K) / (E* e^2 a^2), approach = p0 b K / E*.
-
-    References
-    ----------
     Johnson, Contact Mechanics (1985), equations 3.65 to 3.69 and 4.26 (E* as there).
     """
 

@@ -1,7 +1,5 @@
 """A tangential load on a Hertz contact, below the limit of sliding: an annulus slips.
 
-Notes
------
 For like half-spaces pressed together by Q and pulled along x by T < mu Q, Cattaneo's and Mindlin's tractions are those of full
 sliding less the same, scaled by c = (1 - T / (mu Q))^(1/3), over a similar ellipse that sticks.  The displacement is then
 
@@ -9,9 +7,6 @@ sliding less the same, scaled by c = (1 - T / (mu Q))^(1/3), over a similar elli
 
 S the compliance at T = 0 (traction that grows like (1 - x2/a2 - y2/b2)^(-1/2), displacement at the centre by Cerruti's
 solution).  A load that swings between -T and T follows Masing's rule.
-
-References
-----------
 Mindlin, J. Appl. Mech. 16 (1949) 259; Mindlin, Deresiewicz, J. Appl. Mech. 20 (1953) 327; Johnson, Contact Mechanics (1985),
 sections 3.6, 7.2 and 7.4.
 """

@@ -36,8 +36,6 @@ def secant(
 ) -> float:
     """K [N/m] of a circular orbit under a turning force, with its inertia: 1x line of the rows' force over one ball pitch.
 
-    Parameters
-    ----------
     load : axial load [N] under which x follows, or None: all rows stay at x [m]
     mass : [kg];  speed : of whirl [rad/s];  force : [N]
     """

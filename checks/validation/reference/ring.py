@@ -12,8 +12,6 @@ from checks.validation.reference.hertz import factor
 class Ring:
     """A single-row bearing.
 
-    Parameters
-    ----------
     ball_diameter, pitch_diameter [m], ball_count, contact_angle [rad], conformity_inner, conformity_outer
     young [Pa], poisson, density [kg/m3] : of rings and balls alike
     spin_speed : [rad/s], 0 for weightless balls
@@ -88,11 +86,7 @@ class Ring:
 
     def damping_matrix(self, q: np.ndarray) -> np.ndarray:
         """(5, 5) of the contacts' dashpots, to first order in the damping (exact in the limit that it does not bend paths).
-
-        Notes
-        -----
-        Each race takes the share of the approach rate that its stiffness leaves it: c (s_i^2 + s_o^2) along the line.
-        """
+        Each race takes the share of the approach rate that its stiffness leaves it: c (s_i^2 + s_o^2) along the line."""
         e = self.centres(q)
         s = np.hypot(*e.T)
         along = np.einsum("za,zai->zi", e / s[:, None], self.J)

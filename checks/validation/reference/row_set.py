@@ -30,8 +30,6 @@ def press_together(rings: list[Ring], load: float) -> float:
 def warmed(ring: Ring, strains: tuple[float, float, float], side: float = 1.0, place: float = 0.0) -> Ring:
     """A row whose inner ring, outer ring and balls have grown by these strains, all points of a ring away from the origin.
 
-    Notes
-    -----
     Groove centres lie on circles of their rings and grooves are arcs of their rings: both grow with them.  ``place`` is the plane
     of the inner groove centres [m]; the outer ones lie A sin(alpha) from it, against the side that the row faces.
     """

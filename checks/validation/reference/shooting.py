@@ -29,8 +29,6 @@ def trajectory(
 ):  # fmt: skip
     """States at ``times`` (n,): q, v (n, 5), and with ``variational`` the (2 f, 2 f) derivative of the last by the first.
 
-    Parameters
-    ----------
     mass : (5, 5);  free : (5,) 1 for unknowns, the others keep q0
     """
     chosen = np.flatnonzero(free)
@@ -80,13 +78,8 @@ def periodic(
     ring: Ring, mass: np.ndarray, load: np.ndarray, force: Force, free: np.ndarray, period: float, q0: np.ndarray,
     v0: np.ndarray, samples: int = 120, tolerance: float = 1e-9,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
-    """Times (n,), q (n, 5) and the Floquet multipliers of the periodic motion near q0, v0.
-
-    Raises
-    ------
-    RuntimeError
-        When Newton does not close the orbit.
-    """
+    """Times (n,), q (n, 5) and the Floquet multipliers of the periodic motion near q0, v0.  RuntimeError: when Newton does
+    not close the orbit."""
     chosen = np.flatnonzero(free)
     n = len(chosen)
     times = np.linspace(0.0, period, samples + 1)

@@ -11,8 +11,6 @@ def equilibrium(
 ) -> np.ndarray:
     """Displacement q (5,) that balances ``load`` (5,): MINPACK's hybrid method, radial load and moments in stages.
 
-    Parameters
-    ----------
     free : (5,) 1 for unknowns;  start : (5,) guess at the axial load alone
     """
     chosen = np.flatnonzero(free)

@@ -134,12 +134,8 @@ _FILL, _SPREAD, _WHOLE, _SHORT = 0.82, 0.025, 0.1, 14e-3
 
 
 def rolling_rating(count: int, diameter: float, pitch: float, length: float) -> tuple[float, float]:
-    """C of ISO 281, C0 of ISO 76 [N] of one row of cylindrical rollers; lengths in m.
-
-    References
-    ----------
-    ISO 281:2007, b_m = 1.1; f_c by the closed form of ISO/TR 1281-1 with reduction factor 0.83; ISO 76:2006: C0 = 44 (1 - g) Z L D.
-    """
+    """C of ISO 281, C0 of ISO 76 [N] of one row of cylindrical rollers; lengths in m.  ISO 281:2007, b_m = 1.1; f_c by the
+    closed form of ISO/TR 1281-1 with reduction factor 0.83; ISO 76:2006: C0 = 44 (1 - g) Z L D."""
     g, z, d, long = diameter / pitch, count, 1e3 * diameter, 1e3 * length
     ratio = (1.04 * ((1.0 - g) / (1.0 + g)) ** (143 / 108)) ** 4.5
     factor = 0.377 * 0.83 * 551.13373 * g ** (2 / 9) * (1.0 - g) ** (29 / 27) / (1.0 + g) ** 0.25 * (1.0 + ratio) ** (-2 / 9)

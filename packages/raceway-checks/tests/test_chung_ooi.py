@@ -34,10 +34,8 @@ def test_order_two_through_touch_and_release(case, name):
 
 @pytest.mark.parametrize("name", ["newmark", "generalized_alpha", "central_difference"])
 def test_a_mass_on_a_spring_keeps_its_period_when_the_contact_is_open(name):
-    """x = x0 cos(w t): with 200 steps a period a second-order method is within 1e-3 x0 after one period.
-
-    The phase error of the worst of them is (w dt)^2 / 12 of 2 pi: 5e-4.
-    """
+    """x = x0 cos(w t): with 200 steps a period a second-order method is within 1e-3 x0 after one period.  The phase error of
+    the worst of them is (w dt)^2 / 12 of 2 pi: 5e-4."""
     from raceway.extend import Motion, Schedule, three_halves
 
     mass, stiffness, x0 = 2.0, 8e6, 1e-5

@@ -204,10 +204,8 @@ def test_every_loop_runs_and_keeps_its_energy(kind, bed):
 
 
 def test_structural_approach_has_a_rate():
-    """With strong dashpots the elastic ring takes a part of the speed: only with its rate errors fall by 4 a halved step.
-
-    3 allows for the third order that is left at these steps.
-    """
+    """With strong dashpots the elastic ring takes a part of the speed: only with its rate errors fall by 4 a halved step.  3
+    allows for the third order that is left at these steps."""
     case = model(tilt="locked", contact={"damping": 2000.0}, integrator={"kind": "newmark"})
     soft = elastic(case.system, outer=5e-9)
     period = case.excitation.period_s

@@ -19,8 +19,6 @@ DOWN = np.array([0.0, 0.0, -1.0])
 def half_space(radius: float) -> float:
     """Mean displacement of a half-space under 1 - (r / a)^2, weighted with it, under a unit force [m/N].
 
-    Notes
-    -----
     In wave numbers the pressure is 8 J2(k a) / (k a)^2 and the half-space 2 (1 - nu^2) / (E k), so it is (1 - nu^2) / (pi E a)
     times 64 times the integral of J2(x)^2 / x^4 = 3 sqrt(pi) / (8 Gamma(5/2)^2 Gamma(9/2)) (Weber and Schafheitlin).
     """
@@ -33,13 +31,8 @@ def half_space(radius: float) -> float:
 def clamped_base(radius: float) -> float:
     """What a rigid base at ``THICK`` takes from that [m/N].
 
-    Notes
-    -----
     A layer that is bonded to its base has L(k h) times the half-space's compliance at a wave number k, with x = k h and
     q = 3 - 4 nu: L = (2 q sinh 2x - 4 x) / (2 q cosh 2x + 4 x^2 + 1 + q^2).  It ends in confined compression and in 1.
-
-    References
-    ----------
     Vorovich, Alexandrov and Babeshko, Non-classical mixed problems of elasticity (1974): the bonded layer.
     """
     from scipy.integrate import quad

@@ -1,7 +1,6 @@
 """Newton's method for elastic bodies in contact: starts from equilibria, and line searches past points that close."""
 
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,14 +14,10 @@ COARSE = {key: TINY[key] for key in ("bearing", "bodies", "mesh")} | {
 }
 
 
-def ring_of(axial: float) -> Any:
-    return settled(COARSE | {"load": {"axial": axial}})[0].system
-
-
 @pytest.mark.parametrize("axial", [2300.0, 2950.0])
 def test_an_equilibrium_leads_to_its_neighbour_in_a_few_iterations(axial: float):
     """A fifth of the load more, across it: no point opens or closes, and Newton's method converges quadratically."""
-    ring = ring_of(axial)
+    ring = settled(COARSE | {"load": {"axial": axial}})[0].system
     start = ring.equilibrium
     more = np.array([0.0, 500.0, 0.0, 0.0, 0.0])
     there, iterations = ring.equilibrium_under(start, ring.load + more)
@@ -37,10 +32,8 @@ def test_an_equilibrium_leads_to_its_neighbour_in_a_few_iterations(axial: float)
 
 
 class Stop:
-    """A spring that softens, and meets a stiff stop after a way: one unknown, as a contact point that closes.
-
-    f(y) = y - SOFTER y^2 + k max(y - w, 0)
-    """
+    """A spring that softens, and meets a stiff stop after a way: one unknown, as a contact point that closes.  f(y) = y -
+    SOFTER y^2 + k max(y - w, 0)"""
 
     contact, on_residual = SimpleNamespace(resultants_only=True, refuse=lambda: None), None
     SOFTER = 0.05

@@ -85,12 +85,8 @@ def test_tangent(claim):
 
 
 def sharpest(time: np.ndarray, signal: np.ndarray, near: float, width: float) -> float:
-    """The frequency [Hz] within ``near * (1 +- width)`` at which a sine takes most out of a signal (n,).
-
-    Notes
-    -----
-    Golden-section search around the best of a grid a quarter of a spectral line apart.
-    """
+    """The frequency [Hz] within ``near * (1 +- width)`` at which a sine takes most out of a signal (n,).  Golden-section
+    search around the best of a grid a quarter of a spectral line apart."""
     span = time[-1] - time[0]
     straight = signal - np.polyval(np.polyfit(time, signal, 1), time)
 

@@ -129,15 +129,6 @@ def test_a_softer_law_approaches_further_by_its_penetration(coarse):
     assert coarse.peak(other) == pytest.approx(coarse.peak(pressed), rel=0.02)
 
 
-def test_a_state_does_not_depend_on_the_state_before(coarse):
-    contact = Contact(coarse.patch, None)
-    coarse.press(contact, 5e-6)
-    warm = coarse.press(contact, 5.02e-6)
-    fresh = coarse.press(Contact(coarse.patch, None), 5.02e-6)
-    assert np.array_equal(warm.nodes, fresh.nodes)
-    assert warm.force == pytest.approx(fresh.force, rel=1e-9)
-
-
 def test_a_contact_that_leaves_its_points_says_where(coarse):
     contact = Contact(coarse.patch, None)
     with pytest.raises(BeyondPatch, match=r"inner race, .* N at 2\d\.\d+ deg, exceeds .* along the groove"):

@@ -7,25 +7,11 @@ import numpy as np
 import pytest
 
 from checks.validation.scenes import rotating
-from raceway.extend import Drivers, Schedule, SteppedBearing, at_rest, integrate, static_orbit
-from raceway.testing import IntegratorSuite, default_registry, settled
+from raceway.extend import Schedule, SteppedBearing, at_rest, integrate, static_orbit
+from raceway.testing import default_registry, settled
 
 #: Those that march in time.
 METHODS = [entry.plugin for entry in default_registry().of_kind("integrator") if not entry.plugin.steady]
-
-
-@attrs.frozen
-class Stepped:
-    """An integrator that steps every system from Python."""
-
-    method: Any
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.method, name)
-
-    @property
-    def scheme(self) -> Drivers:
-        return Drivers(stepped=self.method.scheme.stepped)
 
 
 def case(integrator: str, **changes: Any):
@@ -60,18 +46,6 @@ def test_records_equal_the_compiled_loops(kind, changes):
         assert np.abs(a - b).max() <= 1e-9 * np.abs(a).max(), name
     for name in ("max_penetration_m", "peak_contact_force_n"):
         assert found.counts[name] == pytest.approx(wanted.counts[name], rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    "method",
-    [pytest.param(m(), marks=[pytest.mark.slow] * (m.name not in ("newmark", "quasi_static")), id=m.name) for m in METHODS],
-)
-def test_loops_conform(method):
-    """The suite of integrators holds for the loops in Python as for the compiled ones."""
-    suite = IntegratorSuite()
-    # The order of convergence follows from the records' equality; its reference solutions take seconds.
-    for name in ("record", "equilibria", "impact", "stability", "restart", "memory", "progress", "failure"):
-        suite.checks()[name].check(suite, Stepped(method))
 
 
 @pytest.mark.parametrize("kind", [m.name for m in METHODS])

@@ -16,8 +16,6 @@ from raceway.extend import HexOperator
 class Below:
     """One body.
 
-    Attributes
-    ----------
     body : "ball" or "groove";  elements : of the whole model;  cells : down to Hertz's depth
     shear, hertz_shear [Pa];  depth, hertz_depth [m]
     cpu : seconds to make the model and solve it

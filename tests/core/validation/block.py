@@ -16,8 +16,6 @@ YOUNG, POISSON, DENSITY = 2e9, 0.3, 7810.0
 class Block:
     """Pressed down by ``weight`` [N], pulled along x by ``pull(t)`` [N], both spread over the mass.
 
-    Attributes
-    ----------
     mass : of the whole block [kg]
     """
 

@@ -32,8 +32,6 @@ def plane(point: np.ndarray, normal: np.ndarray) -> np.ndarray:
 class Impact:
     """The quarter model.
 
-    Attributes
-    ----------
     system : ElasticSystem;  ball : nodes of the ball;  velocity : (nodes, 3) of unit speed towards the block
     mass : of the whole ball [kg], as meshed
     """
@@ -122,8 +120,6 @@ def _surface(mesh: tuple[np.ndarray, np.ndarray], chosen: Any, sphere: float | N
 def structural_compliances(load: float = 300.0) -> tuple[float, float]:
     """Of the clamped block and of the free ball: displacement less the half space's below the load, per load [m/N].
 
-    Notes
-    -----
     Both under Hertz's pressure; the mean over depths of 1.0 to 2.5 mm, where the mesh no longer matters.  The ball's inertia
     carries the load, and its displacement is that against its centre of mass.
     """
@@ -164,12 +160,8 @@ def _under_load(mesh: tuple[np.ndarray, np.ndarray], side: float, load: float, c
 
 
 def _half_space(z: np.ndarray, a: float) -> np.ndarray:
-    """Displacement of a half space at depths z under a unit load of Hertz's pressure within the radius a [m/N].
-
-    Notes
-    -----
-    Of a point load: (1 + nu) / (2 pi E) (z^2 / R^3 + 2 (1 - nu) / R) (Johnson, Contact Mechanics, equation 3.18d).
-    """
+    """Displacement of a half space at depths z under a unit load of Hertz's pressure within the radius a [m/N].  Of a point
+    load: (1 + nu) / (2 pi E) (z^2 / R^3 + 2 (1 - nu) / R) (Johnson, Contact Mechanics, equation 3.18d)."""
     r, w = np.polynomial.legendre.leggauss(24)
     r = 0.5 * (r + 1.0)
     density = w * r * np.sqrt(1.0 - r**2)

@@ -73,8 +73,6 @@ class Oscillator:
     def folds(self, guesses: list[tuple[float, float]]) -> np.ndarray:
         """(n, 2) w and amplitude of the folds of a weak cubic spring, by its first harmonic alone, from first guesses.
 
-        Notes
-        -----
         With s = 3/4 b A^2 and u = k - m w^2: ((u + s)^2 + c^2 w^2) A^2 = F^2, and a fold where (u + s)(u + 3 s) + c^2 w^2 = 0
         (Nayfeh, Mook, Nonlinear Oscillations (1979), section 4.1).  The third harmonic changes w by (b A^2 / k)^2 3/128 of it.
         """
@@ -90,8 +88,6 @@ class Oscillator:
 def natural_frequency(factor: float, exponent: float, mass: float, amplitude: np.ndarray) -> np.ndarray:
     """w (n,) [rad/s] of a free mass on b |x|^n at amplitudes (n,): by the energy, exact.
 
-    Notes
-    -----
     A quarter of a period is the integral of dx / v with m v^2 / 2 = b (A^(n+1) - x^(n+1)) / (n + 1):
     T = 4 sqrt(m (n + 1) / (2 b)) A^((1 - n)/2) B(1/(n + 1), 1/2) / (n + 1).  For n = 3/2: w ~ A^(1/4).
     """
@@ -110,8 +106,6 @@ def natural_frequency(factor: float, exponent: float, mass: float, amplitude: np
 class Pressed:
     """A mass pressed on a Hertzian contact: m x'' + c x' + b max(x, 0)^1.5 = P (1 + part cos(w t)), b = 1, m = 1, P = 1.
 
-    Attributes
-    ----------
     damping : ratio to critical damping of small vibrations;  part : amplitude of the force over the load
     """
 

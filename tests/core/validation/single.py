@@ -56,8 +56,6 @@ def single(
 ) -> Single:
     """A patch with so many points along each semi-axis at a load [N].
 
-    Parameters
-    ----------
     angle : of the contact [rad]; the free contact angle when None
     room : how much further than the ellipse the points reach, as a factor
     shear : with compliances along the groove, for friction

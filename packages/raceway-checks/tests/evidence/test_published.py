@@ -18,10 +18,8 @@ def numbers(start: str):
 
 
 def largest(case: str, words: str | tuple[str, ...], count: int, tolerance: float) -> float:
-    """Largest relative error of the so many numbers of a case whose quantity begins so.
-
-    The command must hold each of them against the limit that stands here.
-    """
+    """Largest relative error of the so many numbers of a case whose quantity begins so.  The command must hold each of them
+    against the limit that stands here."""
     chosen = [row for row in numbers(case) if row.quantity.startswith(words)]
     assert len(chosen) == count and {row.tolerance for row in chosen} == {tolerance}
     return max(row.error for row in chosen)
