@@ -77,15 +77,6 @@ def test_a_second_process_compiles_nothing_and_writes_nothing(warm):
     assert files(warm) == before
 
 
-@pytest.mark.slow
-def test_a_folder_that_cannot_be_made_costs_one_warning(tmp_path):
-    below_a_file = tmp_path / "file"
-    below_a_file.write_text("in the way", encoding="utf-8")
-    compiled, loaded, warned = use(below_a_file / "cache")
-    assert (compiled, loaded) == (3, 0)
-    assert len(warned) == 1 and "RACEWAY_CACHE_DIR" in warned[0]
-
-
 #: Files, and what is left of each one's content.
 DAMAGES = {
     "cut": (".nbi", lambda content: content[:100]),
