@@ -30,7 +30,6 @@ ROWS = {
 _TIMED, _WARM, _STEP = 2000, 20, 1e-10
 _TURN_S, _NATURAL = 4e-3, 0.971e-9
 _EXCITED = ("excitation.kind=bidirectional", "excitation.speed_rpm=15000", "excitation.unbalance=3e-5", "rotor.mass=0.5")
-_FRICTION = ("bodies.formulation=one_point", "contact.friction=0.03")
 
 
 def tests(simulated: bool) -> bool:
@@ -72,7 +71,7 @@ def scene(*changes: str) -> Any:
     from raceway import load_scene
 
     tables: dict[str, dict[str, Any]] = {}
-    for change in (*_EXCITED, *_FRICTION, *changes):
+    for change in (*_EXCITED, *("bodies.formulation=one_point", "contact.friction=0.03"), *changes):
         key, value = change.split("=")
         table, name = key.split(".")
         tables.setdefault(table, {})[name] = json.loads(value) if value[0].isdigit() else value

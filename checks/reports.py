@@ -51,7 +51,6 @@ CHOSEN = {
         ),
     )
 }
-_BLOCK = re.compile(r"(<!-- evidence:([a-z0-9_]+) -->\n)(.*?)(<!-- /evidence -->)", re.DOTALL)
 
 
 def machine() -> dict[str, Any]:
@@ -258,7 +257,7 @@ def render(text: str, reports: dict[str, dict[str, Any]], links: str = "docs/rep
             raise KeyError(f"a block asks for the report '{name}'; there are {', '.join(reports)}")
         return f"{match[1]}{body}\n{match[4]}"
 
-    return _BLOCK.sub(block, text)
+    return re.compile(r"(<!-- evidence:([a-z0-9_]+) -->\n)(.*?)(<!-- /evidence -->)", re.DOTALL).sub(block, text)
 
 
 def links_from(document: Path) -> str:

@@ -11,7 +11,6 @@ from markdown_it import MarkdownIt
 ROOT = Path(__file__).resolve().parents[1]
 #: Written by hand.  Reports are made from their JSON files, and those carry the commands that made them.
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
-_FILE = re.compile(r"# (\S+\.(?:py|toml|csv))\n")
 _COMMENT = re.compile(r"\s+# .*$")
 
 
@@ -27,7 +26,7 @@ class Listing:
     @property
     def file(self) -> str | None:
         """The name of the file that the block is, from its first line."""
-        found = _FILE.match(self.text)
+        found = re.compile(r"# (\S+\.(?:py|toml|csv))\n").match(self.text)
         return found[1] if found else None
 
     def commands(self) -> list[str]:

@@ -75,29 +75,21 @@ def test_what_is_no_value_cannot_be_a_key():
         get(Maker(), {"inputs": {}})
 
 
-def cut(path):
-    path.write_bytes(path.read_bytes()[:-5])
+#: What is left of a file's content.
+HARMS = {
+    "cut": lambda content: content[:-5],
+    "a bit flipped": lambda content: content[:-9] + bytes([content[-9] ^ 1]) + content[-8:],
+    "empty": lambda content: b"",
+    "another head": lambda content: b'{"kind": 3}\n' + content.split(b"\n", 1)[1],
+}
 
 
-def flip(path):
-    content = bytearray(path.read_bytes())
-    content[-9] ^= 1
-    path.write_bytes(bytes(content))
-
-
-def empty(path):
-    path.write_bytes(b"")
-
-
-def other_head(path):
-    path.write_bytes(b'{"kind": 3}\n' + path.read_bytes().split(b"\n", 1)[1])
-
-
-@pytest.mark.parametrize("harm", [cut, flip, empty, other_head])
+@pytest.mark.parametrize("harm", HARMS.values(), ids=HARMS)
 def test_a_damaged_file_is_made_anew_and_said(folder, harm):
     make = Maker()
     get(make)
-    harm(next(folder.iterdir()))
+    path = next(folder.iterdir())
+    path.write_bytes(harm(path.read_bytes()))
     with pytest.warns(RuntimeWarning, match="damaged"):
         found = get(make)
     assert make.calls == 2 and found["a"][2, 1] == 10.0

@@ -25,7 +25,6 @@ from raceway.points.function import BLOCK
 from raceway.points.sweep import fill_store, prepare
 from raceway.testing import default_registry
 
-Processes = built_in("executor", "processes")
 Serial = built_in("executor", "serial")
 
 STATIC: dict[str, Any] = {
@@ -44,7 +43,6 @@ ROTATING: dict[str, Any] = {
 BOUNDS = {"damping": 1e-7, "peak": 1e-6, "min_": 1e-4, "p0": 1e-6, "z_imag": 1e-6, "equivalent_damping": 1e-6}
 #: What both methods estimate by themselves, or what rounding leaves.
 OWN = ("error_total", "error_time_step", "error_identification", "error_bodies", "residual", "backward_amplitude")
-LOADS = "load.axial=300:2000:24"
 
 
 def filled(folder: Path, design: Any, executor: Any = None, resume: bool = False) -> Any:
@@ -145,7 +143,7 @@ class _Losing(Serial):
 
 
 def test_blocks_are_resumed_shared_and_repaired(tmp_path: Path, small: None) -> None:
-    design = grid([LOADS])
+    design = grid(["load.axial=300:2000:24"])
     whole = filled(tmp_path / "whole", design)
     with pytest.raises(KeyboardInterrupt):
         filled(tmp_path / "s", design, _Stopping())
@@ -153,7 +151,7 @@ def test_blocks_are_resumed_shared_and_repaired(tmp_path: Path, small: None) -> 
         assert store.status()["waiting"] == 14
         assert [row["status"] for row in store.rows()] == ["computed"] * 10 + ["waiting"] * 14
     assert filled(tmp_path / "s", design, resume=True).equals(whole)
-    assert filled(tmp_path / "p", design, Processes(workers=1)).equals(whole)
+    assert filled(tmp_path / "p", design, built_in("executor", "processes")(workers=1)).equals(whole)
     with closing(sqlite3.connect(tmp_path / "s" / "points.sqlite")) as file, file:
         file.execute("UPDATE points SET content = zeroblob(length(content)) WHERE key = '10:20'")
     with pytest.warns(UserWarning, match="10 of 24 rows are damaged"), open_store(tmp_path / "s") as store:

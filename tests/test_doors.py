@@ -8,6 +8,7 @@ import runpy
 import sqlite3
 from collections.abc import Iterable
 from contextlib import closing
+from functools import reduce
 from pathlib import Path
 from typing import Annotated
 
@@ -147,13 +148,6 @@ def test_a_check_of_what_no_file_can_hold_is_json():
         json.dumps(rw.check({**SCENE, "load": {"axial": value}}).to_dict(), allow_nan=False)
 
 
-def nested(depth):
-    found = {}
-    for _ in range(depth):
-        found = {"a": found}
-    return found
-
-
 class BytesPath:
     def __fspath__(self):
         return b"missing.toml"
@@ -163,7 +157,7 @@ class BytesPath:
     ("call", "rule"),
     [
         (lambda: rw.run({**SCENE, "load": {"axial": (x for x in (1.0,))}}), "no generator"),
-        (lambda: rw.run(nested(3000)), "nested more than 32 deep"),
+        (lambda: rw.run(reduce(lambda inner, _: {"a": inner}, range(3000), {})), "nested more than 32 deep"),
         (lambda: rw.run(f"[{'.'.join(['a'] * 3000)}]\nb = 1\n"), "nested more than 32 deep"),
         (lambda: rw.run(SCENE | {"bodies": {"kind": "condensed"}, "bearing": SOFT}), r"bearing.balls.young` = 1000000.0: is too soft"),
         (lambda: rw.sweep(SCENE, 3), "`axes` = 3: must be a mapping"),

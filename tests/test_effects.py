@@ -24,20 +24,15 @@ def test_known_effects_are_found():
         assert found[place] == pytest.approx(expected.get(place, 0.0), abs=ROUNDING)
 
 
-def corners_from_effects(effects):
-    """The inverse of ``factorial_effects``."""
-    out = 0.5 * effects
-    out[(0,) * out.ndim] *= 2.0
-    for place in range(out.ndim):
-        mean, half = np.take(out, 0, axis=place), np.take(out, 1, axis=place)
-        out = np.stack([mean - half, mean + half], axis=place)
-    return out
-
-
 @pytest.mark.parametrize("k", [1, 2, 5, 8])
 def test_effects_reproduce_every_corner(k):
     y = np.random.default_rng(k).normal(size=(2,) * k)
-    assert np.abs(corners_from_effects(factorial_effects(y)) - y).max() < ROUNDING * 2**k
+    corners = 0.5 * factorial_effects(y)
+    corners[(0,) * k] *= 2.0
+    for place in range(k):
+        mean, half = np.take(corners, 0, axis=place), np.take(corners, 1, axis=place)
+        corners = np.stack([mean - half, mean + half], axis=place)
+    assert np.abs(corners - y).max() < ROUNDING * 2**k
 
 
 def test_main_effect_is_the_difference_of_means_and_interaction_half_the_difference_of_effects():

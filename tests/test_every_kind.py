@@ -14,7 +14,6 @@ from raceway.extend import Registry
 from raceway.testing import SUITES
 from tests.test_docs import FILES
 
-Rigid = built_in("bodies", "rigid")
 ROOT = Path(__file__).parents[1]
 #: The plug-ins of docs/plugins.md and examples/plugins by kind.
 OWN = {
@@ -68,13 +67,6 @@ def report(folder, name, body, cls="Own"):
     path = folder / f"{name}_{cls}.py"
     path.write_text(REPORT.format(name=name, cls=cls, body=body), encoding="utf-8")
     return path
-
-
-def one_message(found, code=2):
-    """The one error of a command that failed."""
-    assert found.exit_code == code, found.stdout + found.stderr
-    assert found.stderr.count("error: ") == 1 and "Traceback" not in found.stderr, found.stderr
-    return " ".join(found.stderr.split())
 
 
 def test_the_kinds_are_all_here():
@@ -154,7 +146,8 @@ def test_a_report_that_raises_is_named_after_the_result_is_saved(tmp_path, body,
     out = tmp_path / "out"
     names = ("--plugin", bad, "--plugin", good, "--report", "bad", "--report", "good")
     found = invoke("run", MINIMAL, "--set", "identifier.kind=tangent", *names, "--out", out)
-    told = one_message(found)
+    assert found.exit_code == 2 and found.stderr.count("error: ") == 1, found.stdout + found.stderr
+    told = " ".join(found.stderr.split())
     assert f"format 'bad' of {bad.name}: {words}" in told and "The result is saved" in told
     assert json.loads((out / "result.json").read_text())["title"] and (out / "good.txt").read_text() == "good"
     assert "tangent kxx" in found.stdout
@@ -179,7 +172,7 @@ def fails(fault):
     ],
 )
 def test_a_broken_duty_of_bodies_names_the_kind(duty, answer, words):
-    own = attrs.frozen(type("Own", (Rigid,), {"name": "own", duty: answer}))
+    own = attrs.frozen(type("Own", (built_in("bodies", "rigid"),), {"name": "own", duty: answer}))
     scene = load_scene(MINIMAL, ["integrator.kind=central_difference"])
     with pytest.raises(PluginError) as caught:
         run(attrs.evolve(scene, bodies=own()))

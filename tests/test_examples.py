@@ -13,8 +13,6 @@ from raceway import SceneError, load_scene, make_plan
 from raceway.testing import run
 from tests.test_screens import assert_one_screen
 
-Condensed = built_in("bodies", "condensed")
-
 FOLDER = Path(__file__).resolve().parents[1] / "examples"
 #: Scenes for `raceway view --mesh`: too large to run here.
 MESHES = {"b7206_article_mesh"}
@@ -66,7 +64,7 @@ def test_the_elastic_examples_answer_what_condensed_bodies_do():
     of condensed ones: 0.8 % of kyy there.
     """
     coarse = load_scene(FOLDER / "b7206_elastic_coarse.toml")
-    condensed = attrs.evolve(coarse, bodies=Condensed(), mesh=None)
+    condensed = attrs.evolve(coarse, bodies=built_in("bodies", "condensed")(), mesh=None)
     elastic, other = ran("b7206_elastic_coarse").to_dict(), run(condensed).to_dict()
     for i in range(3):
         assert elastic["equilibrium"]["stiffness"][i][i] == pytest.approx(other["equilibrium"]["stiffness"][i][i], rel=0.018)

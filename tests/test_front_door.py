@@ -19,7 +19,6 @@ from checks.validation.command_line import EXAMPLES, invoke
 from raceway.extend import as_given
 from raceway.testing import b7206c
 
-ROOT = EXAMPLES.parent
 SCENE = EXAMPLES / "b7206.toml"
 TEXT = SCENE.read_text(encoding="utf-8")
 STATIC = b7206c()
@@ -347,7 +346,7 @@ DRAWN = {"view": [pytest.mark.needs("pyvista"), pytest.mark.slow], "View": [pyte
 
 @pytest.mark.parametrize("name", [pytest.param(one, marks=DRAWN.get(one, ())) for one in rw.__all__])
 def test_a_public_name_has_words_and_an_example_that_runs(name, monkeypatch):
-    monkeypatch.chdir(ROOT)
+    monkeypatch.chdir(EXAMPLES.parent)
     one = rw if name in VALUES else getattr(rw, name)
     text = inspect.getdoc(one) or ""
     assert len(text) > 40, f"{name} has no docstring"

@@ -11,8 +11,6 @@ from checks.validation.command_line import invoke
 from checks.validation.scenes import built_in
 from raceway import ConvergenceError, PluginError, RacewayError, SceneError
 
-Serial = built_in("executor", "serial")
-
 SCENE = {
     "title": "tools",
     "bearing": {"preset": "B7206C"},
@@ -109,7 +107,7 @@ def test_a_sweep_in_memory_is_that_of_a_store_and_leaves_nothing(tmp_path, monke
 
 def test_executors_by_name_or_as_such_give_the_same_bits():
     axes = {"load.axial": [400.0, 700.0, 1000.0]}
-    alone = rw.sweep(STATIC, axes, executor=Serial())
+    alone = rw.sweep(STATIC, axes, executor=built_in("executor", "serial")())
     beside = rw.sweep(STATIC, axes, executor="processes", workers=1)
     np.testing.assert_array_equal(alone.stiffness, beside.stiffness)
     with pytest.raises(PluginError, match="no executor 'procesess'|'procesess'"):

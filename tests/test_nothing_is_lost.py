@@ -17,9 +17,6 @@ from raceway.pipeline.error import Errors, Part
 from raceway.planning.resolve import fits, record_bytes, recorded_per_turn
 from raceway.testing import b7206c, run
 
-Vtu = built_in("format", "vtu")
-File = built_in("mesher", "file")
-
 HOOK = """
 from raceway import hookimpl
 @hookimpl
@@ -104,9 +101,6 @@ def test_noise_is_not_taken_for_a_cut(tmp_path):
     assert len(recording_of(signals_of(recorded(tmp_path, noisy))).y) == 4000
 
 
-BEARING = scene_from_dict(b7206c()).bearing
-
-
 @pytest.mark.parametrize("fault", ["doubled", "unmerged", "apart"])
 def test_meshes_that_are_not_one_body_are_refused(fault, tmp_path):
     mesh = block()
@@ -118,9 +112,9 @@ def test_meshes_that_are_not_one_body_are_refused(fault, tmp_path):
         points = np.vstack([mesh.points, mesh.points + [shift, 0.0, 0.0]])
         bad = HexMesh(points, np.vstack([mesh.cells, mesh.cells + count]), {}, {})
         words = "points coincide with others" if fault == "unmerged" else "its cells form 2 parts"
-    Vtu().write(tmp_path / "body.vtu", bad)
+    built_in("format", "vtu")().write(tmp_path / "body.vtu", bad)
     with pytest.raises(MeshError, match=words):
-        File(inner_ring=str(tmp_path / "body.vtu")).mesh(BEARING)
+        built_in("mesher", "file")(inner_ring=str(tmp_path / "body.vtu")).mesh(scene_from_dict(b7206c()).bearing)
 
 
 def test_a_groove_is_not_deeper_than_its_balls_centre():

@@ -12,8 +12,6 @@ from checks.validation.scenes import built_in
 from raceway import PluginError, check, option, scene_from_dict
 from raceway.testing import b7206c
 
-Hertz = built_in("contact_law", "hertz")
-
 
 def idle(excitation):
     """Options of an excitation that are told to have no effect."""
@@ -49,7 +47,7 @@ def test_amplitude(kind, options, unused):
 
 
 @attrs.frozen
-class Confused(Hertz):
+class Confused(built_in("contact_law", "hertz")):
     name: ClassVar[str] = "confused"
     answer: object = option(None, help="what unused_options() returns")
 

@@ -20,10 +20,8 @@ from raceway.storage import number_table
 from raceway.testing import b7206c, default_registry
 
 Abaqus = built_in("format", "abaqus")
-Msh = built_in("format", "msh")
 Vtu = built_in("format", "vtu")
 Gmsh = built_in("mesher", "gmsh")
-File = built_in("mesher", "file")
 
 BEARING = scene_from_dict(b7206c()).bearing
 
@@ -32,35 +30,26 @@ def measured(path):
     return scene_from_dict(b7206c(excitation={"kind": "measured", "file": str(path), "speed_rpm": 12000.0}))
 
 
-def a_pipe(folder, name):
-    path = folder / name
-    os.mkfifo(path)
-    return path
-
-
-def a_link_to_zeros(folder, name):
-    path = folder / name
-    path.symlink_to("/dev/zero")
-    return path
-
-
 READERS = {
     "measured force": (".csv", measured),
     "record": (".csv", signals_of),
     "vtu": (".vtu", Vtu().read),
     "inp": (".inp", Abaqus().read),
-    "msh": (".msh", Msh().read),
+    "msh": (".msh", built_in("format", "msh")().read),
     "points of a sweep": (".csv", design_file),
     "plug-in": (".py", default_registry().load_file),
     "step": (".step", lambda path: Gmsh(ball=str(path)).mesh(BEARING)),
 }
 
 
-@pytest.mark.parametrize("endless", [a_pipe, a_link_to_zeros])
+@pytest.mark.parametrize(
+    "endless", [os.mkfifo, lambda path: path.symlink_to("/dev/zero")], ids=["a pipe", "a link to zeros"]
+)
 @pytest.mark.parametrize("reader", READERS)
 def test_a_file_without_an_end_is_refused(reader, endless, tmp_path):
     suffix, read = READERS[reader]
-    path = endless(tmp_path, f"file{suffix}")
+    path = tmp_path / f"file{suffix}"
+    endless(path)
     with pytest.raises(RacewayError) as caught:
         read(path)
     message = str(caught.value)
@@ -130,7 +119,7 @@ def test_a_mesh_that_includes_another_file_is_refused(line, tmp_path):
     Abaqus().write(path, block())
     path.write_text("*HEADING\n** no *INCLUDE here\n" + line + "\n" + path.read_text())
     with pytest.raises(MeshError, match=r"deck.inp', line 3: \*INCLUDE is not supported"):
-        File(inner_ring=str(path)).mesh(BEARING)
+        built_in("mesher", "file")(inner_ring=str(path)).mesh(BEARING)
 
 
 def bomb(path):

@@ -98,7 +98,10 @@ def rows() -> list[Row]:
         "bearing.preload": (100.0, 900.0), "load.axial": (0.0, 300.0),
     }  # fmt: skip
     motion = {"load.axial": (600.0, 2000.0), "excitation.speed_rpm": (3000.0, 15_000.0)}
-    out = [_equality()]
+    compared = compare(range(1000, 1100))
+    note = f"{compared.status['COMPUTED']} of {compared.status.total()} points in the loop; displacements {compared.moved:.1e}; {compared.seconds:.0f} CPU-s"
+    equality = "largest difference from runs, bearings, sets, laws, tilts, growth, moments"
+    out = [below(equality, float(f"{compared.worst:.1e}"), 1e-9, note)]
     cases: list[tuple[str, Callable[[], float], float]] = [
         ("1e6 equilibria with 5 x 5 over load and speed [CPU-s]", lambda: seconds(STATIC, ["displacement", "stiffness"], loads, 10**6), 25.0),
         ("1e5 equilibria of a DB pair over its geometry and preload [CPU-s]", lambda: seconds(_SET, ["stiffness"], geometry, 10**5), 10.0),
@@ -112,14 +115,3 @@ def rows() -> list[Row]:
     out += [below(quantity, round(measure(), 3), bound) for quantity, measure, bound in cases]
     two_columns = {key: loads[key] for key in ("load.axial", "kinematics.spin_speed_rpm")}
     return out + _by_dask(seconds(STATIC, ["kyy"], two_columns, 10**6) / 10**6)
-
-
-def _equality() -> Row:
-    compared = compare(range(1000, 1100))
-    note = f"{compared.status['COMPUTED']} of {compared.status.total()} points in the loop; displacements {compared.moved:.1e}; {compared.seconds:.0f} CPU-s"
-    return below(
-        "largest difference from runs, bearings, sets, laws, tilts, growth, moments",
-        float(f"{compared.worst:.1e}"),
-        1e-9,
-        note,
-    )

@@ -26,14 +26,13 @@ _PATIENCE_S = 5.0
 _COUNT, _SEED = 100, 17
 _SWEEP = ("sweep", str(SCENE), "--set", "integrator.kind=periodic", "--grid", "excitation.speed_rpm=10980:15000:160")
 _AXES = ("--vary", "excitation.kind=unidirectional,bidirectional", "--vary", "load.axial=400:1200:4")
-_COMPARE = ("compare", str(SCENE), *_AXES)
 COMMANDS = {
     "run": ("run", str(SCENE), "--pictures"),
     "sweep, serial": _SWEEP,
     "sweep, processes": (*_SWEEP, "--executor", "processes"),
     "sweep, dask": (*_SWEEP, "--executor", "dask"),
     "view": ("view", str(SCENE), "--html"),
-    "compare": _COMPARE,
+    "compare": ("compare", str(SCENE), *_AXES),
 }
 
 

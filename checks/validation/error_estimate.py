@@ -18,7 +18,6 @@ from raceway.testing import model_of, run, solve_equilibrium
 #: An estimate is right within this factor, or when it and the error are below this size.  The factor is less than the 4 by which
 #: twice as many steps change an error of second order: nobody who chooses steps by the estimate is a halving off.
 FACTOR, SMALL = 3.0, 1e-6
-_SAMPLES = (129, 257)
 _FINE_STEPS = 2880
 
 
@@ -51,7 +50,6 @@ def steps(count: int, **more: Any) -> dict[str, Any]:
 _ALPHA = {"kind": "generalized_alpha", "rho_infinity": 0.5}
 _EXPLICIT = {"kind": "central_difference"}
 _FINE = {"steps_per_turn": _FINE_STEPS}
-_RAMPED = {"steps_per_turn": _FINE_STEPS, "start": "ramp", "turns": 60}
 
 CASES = (
     case("newmark"),
@@ -86,7 +84,7 @@ CASES = (
     case("impedance fit over three speeds", integrator=steps(60),
          identifier={"kind": "impedance_fit", "speeds_rpm": [9000.0, 12000.0, 15000.0]}),
     case("sudden load, heavily damped contacts", integrator=steps(120, start="static", turns=24), contact={"damping": 2000.0},
-         finer=_RAMPED),
+         finer={"steps_per_turn": _FINE_STEPS, "start": "ramp", "turns": 60}),
 )  # fmt: skip
 
 
@@ -95,7 +93,7 @@ def orbit_value(tables: dict[str, Any]) -> tuple[complex, float]:
     model = model_of(tables)
     start = solve_equilibrium(model).displacement
     found = []
-    for samples in _SAMPLES:
+    for samples in (129, 257):
         orbit = steady_orbit(model.system, model.excitation.period_s, start, samples, tolerance=1e-11)
         force, line = (np.fft.fft(part, axis=0)[1] for part in (orbit.force, orbit.displacement))
         found.append(stiffness(force, line))

@@ -49,7 +49,11 @@ def compared() -> Compared:
     for place, sign in zip(rig.bearings, (side, -side), strict=True):
         k, turn = 2 * line.node(place), np.diag([1.0, sign])
         standing[k : k + 2, k : k + 2] += turn @ held[0] @ turn
-    whirl = forward_whirl(attrs.evolve(line, stiffness=standing), speeds[0])[:3]
+    # Forward whirl is of K - l^2 (M_t + M_r) + l W G at the spin speed W.
+    size, inverse = len(standing), np.linalg.inv(line.mass + line.rotary)
+    companion = np.block([[np.zeros((size, size)), np.eye(size)], [inverse @ standing, speeds[0] * inverse @ line.polar]])
+    values = np.linalg.eigvals(companion)
+    whirl = np.sort(values.real[values.real > 0.0])[:3]
     modes = theirs.run_modal(speeds[0], num_modes=40).wn
     frequencies = np.column_stack([whirl, [modes[np.argmin(np.abs(modes - w))] for w in whirl]])
     disc = line.node(0.5 * rig.shaft_length)
@@ -62,15 +66,6 @@ def compared() -> Compared:
         for place, ours in ((rig.bearings[0], model.at_ring(*load)[0]), (rig.sensor, model.at_sensor(*load))):
             rows.append((abs(ours), abs(found[theirs.number_dof * line.node(place), k])))
     return Compared(frequencies, np.array(rows))
-
-
-def forward_whirl(line: Beam, spin: float) -> np.ndarray:
-    """Natural frequencies of forward whirl [rad/s], ascending, of K - l^2 (M_t + M_r) + l W G at the spin speed W [rad/s]."""
-    size = len(line.stiffness)
-    inverse = np.linalg.inv(line.mass + line.rotary)
-    companion = np.block([[np.zeros((size, size)), np.eye(size)], [inverse @ line.stiffness, spin * inverse @ line.polar]])
-    values = np.linalg.eigvals(companion)
-    return np.sort(values.real[values.real > 0.0])
 
 
 def _in_ross(rig: Any, line: Beam) -> tuple[Any, list[Any]]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from checks.validation.error_estimate import SMALL
 from checks.validation.scenes import rotating
-from raceway import ConvergenceError, RacewayError, Result, scene_from_dict
+from raceway import ConvergenceError, RacewayError, scene_from_dict
 from raceway.extend import steady_orbit, stiffness
 from raceway.testing import model_of, run, solve_equilibrium
 
@@ -70,12 +70,6 @@ def _fourier_value(tables: dict[str, Any]) -> complex | None:
     return stiffness(*(np.fft.fft(part, axis=0)[1] for part in (orbit.force, orbit.displacement)))
 
 
-def _motions(result: Result) -> list[complex]:
-    """Z of each steady motion that a result lists."""
-    listed = [one["dynamic_stiffness"] for one in result.to_dict()["motion"]["orbits"]]
-    return [complex(one["real"], one["imag"]) for one in listed]
-
-
 def judged_starts(count: int) -> list[Judged]:
     """The same starts each time."""
     rng = np.random.default_rng(_SEED)
@@ -93,8 +87,9 @@ def judged_starts(count: int) -> list[Judged]:
         if len(judged) % 10 == 9:
             other = _fourier_value(one.tables)
             if other is not None:
+                listed = [orbit["dynamic_stiffness"] for orbit in steady.to_dict()["motion"]["orbits"]]
                 close = (_CONFIRMED * min(true, 1.0) + SMALL) * size
-                confirmed = any(abs(other - z) < close for z in _motions(steady))
+                confirmed = any(abs(other - complex(one["real"], one["imag"])) < close for one in listed)
         estimate, of_k = result.error["total"], result.to_dict()["identification"]["equivalent_stiffness_error"]
         estimate, of_k = (np.nan if value is None else value for value in (estimate, of_k))
         true_of_k = abs(found.equivalent_stiffness - wanted.equivalent_stiffness)

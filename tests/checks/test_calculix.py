@@ -6,8 +6,6 @@ import pytest
 from checks import against_calculix, calculix
 from checks.validation.groove import meshes
 
-MESH = {"growth": 2.2, "coarse": 1.6e-3}
-
 
 def _blocks(text):
     """Keyword lines with the data lines below them."""
@@ -21,7 +19,7 @@ def _blocks(text):
 
 
 def test_deck_of_the_groove_holds_every_node_and_cell_in_millimetres():
-    ball, block = meshes(300.0, 1.0, **MESH)
+    ball, block = meshes(300.0, 1.0, growth=2.2, coarse=1.6e-3)
     blocks = _blocks(calculix.groove_deck(ball, block, 212e9, 0.29, 1e15, 5e-6))
     nodes = np.array([[float(x) for x in line.split(",")] for line in blocks[0][1]])
     assert len(nodes) == len(ball.points) + len(block.points)

@@ -24,10 +24,8 @@ from raceway.testing import suite as suites
 from tests import broken_laws
 from tests.broken_bodies import BROKEN
 
-CentralDifference = built_in("integrator", "central_difference")
 GeneralizedAlpha = built_in("integrator", "generalized_alpha")
 Newmark = built_in("integrator", "newmark")
-Periodic = built_in("integrator", "periodic")
 Bidirectional = built_in("excitation", "bidirectional")
 SineFit = built_in("identifier", "sine_fit")
 
@@ -161,7 +159,7 @@ def test_an_excitation_whose_points_are_exchanged():
     assert "parameters" in failed(ExcitationSuite, Exchanged(speed_rpm=12000.0, unbalance=3e-4), "parameters")
 
 
-class Unstable(CentralDifference):
+class Unstable(built_in("integrator", "central_difference")):
     name = "unstable"
     implicit = True
 
@@ -209,7 +207,7 @@ class TwoMinds(Newmark):
         return Drivers(compiled=super().scheme.compiled, stepped=GeneralizedAlpha(rho_infinity=0.5).scheme.stepped)
 
 
-class Boasting(Periodic):
+class Boasting(built_in("integrator", "periodic")):
     """Another amplitude than it says."""
 
     name = "boasting"

@@ -234,7 +234,6 @@ def test_a_foreign_integrator_is_given_what_it_solved_for_a_similar_scene():
 
 
 SIX = np.zeros((6, 2))
-NARROW = np.zeros((12, 1))
 
 
 @pytest.fixture(scope="module")
@@ -247,7 +246,7 @@ def bearing():
     ("arguments", "words"),
     [
         ({"ball": SIX}, r"`ball` has the shape \(6, 2\); that of this system is \(12, 2\): a row for each ball"),
-        ({"ball": NARROW}, r"`ball` has the shape \(12, 1\)"),
+        ({"ball": np.zeros((12, 1))}, r"`ball` has the shape \(12, 1\)"),
         ({"ball_rate": SIX}, r"`ball_rate` has the shape \(6, 2\)"),
         (
             {"step": Increment(memory=np.zeros((12, 1)))},

@@ -9,7 +9,6 @@ from raceway.core.ring.energy import friction_energy
 from raceway.extend import CAGE, Schedule, SteppedBearing, at_rest, integrate, layout
 from raceway.testing import b7206c, ring_inertia
 
-Bidirectional = built_in("excitation", "bidirectional")
 RunUp = built_in("excitation", "run_up")
 
 
@@ -130,7 +129,7 @@ def test_fit_at_the_middle_of_the_speeds():
 
 
 def test_other_whirl_speeds_have_the_same_force():
-    force = Bidirectional(speed_rpm=12000.0, unbalance=3.2e-4, load_share=0.5, phase_lag_deg=30.0)
+    force = built_in("excitation", "bidirectional")(speed_rpm=12000.0, unbalance=3.2e-4, load_share=0.5, phase_lag_deg=30.0)
     other = force.at_whirl(9000.0)
     assert other.amplitude_n == force.amplitude_n and other.speed_rpm == 9000.0 and other.phase_lag_deg == 30.0
     assert other.unused_options() == {}

@@ -109,18 +109,15 @@ def test_a_held_displacement_of_a_sprung_pair_is_that_under_the_axial_load(built
     assert equilibrium_table(running, solve_equilibrium(running))["preload"]["rows_n"][1] == pytest.approx(300.0, rel=1e-8)
 
 
-def run_up(first, last, **more):
-    excitation = {"kind": "run_up", "first_speed_rpm": first, "speed_rpm": last, "duration_s": 0.5, "unbalance": 3.2e-4}
-    identifier, integrator = {"kind": "order_tracking", "window_turns": 6.0}, {"steps_per_turn": 120}
-    common = {"load": {"axial": 100.0}, "rotor": {"mass": 2.0}, "identifier": identifier, "integrator": integrator}
-    return pair("spring", excitation=excitation, **common, **more)
-
-
 @pytest.mark.parametrize("bodies", ["rigid", "condensed"])
 @pytest.mark.parametrize(("first", "last"), [(500.0, 30000.0), (15000.0, 6000.0)])
 def test_a_sprung_row_follows_a_changing_speed(built, bodies, first, last):
     """Between the speeds that it is placed at, too, the second row carries the spring's force; 1e-4 of it is what a spline leaves."""
-    model = built(**run_up(first, last, bodies={"kind": bodies}, kinematics={"ring_growth": True}))
+    excitation = {"kind": "run_up", "first_speed_rpm": first, "speed_rpm": last, "duration_s": 0.5, "unbalance": 3.2e-4}
+    identifier, integrator = {"kind": "order_tracking", "window_turns": 6.0}, {"steps_per_turn": 120}
+    common = {"load": {"axial": 100.0}, "rotor": {"mass": 2.0}, "identifier": identifier, "integrator": integrator}
+    changed = {"bodies": {"kind": bodies}, "kinematics": {"ring_growth": True}}
+    model = built(**pair("spring", excitation=excitation, **common, **changed))
     now = solve_equilibrium(model)
     for share in (0.0, 0.28, 0.53, 0.97, 1.0):
         system = model.system.at_speed(0.5 * share)

@@ -104,13 +104,6 @@ def one_point_force(cells, points, u, lame, shear, hourglass, slopes_at, weights
                     f[cells[e, n], i] += kappa / 8.0 * held * gamma[n]
 
 
-def elasticity(lame: float, shear: float) -> np.ndarray:
-    """(6, 6) stress of strain, xx yy zz xy yz zx with angles as shears."""
-    D = np.zeros((6, 6))
-    D[:3, :3] = lame
-    return D + shear * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
-
-
 def strain_columns(gradient: np.ndarray) -> np.ndarray:
     """(6, 3 k) strains of unit displacements of k functions with these gradients (k, 3)."""
     blocks = []
@@ -121,7 +114,8 @@ def strain_columns(gradient: np.ndarray) -> np.ndarray:
 
 def element_stiffness(kind: str, corners: np.ndarray, lame: float, shear: float, hourglass: float) -> np.ndarray:
     """(24, 24) stiffness of one element [N/m] of any formulation."""
-    D = elasticity(lame, shear)
+    D = shear * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])  # stress of strain, xx yy zz xy yz zx with angles as shears
+    D[:3, :3] += lame
     points = [at for at, _ in gauss(2)]
     jacobians = [corners.T @ slopes(at) for at in points]
     gradients = [slopes(at) @ np.linalg.inv(J) for at, J in zip(points, jacobians, strict=True)]

@@ -20,8 +20,6 @@ from raceway.points.axes import grid
 from raceway.points.sweep import fill_store, prepare
 from raceway.testing import b7206c
 
-Serial = built_in("executor", "serial")
-
 SPEED, SPIN, DIRECTION = "excitation.speed_rpm", "kinematics.spin_speed_rpm", "excitation.direction_deg"
 RADIANS = np.pi / 30.0
 
@@ -205,7 +203,7 @@ def test_forces_along_three_directions_find_the_tangent_of_a_loaded_bearing(tmp_
         integrator={"kind": "quasi_static"},
     )
     plan = prepare(scene, grid(["excitation.speed_rpm=1000:9000:5", f"{DIRECTION}=0,45,90"]), tmp_path / "sweep")
-    with fill_store(plan, Serial()) as store:
+    with fill_store(plan, built_in("executor", "serial")()) as store:
         data = store.to_xarray()
     secant, tangent = table(data), table(data, {DIRECTION: 0}, "tangent")
     assert (secant.source, tangent.source) == ("directions", "tangent")

@@ -18,8 +18,6 @@ from raceway import scene_from_dict
 from raceway.extend import picture, ring_shape
 from raceway.testing import b7206c, run
 
-Vtu = built_in("format", "vtu")
-
 
 def volume(surface):
     """Gauss's theorem over the triangles, with the surface's own normals."""
@@ -205,7 +203,7 @@ def test_mesh_counts_and_files(tmp_path):
     assert len(content["bodies"]) == 14
     assert [Path(name).name for name in content["files"]] == ["inner_ring.vtu", "outer_ring.vtu", "balls.vtu"]
     assert sorted(map(str, tmp_path.iterdir())) == sorted(content["files"])
-    balls = Vtu().read(tmp_path / "balls.vtu")
+    balls = built_in("format", "vtu")().read(tmp_path / "balls.vtu")
     sizes = {name: body["elements"] for name, body in content["bodies"].items() if name.startswith("ball")}
     assert len(balls.cells) == sum(sizes.values()) and set(sizes) <= set(balls.node_sets)
 

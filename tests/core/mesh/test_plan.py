@@ -14,7 +14,6 @@ from raceway.extend import mesh_bodies, resolve
 from raceway.plugins.bodies.mesh import predicted_mesh
 
 Abaqus = built_in("format", "abaqus")
-Gmsh = built_in("mesher", "gmsh")
 Structured = built_in("mesher", "structured")
 
 BEARING = load_scene(EXAMPLES / "minimal.toml").bearing
@@ -118,7 +117,7 @@ def test_balls_of_another_size_are_warned_of_once(tmp_path):
 )
 def test_gmsh_is_predicted(tmp_path, solid, method, size, low, high):
     path = solids.write(tmp_path / f"{solid}.brep", solid)
-    mesher = Gmsh(ball=path, method=method, element_size=size, scale=1e-3)
+    mesher = built_in("mesher", "gmsh")(ball=path, method=method, element_size=size, scale=1e-3)
     predicted, meshes = mesher.predict(BEARING), mesher.mesh(BEARING)
     cells = len(meshes["ball_00"].cells)
     assert low <= predicted.bodies["ball_00"] / cells <= high

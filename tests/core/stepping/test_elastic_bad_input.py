@@ -19,7 +19,6 @@ CentralDifference = built_in("integrator", "central_difference")
 Newmark = built_in("integrator", "newmark")
 
 YOUNG, SIDE = 2e11, 2e-3
-MODULUS = YOUNG / 2.0
 
 
 def cubes(gap: float = 0.0, held: bool = True, penalty: float = 1e14) -> ElasticSystem:
@@ -43,7 +42,7 @@ def cubes(gap: float = 0.0, held: bool = True, penalty: float = 1e14) -> Elastic
     contact = NodalContact([pair], assembly.nodes, PlaceLaw(linear, np.full((len(at.area), 1), penalty)))
     force = np.zeros((assembly.nodes, 3))
     force[np.flatnonzero(meshes[0][0][:, 2] > gap + SIDE - 1e-9), 2] = -1.0
-    return ElasticSystem(assembly, contact, MODULUS, assembly.reduced(force.ravel()))
+    return ElasticSystem(assembly, contact, (YOUNG / 2.0), assembly.reduced(force.ravel()))
 
 
 def _facets(mesh, height):

@@ -41,7 +41,10 @@ class Block:
         self.mass, self.size = float(self.lumped.sum()), points.size
         self.weight, self.pull, self.penalty = weight, pull, penalty
         self.base = np.flatnonzero(points[:, 2] < 1e-9)
-        share = _tributary(points[self.base], sides, counts)
+        share = np.full(len(self.base), 1.0 / (counts[0] * counts[1]))
+        for axis in (0, 1):
+            place = points[self.base, axis]
+            share[(place < 1e-9) | (place > sides[axis] - 1e-9)] *= 0.5
         self.area = share * sides[0] * sides[1]
         self.friction = CoulombFriction(coefficient, np.full(len(self.base), stick), symmetric) if coefficient else None
         self.normal = np.tile([0.0, 0.0, 1.0], (len(self.base), 1))
@@ -160,12 +163,3 @@ class Block:
 
     def _mean(self, u: np.ndarray) -> np.ndarray:
         return np.r_[self.lumped @ u.reshape(-1, 3) / self.mass, 0.0, 0.0]
-
-
-def _tributary(base: np.ndarray, sides: tuple[float, float, float], counts: tuple[int, int, int]) -> np.ndarray:
-    """(k,) shares of the base's area."""
-    share = np.full(len(base), 1.0 / (counts[0] * counts[1]))
-    for axis in (0, 1):
-        rim = (base[:, axis] < 1e-9) | (base[:, axis] > sides[axis] - 1e-9)
-        share[rim] *= 0.5
-    return share

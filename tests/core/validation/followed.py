@@ -109,18 +109,13 @@ def beside(fold: Point, count: int = 1) -> list[Point]:
         lambda p: parameter.problem_at(p, symmetry), 2950.0, fold.solved.size, 1e-8,
         fastest=lambda _: fold.highest * fold.solved.problem.speed,
     )  # fmt: skip
-    begin = attrs.evolve(fold, tangent=_again(branch, fold))
+    across = np.zeros_like(fold.tangent)  # the tangent in the units of another branch
+    across[:-1] = fold.tangent[:-1]
+    begin = attrs.evolve(fold, tangent=across / np.linalg.norm(across))
     found = [begin, begin]
     for _ in range(count):
         found = [branch.step(one, step) for one, step in zip(found, (-3.0, 3.0), strict=True)]
     return found
-
-
-def _again(branch: Branch, fold: Point) -> np.ndarray:
-    """The tangent in the units of another branch."""
-    across = np.zeros_like(fold.tangent)
-    across[:-1] = fold.tangent[:-1]
-    return across / np.linalg.norm(across)
 
 
 def z_of(point: Point) -> complex:
