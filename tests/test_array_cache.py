@@ -216,7 +216,6 @@ def test_the_command_reads_no_arrays():
 
 
 def test_a_disk_without_room_costs_one_warning_and_no_answer(folder, monkeypatch):
-    """What is computed is returned; nothing is left on the disk."""
     usage = array_cache.shutil.disk_usage("/")
     monkeypatch.setattr(array_cache.shutil, "disk_usage", lambda place: usage._replace(free=100))
     make = Maker()

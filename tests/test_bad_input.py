@@ -125,7 +125,6 @@ def test_a_file_that_is_no_scene(case, tmp_path):
 
 
 def test_a_plug_in_that_fails_to_import(tmp_path):
-    """It is told beside what does not need it, and never on standard output."""
     install(tmp_path, "broken", "import sys; sys.exit(3)")
     check = ["check", MINIMAL, "--json"]
     found, listed, used = several(

@@ -245,7 +245,6 @@ def test_help_of_new_plugin_lists_the_kinds():
 
 @pytest.mark.parametrize("command", [*RUNNABLE, "study", ""])
 def test_help(command, monkeypatch):
-    """Options that all have, an example where something runs, in 80 columns; a group without a command shows it."""
     monkeypatch.setenv("COLUMNS", "80")
     found = invoke(*command.split(), "--help")
     assert found.exit_code == 0 and max(map(len, found.stdout.splitlines())) <= 80

@@ -310,7 +310,6 @@ def test_the_first_sentence_tells_differences_in_the_order_of_the_axis():
     ],
 )  # fmt: skip
 def test_what_lies_between_the_ends_of_an_axis_is_told_where_it_is_beyond_them(axes, k_of, said):
-    """The first sentence gave the range of the ends as that of all runs, and passed over an axis whose ends are alike."""
     made = _made(axes, k_of)
     k = [1e-6 * k_of(row.point) for row in made.rows]
     ranking = next(words for words in made.words if " lies between " in words)

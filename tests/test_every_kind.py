@@ -74,7 +74,6 @@ def test_the_kinds_are_all_here():
 
 
 def test_a_run_uses_law_excitation_integrator_identifier_and_report(files, tmp_path):
-    """The report is installed, the others are files."""
     site = tmp_path / "site"
     site.mkdir()
     install(site, "lines", FILES["one_line.py"])
@@ -140,7 +139,6 @@ def test_a_sweep_uses_a_foreign_executor(files, tmp_path):
      ("return None", "write() raises TypeError"), ("raise SystemExit(3)", "write() raises SystemExit: 3")],
 )  # fmt: skip
 def test_a_report_that_raises_is_named_after_the_result_is_saved(tmp_path, body, words):
-    """The other report is written, too."""
     bad = report(tmp_path, "bad", body)
     good = report(tmp_path, "good", "p = Path(folder) / 'good.txt'; p.write_text('good'); return [p]", "Good")
     out = tmp_path / "out"

@@ -74,7 +74,6 @@ def test_the_elastic_examples_answer_what_condensed_bodies_do():
 
 
 def test_a_coarse_mesh_leads_with_its_warning(tmp_path):
-    """Before what has no effect, on the screen below the answer and in result.json."""
     changes = ("mesh.nodes_per_semi_axis=2", "bodies.hourglass=0.01", "integrator.steps_per_turn=12", "integrator.turns=1")
     words = [word for change in changes for word in ("--set", change)]
     found = invoke("run", FOLDER / "b7206_patches.toml", *words, "--out", tmp_path)

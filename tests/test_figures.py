@@ -110,7 +110,6 @@ def test_every_drawn_point_lies_inside_its_axes_and_is_read_at_600_pixels(draw):
 
 
 def test_equal_rows_are_both_seen():
-    """Each is drawn wider than the one upon it, in another grey, line and marker."""
     (axes,) = of_equal_rows().axes
     below, above = axes.lines
     assert below.get_ydata() == pytest.approx(above.get_ydata(), rel=1e-9) and below.zorder <= above.zorder
@@ -134,7 +133,6 @@ BLIND = {
 
 
 def test_neighbouring_curves_differ_in_grey_and_for_the_colour_blind():
-    """And each of the first five has a line of its own, each of the first eight a marker."""
     colours = [np.array(to_rgb(colour)) for colour in writer.COLOURS]
     for one, other in zip(colours, colours[1:], strict=False):
         assert abs(grey(one) - grey(other)) > 0.1
@@ -147,7 +145,6 @@ def test_neighbouring_curves_differ_in_grey_and_for_the_colour_blind():
 
 @pytest.mark.slow
 def test_pictures_are_written_for_a_page_and_for_a_paper(tmp_path, all_pixels):
-    """As PNG at 300 dots per inch; on request also with letters that publishers take."""
     for form in ("pdf", "svg"):
         found = invoke("run", MINIMAL, "--picture-format", form, "--out", tmp_path)
         assert found.exit_code == 0, found.stderr

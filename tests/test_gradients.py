@@ -121,7 +121,6 @@ ORBIT = b7206c(
 
 
 def test_a_held_displacement_moves_along_orbits():
-    """Also where the axial load that it stands for changes."""
     model, still = settled(ORBIT | {"supports": {"axial": "displacement"}, "contact": {}, "load": {"axial": 300.0}})
     found = Gradients(model, still).by_path("load.axial").motion.equivalent_stiffness
     expected = by_runs(model, "load.axial", 0.1, lambda one, e: SteadyOrbit.of(one, e).line[2])
@@ -140,7 +139,6 @@ MOVING = {
 
 @pytest.mark.parametrize("name", MOVING)
 def test_columns_have_the_derivatives_of_models(name):
-    """Compiled loops and searches on collocation meshes."""
     model, still = settled(MOVING[name])
     gradients = Gradients(model, still)
     keys = [key for key in continuous_keys(model.scene) if key.value]

@@ -62,7 +62,6 @@ BROKEN = {
 
 
 def test_tests_see_built_in_plug_ins_only(tmp_path, monkeypatch):
-    """Whatever is installed: here a law that looks so."""
     install(tmp_path, "foreign", law("foreign"))
     monkeypatch.syspath_prepend(tmp_path)
     assert "foreign" in {point.name for point in entry_points(group="raceway")}
@@ -139,7 +138,6 @@ def test_a_mapping_that_names_no_place_is_a_fault(site, given):
 
 
 def test_a_distribution_that_was_half_removed_takes_nothing_down(site):
-    """Its entry points are there, its METADATA is not."""
     site.install("gone", "import a_module_that_was_removed")
     (site.folder / "gone-1.0.dist-info" / "METADATA").unlink()
     site.install("good", LAW.format(name="good_law", cls="Good"))

@@ -192,7 +192,6 @@ def test_a_fit_takes_them_as_measured(loads):
 
 
 def test_sweeps_and_tables_of_coefficients_have_them(tmp_path):
-    """Of a one-off file; in CSV and JSON: files for rotor programs hold stiffness and damping alone."""
     lines = ["from raceway import hookimpl", "from tests.test_quantities import Loads", "", "@hookimpl"]
     (tmp_path / "loads.py").write_text("\n".join([*lines, "def raceway_quantities():", "    return [Loads]", ""]))
     speeds = {"kinematics.spin_speed_rpm": [3000.0, 6000.0, 9000.0]}

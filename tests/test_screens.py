@@ -142,7 +142,6 @@ def assert_one_screen(result):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_of_scene_fits_one_screen(kind):
-    """Those of examples too: test_examples.py."""
     assert_one_screen(ran(kind))
 
 

@@ -215,7 +215,6 @@ def test_a_damaged_row_is_computed_again(statement, damaged, tmp_path):
 
 
 def test_a_missing_row_does_not_move_the_values_of_the_others(tmp_path):
-    """Values are labelled by their place among the rows."""
     swept(tmp_path / "s", grid(["load.axial=500,600,700,800"]))
     with open_store(tmp_path / "s") as store:
         whole = store.to_xarray()["z_real"].values

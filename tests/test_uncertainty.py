@@ -87,7 +87,6 @@ def moving():
 
 @pytest.mark.parametrize("scene", SCENES)
 def test_an_interval_is_what_its_parts_say(scene):
-    """Of 40 scenes, also on the screen and in the application."""
     assert differences(scene) == []
 
 

@@ -73,7 +73,6 @@ def test_a_wrong_answer_is_the_authors_mistake(answer):
     ],
 )
 def test_a_key_without_effect_is_told_where_it_was_meant(kind, changes, idle, tmp_path):
-    """The scene gives `integrator.turns`."""
     text = Path(ARTICLE).read_text(encoding="utf-8").replace('kind = "auto"', f'turns = 12\nkind = "{kind}"')
     (tmp_path / "scene.toml").write_text(text)
     words = [word for change in changes for word in ("--set", change)]

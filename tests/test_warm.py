@@ -37,7 +37,6 @@ def test_energy_is_balanced_and_temperatures_are_those_computed_with():
 
 
 def test_at_rest_hot_surroundings_are_told():
-    """They are no runaway: no speed is sought below which the bearing would have a steady temperature."""
     scene = published.warm_pair({"ambient_c": 500.0})
     del scene["kinematics"]
     with pytest.raises(rw.ConvergenceError, match="oil and surroundings give it at rest.*heat.ambient_c"):

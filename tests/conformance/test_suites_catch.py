@@ -341,7 +341,6 @@ def test_an_unlisted_failure_fails_under_pytest(expecting):
 
 
 def test_every_suite_says_its_duties():
-
     for kind in SUITES:
         checks = suite_of(kind).checks()
         assert len(checks) >= 3

@@ -28,13 +28,8 @@ def refused(contact, **tables):
 def test_thickness_is_that_of_the_formulas_written_out():
     rng, n = np.random.default_rng(1), 200
     viscous, load = 10.0 ** rng.uniform(-4.0, 1.0, n), 10.0 ** rng.uniform(-1.0, 4.0, n)
-    modulus, along, across, k = (
-        10.0 ** rng.uniform(7.0, 11.4, n),
-        np.full(n, 4e-3),
-        np.full(n, 0.1),
-        rng.uniform(1.0, 9.0, n),
-    )
-    found = film(viscous, 2e-8, modulus, along, across, load, k)
+    modulus, k = 10.0 ** rng.uniform(7.0, 11.4, n), rng.uniform(1.0, 9.0, n)
+    found = film(viscous, 2e-8, modulus, np.full(n, 4e-3), np.full(n, 0.1), load, k)
     assert set(found.regime) == set(range(len(REGIMES))), "from rubber to steel"
     for i, e in enumerate(modulus):
         each = published.regimes(viscous[i] / (e * 4e-3), 2e-8 * e, load[i] / (e * 4e-3**2), k[i], 25.0)
@@ -45,7 +40,6 @@ def test_thickness_is_that_of_the_formulas_written_out():
 
 
 def test_a_film_thins_with_the_load_without_a_jump_from_regime_to_regime():
-    """Where it jumped, contacts of a light row had two loads that hold themselves up, and a set two equilibria, 7 % apart in kyy."""
     load = np.geomspace(1e-3, 1e4, 4000)
     same = (np.full(load.shape, number) for number in (2.3e11, 4e-3, 0.1))
     films = film(np.full(load.shape, 0.05), 2e-8, *same, load, np.full(load.shape, 4.0))
@@ -94,15 +88,8 @@ def test_oils_thin_with_the_temperature_as_their_lines_do():
 
 def test_the_heat_of_the_inlet_takes_about_half_of_the_preload_that_a_film_gives_at_spindle_speed():
     def running(law):
-        found = run(
-            rw.Scene.from_dict(
-                {
-                    "bearing": published.SPINDLE,
-                    "contact": law,
-                    "kinematics": {"spin_speed_rpm": 18000.0, "gyroscopic": "none", "ring_growth": False},
-                }
-            )
-        )
+        kinematics = {"spin_speed_rpm": 18000.0, "gyroscopic": "none", "ring_growth": False}
+        found = rw.run({"bearing": published.SPINDLE, "contact": law, "kinematics": kinematics})
         return found.to_dict()["equilibrium"], found.warnings
 
     dry, cold, hot = (running(law) for law in (DRY_LAW, {**published.OIL, "inlet_heating": "none"}, published.OIL))
@@ -134,11 +121,8 @@ def test_what_a_film_adds_to_hertz_is_no_error():
 
 
 def test_slow_bearings_have_no_warning_of_their_film():
-    assert not [
-        one
-        for one in run(published.scene({**published.OIL, "roughness": None}, excitation={"speed_rpm": 1000.0})).warnings
-        if "film" in one
-    ]
+    warnings = run(published.scene({**published.OIL, "roughness": None}, excitation={"speed_rpm": 1000.0})).warnings
+    assert not [one for one in warnings if "film" in one]
 
 
 #: Lines of ASTM D2270, table 1, either side of the oils' viscosities at 100 C: viscosity there, L and H [mm2/s].

@@ -103,7 +103,6 @@ def test_gyroscopic_moments_are_those_of_the_balls_material():
 
 
 def test_values_of_the_screen_are_short():
-    """They are never broken; long ones would push the remarks off a narrow screen."""
     rows = Friction.rows(friction(quantities={"friction": {"seal_torque": 0.02}})[0])
     assert all(len(value) < 20 for _, value, _ in rows)
     assert [remark for name, _, remark in rows if name == "torque by source"][0].count(",") == 4

@@ -188,13 +188,9 @@ def scene(bodies, integrator):
     return scene_from_dict(tables, registry())
 
 
-#: Points take seconds: once.
-WAYS = [(bodies, way) for bodies in BODIES for way in ("trapezoidal", "by_numbers")]
-DEAR = {("nodal", "trapezoidal"), ("nodal", "by_numbers"), ("elastic", "trapezoidal"), ("elastic", "by_numbers")}
-
-
+@pytest.mark.parametrize("integrator", ["trapezoidal", "by_numbers"])
 @pytest.mark.parametrize(
-    ("bodies", "integrator"), [pytest.param(*way, marks=pytest.mark.slow if way in DEAR else ()) for way in WAYS]
+    "bodies", [pytest.param(one, marks=[pytest.mark.slow] * (one in ("nodal", "elastic"))) for one in BODIES]
 )
 def test_a_foreign_integrator_has_its_order_on_every_kind_of_bodies(bodies, integrator):
     """A force that grows over 0.1 ms: the error falls with the square of the step, from 10 to 20 and 40 steps."""

@@ -127,7 +127,6 @@ def test_what_grows_is_called_unstable(largest, verdict):
 
 
 def test_what_dies_within_a_span_has_the_multiplier_zero(recwarn):
-    """Dashpots of 1e5 N s/m leave nothing: it was not a number, with a warning of numpy's, and all of them "neutral"."""
     over = np.diag([0.0, 0.5, -0.9])
     assert floquet_of(over, np.pi / 6.0).multipliers == pytest.approx([0.9**12, 0.5**12, 0.0])
     assert floquet_of(0.0 * over, np.pi / 6.0).verdict == "stable"

@@ -94,7 +94,6 @@ def test_lines_above_half_the_sampling_rate_are_left_out():
 
 
 def test_orbiting_without_speed_is_refused():
-
     with pytest.raises(SceneError, match=r"kinematics\.orbiting.*needs kinematics\.spin_speed_rpm"):
         make_plan(scene_from_dict(b7206c(kinematics={"orbiting": True})))
 

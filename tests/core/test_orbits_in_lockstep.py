@@ -82,7 +82,6 @@ def test_a_bound_of_contact_forces_is_above_the_largest(loop):
 
 
 def test_a_point_does_not_feel_the_lanes_beside_it(loop):
-    """Its balls go on by rounding while others move."""
     kernels, linear, points, states, turning, near, out = loop
     together, backwards = solved(loop), Orbits(*(np.zeros_like(part) for part in out))
     count = len(out.status)

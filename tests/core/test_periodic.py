@@ -161,7 +161,6 @@ def test_what_lies_beyond_a_fold_satisfies_the_equations(softening):
 
 
 def test_a_branch_over_the_speed(softening):
-    """The same motion whether it is solved for at a speed or followed there."""
     problem, q, tangent = softening
     low = attrs.evolve(problem, speed=0.5 * problem.speed, share=0.2)
     begin = find(low, q, tangent, 1e-6).refined.solved

@@ -293,7 +293,6 @@ def test_what_different_rows_cannot_have_is_refused(tables, words):
 
 
 def test_a_set_goes_through_a_file(tmp_path):
-    """Every key of a scene comes back from its tables, rows too; numbers with units in rows are read."""
     one = scene("TBT", 200.0, {"row": [{}, {"position": "1 mm", "preset": "B7206C"}, {}]})
     assert one.bearing.rows[1] == (1.0, 1e-3) and one.bearing.of_rows[1].contact_angle_deg == 15.0
     assert attrs.evolve(scene_from_dict(one.to_dict()), given=None, source={}) == attrs.evolve(one, given=None, source={})

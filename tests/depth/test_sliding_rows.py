@@ -39,7 +39,6 @@ def slopes(tables, unknown, force=3.0, moment=0.01):
 @pytest.mark.parametrize("rpm", [0.0, 12000.0])
 @pytest.mark.parametrize("arrangement", ["DB", "DF", "TBT"])
 def test_the_axial_stiffness_is_the_slope_of_whole_runs(arrangement, rpm):
-    """It was twice as much: the row on the spring carries a constant force, and resists nothing."""
     tables = sprung(arrangement, load={"axial": 0.0}, kinematics={"spin_speed_rpm": rpm})
     result = rw.run(tables)
     assert result.stiffness[0, 0] == pytest.approx(slopes(tables, [0])[0, 0], rel=SLOPE)
@@ -147,7 +146,6 @@ def test_gradients_are_those_of_whole_runs(key, step):
 
 
 def test_two_preloads_with_a_spring_are_reported_as_the_rows_carry_them():
-    """300 N and 300 N were reported where two rows of 300 N stand against one of 600 N."""
     found = rw.run(sprung("TBT", bearing={"second_preload": 600.0}, load={"axial": 0.0})).to_dict()["equilibrium"]["preload"]
     assert (found["before_mounting_n"], found["second_before_mounting_n"]) == (300.0, 600.0)
     assert found["rows_n"] == pytest.approx([300.0, 300.0, 600.0], rel=1e-8)

@@ -303,7 +303,6 @@ def test_the_section_is_in_proportion():
 
 
 def test_its_drawings_are_readable():
-    """Large and small, light and heavy, with few and with many balls."""
     assert_readable(
         [
             section_drawing(name, rw.scene_from_dict({"bearing": {"preset": name}}).bearing)

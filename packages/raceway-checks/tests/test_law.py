@@ -151,7 +151,6 @@ def test_the_command_says_what_the_function_does(tmp_path):
 
 
 def test_its_pictures_are_readable():
-    """Dry, damped, opening on the way, and carried by a film before the surfaces touch."""
     film = ("contact.viscosity=0.03", "kinematics.spin_speed_rpm=10000")
     found = [rw.law("penalty"), rw.law("hertz", None, "contact.damping=3000", amplitude=1.5), rw.law("film", None, *film)]
     assert_readable([one.draw() for one in found])

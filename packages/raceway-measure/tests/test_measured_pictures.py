@@ -16,7 +16,6 @@ from raceway.testing import b7206c
 
 
 def test_pictures_of_a_fit_are_readable():
-    """One number, two numbers, none that is determined; a second quantity that is scattered over decades."""
     data = {"axial [N]": [400.0, 1000.0, 2000.0, 3000.0], "kxx [N/um]": [39.0, 68.0, 98.0, 124.0]}
     names = "bearing.contact_angle_deg,bearing.conformity_inner"
     one, two = (raceway.fit(data, b7206c(), free).to_dict() for free in (names.split(",")[0], names))

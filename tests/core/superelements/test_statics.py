@@ -170,7 +170,6 @@ def test_forces_balance(way, held, monkeypatch):
 
 @pytest.mark.slow
 def test_linearised_bearings_go_with_their_iteration():
-    """Those of all iterations stayed in memory: each knew itself through what it keeps."""
     alive, most, plain = weakref.WeakSet(), [0], LinearisedContacts.__init__
 
     def counted(self, *given):
