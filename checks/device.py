@@ -83,15 +83,15 @@ def turn() -> dict[str, str]:
     from raceway import run
 
     start = perf_counter()
-    explicit = run(
-        scene(
-            "integrator.kind=central_difference", "integrator.turns=1", "integrator.least_step=3e-9", "integrator.device=gpu"
-        )
+    steps = (
+        "integrator.kind=central_difference",
+        "integrator.turns=1",
+        "integrator.least_step=3e-9",
+        "integrator.device=gpu",
     )
-    seconds, implicit = (
-        perf_counter() - start,
-        run(scene("integrator.kind=newmark", "integrator.turns=2", "integrator.steps_per_turn=80")),
-    )
+    explicit = run(scene(*steps))
+    seconds = perf_counter() - start
+    implicit = run(scene("integrator.kind=newmark", "integrator.turns=2", "integrator.steps_per_turn=80"))
     k, wanted = explicit.equivalent_stiffness, implicit.equivalent_stiffness
     return {
         "a turn at 3 ns": f"{seconds:.0f} s",

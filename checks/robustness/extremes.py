@@ -43,15 +43,11 @@ def rows() -> list[Row]:
             unsaid += [] if any("Z is not resolved" in text for text in warnings) else [seed]
         elif large and not _numbers(result):
             hidden.append(seed)
+    nulls = f"null totals without a warning and its reason, null parts without one, of {RUNS} extreme runs"
     told = f"{null} with a null total, {large} with a part of 1 or more"
     return [
         below("exceptions that are no message, and NaN in results", len(raw), 0, "; ".join(raw[:3])),
-        below(
-            f"null totals without a warning and its reason, null parts without one, of {RUNS} extreme runs",
-            len(silent),
-            0,
-            f"{told} {silent[:5]}",
-        ),
+        below(nulls, len(silent), 0, f"{told} {silent[:5]}"),
         below("runs with a part of 1 or more without a warning", len(unsaid), 0, str(unsaid[:5])),
         below("runs with a part of 1 or more whose screen shows K, C or Z as a number", len(shown), 0, str(shown[:5])),
         below("runs without one whose screen shows none of them", len(hidden), 0, str(hidden[:5])),

@@ -29,11 +29,8 @@ def crossed(number: int) -> tuple[Tables, Tables]:
     axial, friction = decades(100.0, 3000.0), float(rng.choice(_FRICTION))
     bearing: Tables = {"preset": "B7206C"}
     if rng.random() < 0.3:
-        bearing |= {
-            "ball_count": int(rng.integers(7, 19)),
-            "ball_diameter": 7.5e-3,
-            "contact_angle_deg": float(rng.uniform(12, 40)),
-        }
+        count, angle = int(rng.integers(7, 19)), float(rng.uniform(12, 40))
+        bearing |= {"ball_count": count, "ball_diameter": 7.5e-3, "contact_angle_deg": angle}
     base: Tables = {
         "bearing": bearing,
         "load": {"axial": axial, "radial": [decades(1.0, 0.5 * axial) if rng.random() < 0.3 else 0.0, 0.0]},
