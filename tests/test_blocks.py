@@ -58,17 +58,13 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("raceway.points.sweep.BLOCK", (10, 10))
 
 
+TURNING = {"load.axial": [300.0, 2000.0], "kinematics.spin_speed_rpm": [0.0, 1000.0, 24000.0], "load.radial[1]": [0.0, 30.0]}
+
+
 @pytest.mark.parametrize(
     "changes, axes",
     [
-        (
-            {},
-            {
-                "load.axial": [300.0, 2000.0],
-                "kinematics.spin_speed_rpm": [0.0, 1000.0, 24000.0],
-                "load.radial[1]": [0.0, 30.0],
-            },
-        ),
+        ({}, TURNING),
         ({"supports": {"tilt": "locked"}, "contact": {"kind": "hertz", "damping": 0.01}}, {"load.axial": [300.0, 800.0]}),
         (
             {"bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distance": 0.016}},
@@ -203,11 +199,8 @@ def test_the_answer_says_how_points_were_computed(tmp_path: Path) -> None:
     lines = (tmp_path / "s" / "results.csv").read_text().splitlines()
     assert [line.split(",")[1] for line in lines] == ["status", "failed", "computed", "computed"]
     content = json.loads(invoke(*words, "--resume", "--json").stdout)
-    assert content["states"]["computed"] == 2 and [row["status"] for row in content["rows"]] == [
-        "failed",
-        "computed",
-        "computed",
-    ]
+    assert content["states"]["computed"] == 2
+    assert [row["status"] for row in content["rows"]] == ["failed", "computed", "computed"]
 
 
 def test_designs_fill_their_ranges() -> None:

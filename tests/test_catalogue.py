@@ -125,9 +125,6 @@ def test_a_deep_groove_bearing_counts_from_the_middle_of_its_clearance(bodies):
     assert answer(1e-3).displacement[0] == pytest.approx(play, rel=1e-3)
 
 
-# --- series
-
-
 def test_a_preset_with_a_file_of_its_own_goes_first():
     assert CATALOGUE["7206A"].table["rings"]["young"] == 212e9
 
@@ -233,9 +230,6 @@ def test_presets_of_rows_are_spoken_of_too():
     found = run({**base, "bearing": mixed}).geometry
     assert found["preset"] == "B7206C" and [one["preset"] for one in found["rows"]] == ["7206A5"]
     assert "ball_count" not in found["rows"][0]["inferred"] and "ball_count" in found["inferred"]
-
-
-# --- materials
 
 
 def test_a_material_by_name_gives_its_numbers_and_own_keys_override_them():

@@ -91,9 +91,7 @@ def test_swapping_a_kind_leaves_out_what_the_other_does_not_know():
     notes: list[str] = []
     swapped = tables_at(tables, {"excitation.kind": "unidirectional"}, default_registry(), notes)
     assert "whirl" not in swapped["excitation"] and tables["excitation"]["whirl"] == "backward"
-    assert {k: v for k, v in swapped["excitation"].items() if k != "kind"} == {
-        k: v for k, v in tables["excitation"].items() if k not in ("kind", "whirl")
-    }
+    assert swapped["excitation"] == {**SCENE["excitation"], "kind": "unidirectional"}
     assert len(notes) == 1 and "excitation.whirl = backward" in notes[0]
     kept = tables_at(tables, {"excitation.kind": "bidirectional"}, default_registry())
     assert kept["excitation"]["whirl"] == "backward"
@@ -137,9 +135,7 @@ def test_effects_and_words_say_what_the_rows_say(small):
     text = "\n".join(small.words)
     assert f"supports.tilt from locked to free changes it by {percent(tilt)}" in text
     assert f"{k.min() / 1e6:.2f} and {k.max() / 1e6:.2f} N/µm" in text
-    for end, level in enumerate(("locked", "free")):
-        change = percent(math.log(k[1, end] / k[0, end]))
-        assert ("with supports.tilt = locked" in text) and change in text, level
+    assert "with supports.tilt = locked" in text and all(percent(change) in text for change in np.log(k[1] / k[0]))
     found = small.rows[0].result["identification"]
     force = found["mass_used_kg"] * (2 * math.pi * found["frequency_hz"]) ** 2
     assert f"m = {found['mass_used_kg']:.3f} kg: {force / 1e6:.2f} to" in text
@@ -149,9 +145,8 @@ def test_json_table_and_picture(small, tmp_path):
     answer = json.loads(json.dumps(small.to_dict(), allow_nan=False))
     assert [axis["key"] for axis in answer["axes"]] == ["excitation.kind", "supports.tilt"]
     assert len(answer["rows"]) == 4 and answer["rows"][0]["result"]["schema"] == 2
-    assert [list(row) for row in small.table()] == [
-        ["kind", "tilt", "K N/µm", "|Z| N/µm", "K within", "C N s/m", "error %"]
-    ] * 4
+    heads = ["kind", "tilt", "K N/µm", "|Z| N/µm", "K within", "C N s/m", "error %"]
+    assert [list(row) for row in small.table()] == [heads] * 4
     (path,) = small.picture(tmp_path)
     assert path.read_bytes()[:4] == b"\x89PNG"
 
@@ -279,12 +274,9 @@ def _made(axes, k_of) -> Comparison:
 def test_the_first_sentence_says_what_the_table_says_where_speed_is_varied_with_another_axis():
     """A penalty that is a quarter stiffer at every speed is an axis that moves K, though not what speed does to it."""
     axes = ["excitation.speed_rpm=10000:14000:3", "contact.kind=hertz,penalty"]
-    first = _made(
-        axes,
-        lambda point: (
-            1e8 * 0.8 ** (point["excitation.speed_rpm"] / 14000.0) * (1.25 if point["contact.kind"] == "penalty" else 1.0)
-        ),
-    ).short_words[1]
+    stiffer = {"hertz": 1e8, "penalty": 1.25e8}
+    made = _made(axes, lambda point: stiffer[point["contact.kind"]] * 0.8 ** (point["excitation.speed_rpm"] / 14000.0))
+    first = made.short_words[1]
     assert "contact.kind from hertz to penalty changes it by +25.0 %" in first and "none of the other axes" not in first
 
 
@@ -359,16 +351,9 @@ def test_a_cause_that_changes_both_alike_leaves_their_ratio_and_one_that_does_no
     cause = {"how": "", "of": []}
     rigid = {"parts": {"numerical": {"low": -3e-3, "high": 3e-3, **cause}, "data": {"low": -0.1, "high": 0.2, **cause},
                        "bodies": {"low": 0.0, "high": 0.08, **cause}}}  # fmt: skip
-    elastic = {
-        "parts": {
-            **rigid["parts"],
-            "numerical": {"low": -4e-3, "high": 4e-3, **cause},
-            "bodies": {"low": 0.0, "high": 0.0, **cause},
-        }
-    }
-    assert of_ratio(rigid, {"parts": {**rigid["parts"], "numerical": elastic["parts"]["numerical"]}}, True) == pytest.approx(
-        (-5e-3, 5e-3)
-    )
+    other = {"numerical": {"low": -4e-3, "high": 4e-3, **cause}}
+    elastic = {"parts": {**rigid["parts"], **other, "bodies": {"low": 0.0, "high": 0.0, **cause}}}
+    assert of_ratio(rigid, {"parts": {**rigid["parts"], **other}}, True) == pytest.approx((-5e-3, 5e-3))
     low, high = of_ratio(rigid, elastic, True)
     assert low == pytest.approx(-math.hypot(0.08, 5e-3)) and high == pytest.approx(5e-3)
     low, high = of_ratio(rigid, rigid, False)  # the first may be stiffer while the second is softer

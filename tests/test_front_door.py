@@ -26,9 +26,6 @@ STATIC = b7206c()
 VALUES = {"hookimpl", "LAW", "FORCE"}
 
 
-# --- scenes in any form
-
-
 @pytest.fixture(scope="module")
 def forms():
     import tomllib
@@ -128,9 +125,6 @@ def test_what_was_said_is_kept_and_not_shared():
     assert as_given(scene).tables["load"] == {"axial": 400.0, "radial": [1.0, 2.0]}
     assert "ball_diameter" not in as_given(scene).tables["bearing"]
     json.dumps(scene.source)
-
-
-# --- results
 
 
 @pytest.fixture(scope="module")
@@ -315,9 +309,6 @@ def test_a_missing_library_is_one_message(static, monkeypatch, module, call):
         getattr(static, call)()
 
 
-# --- the command line is a thin caller
-
-
 @pytest.mark.parametrize(
     ("command", "called", "module"),
     [("run", "run", "pipeline.front"), ("plan", "check", "cli.plan"), ("check", "check", "cli.plan")],
@@ -335,9 +326,6 @@ def test_the_command_line_calls_the_same_function(command, called, module, monke
     words = ["--out", str(tmp_path)] if command == "run" else []
     assert invoke(command, SCENE, "--set", "excitation.speed_rpm=6000 rpm", *words).exit_code == 0
     assert titles == [rw.load_scene(SCENE, ["excitation.speed_rpm=6000"]).title]
-
-
-# --- names
 
 
 #: Names whose examples draw with pyvista: the same.
@@ -374,9 +362,6 @@ def test_names_are_found_lazily_and_listed():
     assert rw.__all__ == dir(rw)
     with pytest.raises(AttributeError, match="module 'raceway' has no attribute 'rnu'"):
         _ = rw.rnu
-
-
-# --- ten lines
 
 
 def test_ten_lines_from_import_to_a_plot_of_k_over_speed(tmp_path, monkeypatch):

@@ -158,9 +158,6 @@ def test_rows_of_a_sweep_say_that_a_life_has_no_limit(tmp_path, status):
     assert still["reason"] in (tmp_path / "s.csv").read_text()
 
 
-# --- along a motion
-
-
 ROTATING = {
     "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0},
     "excitation": {"kind": "bidirectional", "speed_rpm": 6000.0, "amplitude": "constant", "force": 900.0},
@@ -209,9 +206,6 @@ def test_balls_that_orbit_pass_the_same_pattern():
     orbiting = {**ROTATING, "kinematics": {"orbiting": True}}
     fixed = rw.run(ROTATING).quantities["l10r_million_revolutions"]
     assert rw.run(orbiting).quantities["l10r_million_revolutions"] == pytest.approx(fixed, rel=0.03)
-
-
-# --- bad input and limits
 
 
 @pytest.mark.parametrize(

@@ -46,9 +46,6 @@ def printed_life_factor(kappa: float, load_ratio: float) -> float:
     return min(factor, 50.0)
 
 
-# --- ISO/TS 16281
-
-
 @pytest.mark.parametrize(("clearance", "radial", "axial", "moment", "expected", "within"), MASTA)
 def test_the_reference_life_is_that_of_a_published_program(clearance, radial, axial, moment, expected, within):
     bearing = {"preset": "DGB7-MASTA", "tilt_arm": "pitch", "radial_clearance": clearance}
@@ -105,9 +102,6 @@ def test_equal_rows_live_as_one_row_of_their_rating():
     assert (rating / 3.0) ** 3 == pytest.approx(3.0**-0.9 * 20e3**3, rel=1e-14)
 
 
-# --- loads over a turn
-
-
 def test_a_standing_load_over_a_turn_gives_the_standards_exponents():
     loads = np.random.default_rng(3).uniform(0.0, 500.0, (4, 2, 7))
     for moments in (7, 21):
@@ -134,9 +128,6 @@ def test_points_of_the_inner_ring_between_the_balls_have_their_own_histories():
     assert equivalent_loads_of_turn(loads)[0] == pytest.approx(expected, rel=1e-13)
     with pytest.raises(ValueError, match="20 moments of a turn are no multiple of 7 balls"):
         equivalent_loads_of_turn(loads[:20])
-
-
-# --- ISO 281
 
 
 #: a_1, percent of reliability (ISO 281:2007, table of the life modification factor for reliability).
@@ -179,9 +170,6 @@ def test_the_reference_viscosity_of_a_46_mm_pitch_circle():
     assert reference_viscosity(500.0 * turn, 46e-3) == pytest.approx(1e-6 * 45000 * 500**-0.83 * 46**-0.5, rel=1e-12)
     assert reference_viscosity(-15000.0 * turn, 46e-3) == pytest.approx(1e-6 * 4500 * 15000**-0.5 * 46**-0.5, rel=1e-12)
     assert reference_viscosity(0.0, 46e-3) == np.inf
-
-
-# --- ISO 76, fatigue load limit
 
 
 def test_static_contact_ratings_are_those_of_4200_mpa():

@@ -124,9 +124,6 @@ def test_what_rollers_cannot_do_is_refused_by_its_key(table, keys, path):
         make_plan(scene_from_dict({**TABLES, table: keys}))
 
 
-# --- laminae
-
-
 def of_standard(shift, misalignment, clearance, azimuth, laminae=30, crown=0.00035, length=LENGTH, diameter=9e-3):
     """Radial force [N] along y and moment [N m] of ISO/TS 16281: q = c_s delta^(10/9), delta_jk = delta_j - x_k tan(psi_j) -
     2 P(x_k).  In mm and N: c_s = 35948 L^(8/9) / n, P(x) = 0.00035 D ln[1 / (1 - (2 x / L)^2)]."""
@@ -231,9 +228,6 @@ def test_energy_of_laminae_balances_along_a_motion():
     assert rw.run(tables).stability["energy_drift"] < 4e-4
 
 
-# --- many points
-
-
 def test_columns_are_the_runs_to_rounding():
     scene = {
         "bearing": {"preset": "NU206"},
@@ -267,9 +261,6 @@ def test_rollers_are_refused_where_a_contact_is_half_as_wide_as_they_are(share, 
     f = rw.function({**TABLES, "bearing": bearing, "kinematics": {"ball_inertia": False}}, ["load.radial[0]"], ["ball_load"])
     force = load / f(FORCE)["ball_load"].max() * FORCE  # all loads grow alike where there is no clearance
     assert (f.looped({"load.radial[0]": np.array([force])})["status"][0] == rw.PointStatus.FAILED) == refused
-
-
-# --- by number
 
 
 @pytest.mark.parametrize("name", ["NU206", "N 206 ECP", "NJ1010", "NU 222/C3"])

@@ -64,9 +64,8 @@ def test_small_study_writes_everything_and_goes_on_where_it_stopped(tmp_path, qu
     }  # fmt: skip
     with (tmp_path / "curves.csv").open(encoding="utf-8") as file:
         table = list(csv.DictReader(file))
-    assert (
-        len(table) == len(content["rows"]) == 12 * 9 + 12 * 6
-    )  # the mixed pairs at the first and the last load: the scene has 1000 N
+    # The mixed pairs at the first and the last load: the scene has 1000 N.
+    assert len(table) == len(content["rows"]) == 12 * 9 + 12 * 6
     assert all(row["status"] == "completed" and float(row["k"]) > 0.0 for row in table)
     verdicts = {one["number"]: one for one in content["verdicts"]}
     assert verdicts["1a"]["kind"] == "cannot be tested"

@@ -50,9 +50,7 @@ def test_the_scene_is_the_article_s_mesh_of_the_examples():
     with (EXAMPLES / "b7206_article_mesh.toml").open("rb") as file:
         example = tomllib.load(file)
     found = read_toml(SCENE)
-    assert {name: found[name] for name in ("bearing", "mesh", "contact", "bodies")} == {
-        name: example[name] for name in ("bearing", "mesh", "contact", "bodies")
-    }
+    assert all(found[name] == example[name] for name in ("bearing", "mesh", "contact", "bodies"))
     article = read_toml(SCENE.with_name("article.toml"))
     assert found["excitation"] == article["excitation"] and found["rotor"] == article["rotor"]
 
@@ -142,14 +140,10 @@ def test_explicit_steps_of_the_scene_are_a_fourth_way_under_the_same_settings():
 
 def test_the_picture_of_cost_has_every_way_and_its_difference():
     def row(bodies, integrator, k, cpu):
-        numbers = {
-            "identified": {"k": k, "c": 0.0, "abs_z": k},
-            "identification": {"speed_rpm": 12e3},
-            "error": {"total": 1e-5},
-        }
+        numbers = {"identified": {"k": k, "c": 0.0, "abs_z": k}, "identification": {"speed_rpm": 12e3}}
         reference = None if bodies == "condensed" else {"z": abs(k / 2e8 - 1.0)}
         return {"phase": "motion", "case": "unidirectional constant force", "status": "completed", "bodies": bodies,
-                "integrator": integrator, "cost": {"cpu_s": cpu}, "from_condensed": reference, **numbers}  # fmt: skip
+                "integrator": integrator, "cost": {"cpu_s": cpu}, "from_condensed": reference, "error": {"total": 1e-5}, **numbers}  # fmt: skip
 
     rows = [row("condensed", "newmark", 2e8, 1.0), row("elastic", "newmark", 2.02e8, 60.0), row("elastic", "central_difference", 2.03e8, 3600.0)]  # fmt: skip
     picture = next(each for each in drawings({"rows": rows}) if each.name == "article-elastic-cost")
@@ -263,10 +257,8 @@ def test_deviations_are_those_of_rows_made_by_hand():
     moving = [study.row("motion", "bidirectional unbalance force", kind) for kind in ("elastic", "condensed")]
     off = elastic_rows.difference_in_motion(*moving)
     assert off["k"] == pytest.approx(0.01) and off["c"] == pytest.approx(0.5)
-    # w 50 N s/m over |Z|
-    assert off["wc"] == pytest.approx(
-        12000.0 * 3.14159265 / 30.0 * 50.0 / moving[1]["identification"]["dynamic_stiffness"]["abs"]
-    )
+    z = moving[1]["identification"]["dynamic_stiffness"]["abs"]
+    assert off["wc"] == pytest.approx(12000.0 * 3.14159265 / 30.0 * 50.0 / z)  # w 50 N s/m over |Z|
 
 
 def test_a_missing_reference_leaves_differences_out():

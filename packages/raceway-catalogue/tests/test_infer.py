@@ -29,9 +29,6 @@ def series():
     return {one.names[0]: infer_printed(one, conformity=CONFORMITY) for one in lines_by_size(printed_by("nsk"))}
 
 
-# --- standards
-
-
 def test_the_ratings_of_7206c_are_the_printed_ones():
     """Makers print 23.0 and 14.7 kN, rounded to half a percent."""
     row = BallRow(Z, D, PITCH, ANGLE)
@@ -59,9 +56,6 @@ def test_wider_grooves_carry_less():
     assert ratings[2] / ratings[1] == pytest.approx((1.06 / 0.06 / (1.04 / 0.04)) ** 0.41, rel=1e-9)
 
 
-# --- stiffness of pairs
-
-
 def test_the_closed_form_of_a_pair_is_what_a_run_gives():
     """One is interpolated Hertz and bisection, the other the compiled equilibrium: 1e-6 apart."""
     tables = {"bearing": {"preset": "7206C-NSK", "arrangement": "DB", "preload": 400.0}}
@@ -77,9 +71,6 @@ def test_the_load_factor_is_that_of_the_core():
     g = shape.gamma
     for race, (f, exact) in enumerate(zip((0.522, 0.53), shape.ellipses(modulus), strict=True)):
         assert hertz_load_factor(*groove_curvatures(D, g, f, race == 0), modulus) == pytest.approx(exact.factor, rel=1e-6)
-
-
-# --- the answers
 
 
 def test_one_printed_angle_gives_the_same_balls(series):
@@ -143,19 +134,13 @@ def test_groove_and_angle_are_fitted_to_printed_stiffnesses_of_both_directions()
 
 def test_the_bearing_of_an_answer_runs():
     found = rw.infer("30 mm", "62 mm", {15: (23.0e3, 14.7e3), 25: (22.1e3, 14.1e3)}, width="16 mm")
-    assert [found.ball_count.value, found.ball_diameter.value, found.pitch_diameter.value] == [
-        12,
-        pytest.approx(9.525e-3),
-        46e-3,
-    ]
+    assert (found.ball_count.value, found.pitch_diameter.value) == (12, 46e-3)
+    assert found.ball_diameter.value == pytest.approx(9.525e-3)
     ours = rw.run({"bearing": found.bearing(25), "load": {"axial": 400.0}}).stiffness
     preset = rw.run({"bearing": {"preset": "7206A5"}, "load": {"axial": 400.0}}).stiffness
     assert np.allclose(ours, preset, rtol=1e-12, atol=1e-3)
     json.dumps(found.to_dict())
     assert found.other is None or found.other["share"] < 0.01
-
-
-# --- deep groove
 
 
 def test_a_deep_groove_bearing_is_inferred_at_an_angle_of_zero():
@@ -170,8 +155,6 @@ def test_a_deep_groove_bearing_is_inferred_at_an_angle_of_zero():
     with pytest.raises(SceneError, match="by its own grooves"):
         rw.infer("25 mm", "52 mm", {0: ("15.2 kN", "8.9 kN")}, maker="GMN")
 
-
-# --- what is refused
 
 GOOD = Printed(0.07, 0.11, (Rating(15.0, 47e3, 43e3), Rating(25.0, 44.5e3, 41e3)))
 REFUSED = {
@@ -236,20 +219,14 @@ def test_a_wrong_table_is_told_with_its_line(text, words):
         table_in_text(text, "mine.csv")
 
 
-# --- the commands
-
-
 def test_the_command_infers_one_bearing_and_a_table(tmp_path):
     one = ["catalogue", "--infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN:43 kN"]
     found = json.loads(invoke(*one, "--json").stdout)
     assert found["bearing"]["ball_count"] == 20 and found["numbers"]["ball_count"]["reason"]
     assert "axial stiffness uncertain by about 4 %" in invoke(*one).stdout
     file = tmp_path / "mine.csv"
-    file.write_text(
-        f"{HEAD}\n7014C,70,110,20,15,47000,43000\n7014A5,70,110,20,25,44500,41000\nwrong,70,112,20,15,47000,23000\n"
-    )
-    with file.open("a") as more:
-        more.write("contradiction,70,114,20,15,18.5,0.02\n")
+    lines = ["7014C,70,110,20,15,47000,43000", "7014A5,70,110,20,25,44500,41000", "wrong,70,112,20,15,47000,23000"]
+    file.write_text("\n".join([HEAD, *lines, "contradiction,70,114,20,15,18.5,0.02", ""]))
     table = json.loads(invoke("catalogue", "--infer", str(file), "--json").stdout)
     assert [row.get("ball_count") for row in table["rows"]] == [None, 20, None]
     assert "line 5: contradiction: static rating" in table["rows"][0]["refused"]
@@ -287,7 +264,7 @@ def test_the_catalogue_lists_shows_and_draws(tmp_path):
 
 def test_the_section_is_in_proportion():
     from matplotlib.patches import Circle
-    from raceway_catalogue.catalogue import ring_outline, section_drawing
+    from raceway_catalogue.catalogue import ring_outline
 
     bearing = rw.Scene.from_dict({"bearing": {"preset": "7014C"}}).bearing
     inner, outer = (ring_outline(bearing, race) for race in (True, False))
@@ -303,9 +280,5 @@ def test_the_section_is_in_proportion():
 
 
 def test_its_drawings_are_readable():
-    assert_readable(
-        [
-            section_drawing(name, rw.scene_from_dict({"bearing": {"preset": name}}).bearing)
-            for name in ("7000C", "7014A", "7930A5")
-        ]
-    )
+    bearings = {name: rw.scene_from_dict({"bearing": {"preset": name}}).bearing for name in ("7000C", "7014A", "7930A5")}
+    assert_readable([section_drawing(name, bearing) for name, bearing in bearings.items()])

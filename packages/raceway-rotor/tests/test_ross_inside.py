@@ -30,9 +30,6 @@ def scene(axial, force):
     }
 
 
-# --- the secant
-
-
 def test_a_circle_changes_both_stiffnesses_alike_and_a_line_only_its_own():
     tangent, u = np.diag([3.0, 3.0]), np.array([1.0, -1.0j])
     np.testing.assert_allclose(secant_stiffness(tangent, u, 2.0 * u, UNITS), 2.0 * np.eye(2), atol=1e-14)
@@ -48,9 +45,6 @@ def test_a_secant_carries_the_motion_and_is_symmetric():
     found = secant_stiffness(tangent, u, true @ u, units)
     np.testing.assert_allclose(found @ u, true @ u, rtol=1e-10)
     np.testing.assert_allclose(found, found.T, rtol=1e-10)
-
-
-# --- the bearing at a node
 
 
 @pytest.mark.parametrize("axial, force", [(1000.0, 904.9), (400.0, 933.7)])
@@ -116,9 +110,6 @@ def test_bad_input_is_refused(given, words):
         node_bearing(**given)
 
 
-# --- without ROSS, and with one that is too old
-
-
 def test_what_is_missing_is_said(monkeypatch):
     monkeypatch.setitem(sys.modules, "ross", None)  # an import of it fails
     for name in ("raceway.ross", "raceway_rotor.bearing"):
@@ -161,9 +152,6 @@ def test_the_example_is_short_and_says_what_is_missing(tmp_path):
     code = f"import sys, runpy; sys.path.insert(0, {str(tmp_path)!r}); runpy.run_path({str(example)!r})"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 1 and "needs ROSS" in done.stderr and "Traceback" not in done.stderr
-
-
-# --- with ROSS
 
 
 @pytest.fixture(scope="module")
