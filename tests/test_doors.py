@@ -212,11 +212,8 @@ class Bolts(rw.Answer):
 
 
 def test_others_read_at_their_own_parameters_alone_and_show_plain_types():
-    assert Bolts().line(3, -1, 5) == (3, -1, 5) and list(inspect.signature(Bolts().line).parameters) == [
-        "row",
-        "seed",
-        "out",
-    ]
+    assert Bolts().line(3, -1, 5) == (3, -1, 5)
+    assert list(inspect.signature(Bolts().line).parameters) == ["row", "seed", "out"]
     assert Bolts().torque(np.int64(3), None) == 3.0 and Bolts().torque(2, grip=0.5) == 1.0
     for arguments, words in (((1,), "`bolts` = 1: must be a whole number below 1e9, at least 2"), ((2, 0), "`grip`")):
         with pytest.raises(rw.SceneError, match=words):

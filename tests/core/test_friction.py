@@ -30,16 +30,13 @@ def friction(**tables):
 def test_parts_rows_and_places_sum_up():
     table, _ = friction(quantities={"friction": {"seal_torque": 0.02, "cage_torque": 0.01, "measured_band": 1.0}})
     speed = 6000.0 * np.pi / 30.0
-    assert (
-        set(table["parts"]) == {"rolling", "elastic_rolling", "sliding", "drag", "seals"}
-        and min(table["parts"].values()) > 0.0
-    )
+    assert set(table["parts"]) == {"rolling", "elastic_rolling", "sliding", "drag", "seals"}
+    assert min(table["parts"].values()) > 0.0
     assert sum(table["parts"].values()) == pytest.approx(table["torque_nm"], rel=1e-12)
     assert table["power_w"] == pytest.approx(speed * table["torque_nm"], rel=1e-12)
     assert sum(table["heat_w"].values()) == pytest.approx(table["power_w"], rel=1e-12)
-    assert table["parts"]["seals"] == pytest.approx(0.03) and table["rows"][0]["torque_nm"] == pytest.approx(
-        table["torque_nm"] - 0.03
-    )
+    assert table["parts"]["seals"] == pytest.approx(0.03)
+    assert table["rows"][0]["torque_nm"] == pytest.approx(table["torque_nm"] - 0.03)
     bands = {"rolling": 0.4, "elastic_rolling": 0.5, "sliding": 0.3, "drag": 0.7}
     spread = np.sqrt(sum((band * table["parts"][name]) ** 2 for name, band in bands.items()))
     assert table["band"]["high"] - table["torque_nm"] == pytest.approx(spread, rel=1e-12)
@@ -159,11 +156,8 @@ def test_without_oil_it_is_left_out_and_asked_for_it_names_the_keys():
     dry = {name: table for name, table in TABLES.items() if name != "lubricant"}
     result = run(rw.Scene.from_dict({**dry, "quantities": {"friction": {"seal_torque": 0.02}}}))
     table = result.to_dict()
-    assert (
-        "friction" not in table
-        and "needs an oil" in table["not_computed"]["friction"]
-        and "life" not in table["not_computed"]
-    )
+    assert "friction" not in table and "needs an oil" in table["not_computed"]["friction"]
+    assert "life" not in table["not_computed"]
     assert any(warning.startswith("[quantities.friction] has no effect") for warning in result.warnings)
     assert not any("no effect" in warning for warning in run(rw.Scene.from_dict(dry)).warnings)
     with pytest.raises(RacewayError) as caught:

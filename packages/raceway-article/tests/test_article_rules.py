@@ -171,10 +171,8 @@ def test_nothing_is_judged_over_a_failed_run():
     values[failed] = np.nan
     surface, lost = np.stack([values, 2.0 * values]), np.stack([NONE, failed])
     assert courses.course(values, SMALL, failed) is None
-    assert (
-        courses.change_within(W, values, failed, 0.0, 0.25) is None
-        and courses.load_effect(W, surface, lost, 0.0, 0.25) is None
-    )
+    assert courses.change_within(W, values, failed, 0.0, 0.25) is None
+    assert courses.load_effect(W, surface, lost, 0.0, 0.25) is None
     assert courses.influence_grows(surface, lost) is None
     assert courses.rises_with_load(np.stack([surface[0], surface[1], 3.0 * values]), np.full((3, 9), 1e-9),
                                  np.stack([NONE, failed, NONE]))[3:6] == [True, None, True]  # fmt: skip
