@@ -86,15 +86,8 @@ def compare(load: float, nodes: float) -> dict[str, Any]:
         row["pressure_deviation"] = row["peak_pressure_pa"] / hertz - 1.0 if hertz > 0.0 else None
         row["reaction_deviation"] = row["reaction_n"] / load - 1.0
     solved = [row for row in rows[1:] if not row["failure"]] or rows[1:]
-    return {
-        "case": "ball on groove, a quarter",
-        "load_n": load,
-        "elements_per_semi_axis": nodes,
-        "elements": mine.cells,
-        "approach_m": mine.approach,
-        "rows": rows,
-        "cpu_ratio": min(row["cpu_s"] for row in solved) / mine.cpu,
-    }
+    case = {"case": "ball on groove, a quarter", "load_n": load, "elements_per_semi_axis": nodes, "elements": mine.cells}
+    return case | {"approach_m": mine.approach, "rows": rows, "cpu_ratio": min(row["cpu_s"] for row in solved) / mine.cpu}
 
 
 def groove_deck(load: float, nodes: float, approach: float, element: str = "C3D8") -> str:
@@ -123,14 +116,8 @@ def scene_deck(path: Path) -> str:
 
 
 def _row(program: str, cpu: float, memory: int, iterations: int, reaction: float, pressure: float) -> dict[str, Any]:
-    return {
-        "program": program,
-        "cpu_s": cpu,
-        "memory_bytes": memory,
-        "iterations": iterations,
-        "reaction_n": reaction,
-        "peak_pressure_pa": pressure,
-    }
+    spent = {"program": program, "cpu_s": cpu, "memory_bytes": memory, "iterations": iterations}
+    return spent | {"reaction_n": reaction, "peak_pressure_pa": pressure}
 
 
 if __name__ == "__main__":

@@ -25,12 +25,8 @@ def sector(elements: int) -> tuple[np.ndarray, np.ndarray]:
     """Points and cells of 1.2 rad of a ring, about ``elements`` of them, numbered along its shape."""
     count = round((elements / 2) ** (1 / 3))
     radial, axial, around = count, count, round(elements / count**2)
-    angle, z, r = np.meshgrid(
-        np.linspace(0.0, 1.2, around + 1),
-        np.linspace(0.0, 8e-3, axial + 1),
-        np.linspace(1e-2, 1.5e-2, radial + 1),
-        indexing="ij",
-    )
+    ends = ((0.0, 1.2, around + 1), (0.0, 8e-3, axial + 1), (1e-2, 1.5e-2, radial + 1))
+    angle, z, r = np.meshgrid(*(np.linspace(*each) for each in ends), indexing="ij")
     points = np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=-1).reshape(-1, 3)
     k, j, i = np.meshgrid(np.arange(around), np.arange(axial), np.arange(radial), indexing="ij")
     row, layer = radial + 1, (radial + 1) * (axial + 1)

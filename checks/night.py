@@ -33,11 +33,8 @@ def changes(before: Reports, after: Reports) -> list[str]:
                 lines.append(f"{name}: new: {quantity} = {files.shown(row['value'])}")
                 continue
             a, b = old[quantity]["value"], row["value"]
-            verdict = (
-                ""
-                if files.holds(old[quantity]) == files.holds(row)
-                else f", {'holds' if files.holds(row) else 'MISSES'} now"
-            )
+            same = files.holds(old[quantity]) == files.holds(row)
+            verdict = "" if same else f", {'holds' if files.holds(row) else 'MISSES'} now"
             far = isinstance(a, float) and isinstance(b, float) and abs(b - a) > _WORTH * abs(a)
             if verdict or far:
                 lines.append(f"{name}: {quantity}: {files.shown(a)} -> {files.shown(b)}{verdict}")

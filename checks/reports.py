@@ -90,15 +90,8 @@ def write(
     name: str, title: str, rows: list[dict[str, Any]], seconds: float, command: str, folder: Path = FOLDER
 ) -> dict[str, Any]:
     """Write the JSON of a report; returns its content."""
-    data = {
-        "title": title,
-        "rows": rows,
-        "command": command,
-        "commit": commit(),
-        "machine": machine(),
-        "date": datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d"),
-        "seconds": round(seconds, 1),
-    }
+    data = {"title": title, "rows": rows, "command": command, "commit": commit(), "machine": machine()}
+    data |= {"date": datetime.datetime.now(datetime.UTC).strftime("%Y-%m-%d"), "seconds": round(seconds, 1)}
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{name}.json").write_text(json.dumps(data, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     return data
@@ -188,17 +181,11 @@ def shown(value: float | str | None) -> str:
 
 def summary(reports: dict[str, dict[str, Any]], links: str = "") -> str:
     """Every report with its counts as a Markdown table; ``links`` is the folder as seen from the document."""
-    return _markdown(
-        ("report", "rows that hold", "made at"),
-        (
-            (
-                f"[{data['title']}]({links}{name}.json)",
-                f"{sum(map(holds, data['rows']))} of {len(data['rows'])}",
-                data["commit"],
-            )
-            for name, data in reports.items()
-        ),
-    )
+    cells = []
+    for name, data in reports.items():
+        rows = f"{sum(map(holds, data['rows']))} of {len(data['rows'])}"
+        cells.append((f"[{data['title']}]({links}{name}.json)", rows, data["commit"]))
+    return _markdown(("report", "rows that hold", "made at"), cells)
 
 
 def documents() -> list[Path]:

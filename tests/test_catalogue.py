@@ -84,11 +84,8 @@ def test_the_inferred_free_angle_of_harris_and_mindel_gives_what_they_print():
 
 
 def test_deep_groove_series_have_clearance_ratings_and_sources():
-    presets = [
-        entry
-        for entry in CATALOGUE.values()
-        if entry.title.partition(": ")[2].startswith("deep-groove ball bearing of series")
-    ]
+    words = ": deep-groove ball bearing of series"
+    presets = [entry for entry in CATALOGUE.values() if words in entry.title]
     assert len(presets) == 254
     for entry in presets:
         numbers = {fact.key: fact.value for fact in entry.facts}

@@ -216,14 +216,8 @@ def test_one_value_has_no_effects():
 
 def _synthetic(k_of) -> Comparison:
     """Rows with a made-up K over speed, tilt and amplitude law."""
-    axes = parse_axes(
-        [
-            "excitation.kind=unidirectional,bidirectional",
-            "excitation.amplitude=constant,unbalance",
-            "excitation.speed_rpm=10000:14000:3",
-            "supports.tilt=locked,free",
-        ]
-    )
+    kinds = ["excitation.kind=unidirectional,bidirectional", "excitation.amplitude=constant,unbalance"]
+    axes = parse_axes([*kinds, "excitation.speed_rpm=10000:14000:3", "supports.tilt=locked,free"])
     rows = []
     for point in points(axes):
         k = k_of(point)
@@ -382,12 +376,8 @@ def with_error(made, error, **point):
     return attrs.evolve(made, rows=tuple(rows))
 
 
-ONE = {
-    "excitation.kind": "unidirectional",
-    "excitation.amplitude": "constant",
-    "excitation.speed_rpm": 12000,
-    "supports.tilt": "free",
-}
+ONE = {"excitation.kind": "unidirectional", "excitation.amplitude": "constant"}
+ONE |= {"excitation.speed_rpm": 12000, "supports.tilt": "free"}
 
 
 def test_a_doubtful_row_between_the_ends_is_left_out_of_the_course():

@@ -19,15 +19,9 @@ BLOCKS = re.findall(r"^```(\w+)\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), 
 FILES = {match.group(1): text for _, text in BLOCKS if (match := re.match(r"# (\S+\.(?:py|toml))\n", text))}
 FILES |= {path.name: path.read_text(encoding="utf-8") for path in EXAMPLES.glob("*.py")}
 #: Each runs in a scene in test_every_kind.py, or in the tests below.
-DEAR = (
-    "trapezoidal.py",
-    "power_law.py",
-    "radial_balls.py",
-    "pressure_ratio.py",
-    "damped.py",
-    "pulse.py",
-    "three_harmonics.py",
-)
+DEAR = [
+    f"{n}.py" for n in ["trapezoidal", "power_law", "radial_balls", "pressure_ratio", "damped", "pulse", "three_harmonics"]
+]
 PLUGINS = [name for name, text in FILES.items() if re.search(r"@(rw\.)?hookimpl", text)]
 
 

@@ -111,11 +111,8 @@ def test_a_point_does_not_depend_on_its_neighbours() -> None:
     assert np.array_equal(together[::-1], f(loads[::-1])["stiffness"])
 
 
-FILM = STATIC | {
-    "load": {"axial": 1000.0},
-    "kinematics": {"spin_speed_rpm": 9000.0},
-    "contact": {"kind": "film", "oil": "VG 32", "temperature_c": 60.0},
-}
+FILM = STATIC | {"load": {"axial": 1000.0}, "kinematics": {"spin_speed_rpm": 9000.0}}
+FILM["contact"] = {"kind": "film", "oil": "VG 32", "temperature_c": 60.0}
 
 
 def test_a_film_fits_the_loads_of_each_point() -> None:
@@ -236,12 +233,8 @@ def test_other_libraries_call_it() -> None:
 def test_rows_that_are_refused_have_a_reason() -> None:
     f = rw.function({**STATIC, "bearing": {"preset": "B7206C"}}, ["load.axial", "bearing.conformity_inner"], ["kyy"])
     answer = f([400.0, np.nan, 400.0, 0.0], [0.52, 0.52, 0.4, 0.52])
-    assert answer["status"].tolist() == [
-        rw.PointStatus.COMPUTED,
-        rw.PointStatus.REFUSED,
-        rw.PointStatus.REFUSED,
-        rw.PointStatus.FAILED,
-    ]
+    names = [rw.PointStatus(status).name for status in answer["status"]]
+    assert names == ["COMPUTED", "REFUSED", "REFUSED", "FAILED"]
     assert np.isnan(answer["kyy"][1:]).all()
     assert np.isfinite(answer["kyy"][0])
     assert "no number" in answer["reason"][1]

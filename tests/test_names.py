@@ -112,12 +112,8 @@ def test_screen_and_result_agree_and_a_fit_takes_both_names(tmp_path, free):
 def test_a_fit_of_the_printed_numbers_gives_the_scene_back(free):
     """Data of a run at the scene's own angle, fitted from another one: the angle returns."""
     value = {name: number for name, number in meant(free).items() if name != "kxx"}
-    heads = {
-        "kyy": "kyy [N/m]",
-        "kyy_tilts_follow": "kyy tilts follow [N/m]",
-        "x": "x [m]",
-        "largest_ball_load": "largest_ball_load [N]",
-    }
+    heads = {"kyy": "kyy [N/m]", "kyy_tilts_follow": "kyy tilts follow [N/m]", "x": "x [m]"}
+    heads["largest_ball_load"] = "largest_ball_load [N]"
     data = {heads[name]: [number, number] for name, number in value.items()}
     start = {
         **{k: v for k, v in FREE.items() if k != "tolerances"},

@@ -162,7 +162,8 @@ def test_what_is_nothing_has_no_sign_and_a_direction_is_no_state():
     loose = rw.run({"bearing": pair, "load": {"axial": 1000.0}}).to_dict()
     rows = {name: (value, remark) for name, value, remark in equilibrium_rows(loose)}
     assert rows["axial force of rows"][0] == "1000, 0 N"
-    fast = rw.run(b7206c(load={"axial": 100.0}, kinematics={"spin_speed_rpm": 3e4})).to_dict()
+    single = {"bearing": {"preset": "B7206C"}, "load": {"axial": 100.0}}
+    fast = rw.run({**single, "kinematics": {"spin_speed_rpm": 3e4}}).to_dict()
     value, remark = equilibrium_rows(fast)[1][1:]
     assert value.startswith("-") and remark == "axial, + preloads the bearing"
 

@@ -43,11 +43,8 @@ def complex_condensation(system, equilibrium, w):
             along = np.outer(reach, reach) / length**2
             contacts.append((stiffness + 1j * w * dashpot) * along + force / length * (np.eye(2) - along))
         inner, outer = contacts
-        (c, s), (side, lever), arm = (
-            direction[k],
-            system.table[k, [layout.SIDE, layout.LEVER]],
-            system.scalars[layout.TILT_ARM],
-        )
+        (c, s), (side, lever) = direction[k], system.table[k, [layout.SIDE, layout.LEVER]]
+        arm = system.scalars[layout.TILT_ARM]
         move = np.array([[side, 0.0, 0.0, side * arm * s, -side * arm * c], [0.0, c, s, -lever * s, lever * c]])
         out += move.T @ (inner - inner @ np.linalg.solve(inner + outer, inner)) @ move
     return out

@@ -95,11 +95,8 @@ def test_bands_move_with_the_temperatures():
 
 
 def test_more_oil_and_less_speed_are_colder():
-    f = rw.function(
-        published.warm_pair({"ambient_c": 40.0}),
-        ["heat.oil_flow", "kinematics.spin_speed_rpm"],
-        ["temperature_inner_k", "temperature_oil_k"],
-    )
+    scene, names = published.warm_pair({"ambient_c": 40.0}), ["temperature_inner_k", "temperature_oil_k"]
+    f = rw.function(scene, ["heat.oil_flow", "kinematics.spin_speed_rpm"], names)
     flow, speed = np.meshgrid([2e-6, 8e-6, 32e-6], [4000.0, 10_000.0, 16_000.0])
     for level in (f(flow, speed)[name] for name in f.outputs):
         assert (np.diff(level, axis=1) < 0.0).all() and (np.diff(level, axis=0) > 0.0).all()
@@ -141,11 +138,8 @@ def test_stiffness_and_life_have_the_band_of_the_heat():
     for scene, runs_away in ((published.warm_pair(), False), (published.warm_pair(**tables), True)):
         document = rw.run(scene).to_dict()
         band, equilibrium = document["heat"]["band"], document["equilibrium"]
-        at = {
-            "heat_w": document["heat"]["heat_w"],
-            "kyy_n_per_m": equilibrium["stiffness"][1][1],
-            "l10r_hours": document["life"]["l10r_hours"],
-        }
+        at = {"heat_w": document["heat"]["heat_w"], "kyy_n_per_m": equilibrium["stiffness"][1][1]}
+        at["l10r_hours"] = document["life"]["l10r_hours"]
         for name, value in at.items():
             low, high = band[name]
             lost = high if name != "l10r_hours" else low
@@ -330,11 +324,8 @@ def test_rings_of_the_measured_bearing_are_within_20_kelvin_and_differ_within_th
 
 
 def test_rings_of_the_measured_bearing_in_cold_surroundings():
-    f = rw.function(
-        published.jet_bearing(35, 72e3, 760.0, 20.0),
-        ["kinematics.spin_speed_rpm"],
-        ["temperature_inner_k", "temperature_outer_k"],
-    )
+    scene, names = published.jet_bearing(35, 72e3, 760.0, 20.0), ["temperature_inner_k", "temperature_outer_k"]
+    f = rw.function(scene, ["kinematics.spin_speed_rpm"], names)
     level = f([rpm for rpm, *_ in published.MEASURED])
     differences = level["temperature_inner_k"] - level["temperature_outer_k"]
     assert differences[0] > 0.0 and (np.diff(differences) > 0.0).all()

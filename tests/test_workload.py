@@ -15,12 +15,8 @@ def planned(*words):
 
 
 def test_sweep_counts_what_rules_refuse_and_writes_nothing(tmp_path):
-    axes = (
-        "--grid",
-        "integrator.kind=periodic,newmark",
-        "--grid",
-        "contact.friction=0,0.03",
-    )  # sticking has no single orbit
+    # Sticking has no single orbit.
+    axes = ("--grid", "integrator.kind=periodic,newmark", "--grid", "contact.friction=0,0.03")
     plan = planned("sweep", STEADY, *axes, "--out", tmp_path / "s")
     assert (plan["points"], plan["looped"], plan["refused"], plan["runs"], plan["stored"]) == (4, 0, 1, 3, 0)
     assert not (tmp_path / "s").exists()

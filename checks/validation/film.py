@@ -40,18 +40,11 @@ def regimes(u: float, g: float, w: float, k: float, ratio: float) -> list[tuple[
     rigid_viscous = 141.0 * gv**0.375 * (1.0 - exp(-0.0387 * ratio)) * (u / w) ** 2
     phi = 1.0 / (1.0 + 2.0 / (3.0 * ratio))
     rigid = 128.0 * ratio * phi * phi * (0.131 * atan(ratio / 2.0) + 1.683) ** 2 * (u / w) ** 2
-    return [
-        (
-            2.69 * u**0.67 * g**0.53 * w ** (-0.067) * (1.0 - 0.61 * exp(-0.73 * k)),
-            3.63 * u**0.68 * g**0.49 * w ** (-0.073) * (1.0 - exp(-0.68 * k)),
-        ),
-        (
-            7.32 * (1.0 - 0.72 * exp(-0.28 * k)) * u**0.64 * w ** (-0.22),
-            7.43 * u**0.65 * w ** (-0.21) * (1.0 - 0.85 * exp(-0.31 * k)),
-        ),
-        (rigid_viscous, rigid_viscous),
-        (rigid, rigid),
-    ]
+    hard = 2.69 * u**0.67 * g**0.53 * w ** (-0.067) * (1.0 - 0.61 * exp(-0.73 * k))
+    hard_least = 3.63 * u**0.68 * g**0.49 * w ** (-0.073) * (1.0 - exp(-0.68 * k))
+    soft = 7.32 * (1.0 - 0.72 * exp(-0.28 * k)) * u**0.64 * w ** (-0.22)
+    soft_least = 7.43 * u**0.65 * w ** (-0.21) * (1.0 - 0.85 * exp(-0.31 * k))
+    return [(hard, hard_least), (soft, soft_least), (rigid_viscous, rigid_viscous), (rigid, rigid)]
 
 
 def rolled(path: float) -> dict[str, Any]:

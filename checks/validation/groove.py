@@ -160,14 +160,7 @@ def answer(found: Groove, state: StaticSolution, cpu: float) -> Answer:
     assert contact is not None
     force = contact.area * contact.pressure
     mean = float((force * contact.pressure).sum() / max(float(force.sum()), 1e-300)) / found.penalty
-    return Answer(
-        found.cells,
-        state.iterations,
-        state.linear_iterations,
-        -float(state.y[0]),
-        4.0 * float(contact.resultants()[0, 2]),
-        mean / max(-float(state.y[0]), 1e-300),
-        float(peak_at_points(contact)[0]),
-        float(peak_at_nodes(contact)[0]),
-        cpu,
-    )
+    approach, reaction = -float(state.y[0]), 4.0 * float(contact.resultants()[0, 2])
+    peaks = float(peak_at_points(contact)[0]), float(peak_at_nodes(contact)[0])
+    iterations = state.iterations, state.linear_iterations
+    return Answer(found.cells, *iterations, approach, reaction, mean / max(approach, 1e-300), *peaks, cpu)

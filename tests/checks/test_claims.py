@@ -91,17 +91,8 @@ def test_reports_are_of_modules_without_a_failure(rows, tmp_path, monkeypatch):
         ("bad", 3, True, []),
     ):
         nodeid = f"tests/evidence/test_{name}.py::test_{line}"
-        reports.pytest_runtest_logreport(
-            SimpleNamespace(
-                nodeid=nodeid,
-                when="call",
-                failed=failed,
-                skipped=False,
-                duration=0.5,
-                user_properties=properties,
-                location=("", line, ""),
-            )
-        )
+        told = {"nodeid": nodeid, "when": "call", "failed": failed, "skipped": False, "duration": 0.5}
+        reports.pytest_runtest_logreport(SimpleNamespace(**told, user_properties=properties, location=("", line, "")))
     reports.pytest_terminal_summary(SimpleNamespace(write_line=lambda line: None))
     title, kept, command = written.pop("good")
     assert title == "Numbers that are good" and command == "pytest --evidence tests/evidence/test_good.py"

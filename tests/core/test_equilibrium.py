@@ -157,13 +157,8 @@ def test_positive_definite_where_held():
 @pytest.mark.parametrize("inertia", [False, True])
 def test_damping_tangent_is_the_derivative_by_velocity(inertia):
     """With the balls' rates held, C is the derivative of the force by the ring's velocity."""
-    model, now = settled(
-        {
-            **CASES["radial load, tilt free, 15 000 r/min"],
-            "kinematics": {"ball_inertia": inertia, "spin_speed_rpm": 15e3},
-            "contact": {"damping": 200.0},
-        }
-    )
+    changed = {"kinematics": {"ball_inertia": inertia, "spin_speed_rpm": 15e3}, "contact": {"damping": 200.0}}
+    model, now = settled(CASES["radial load, tilt free, 15 000 r/min"] | changed)
     assert model.system.scalars[layout.DAMPING] == 200.0
     found = model.system.evaluate(now.displacement, ball=now.ball).damping
     columns = []

@@ -89,13 +89,9 @@ def test_measured_bearings_widen_the_band_of_what_is_computed():
 
 def test_gyroscopic_moments_are_those_of_the_balls_material():
     """In proportion to its density, under the same loads."""
-    ratios = [
-        friction(
-            bearing={"preset": "B7206C", "balls": {"density": density}},
-            kinematics={"spin_speed_rpm": 6000.0, "ball_inertia": False},
-        )[0]["gyroscopic_over_traction"]
-        for density in (3200.0, 7800.0)
-    ]
+    slow = {"spin_speed_rpm": 6000.0, "ball_inertia": False}
+    bearings = ({"preset": "B7206C", "balls": {"density": density}} for density in (3200.0, 7800.0))
+    ratios = [friction(bearing=bearing, kinematics=slow)[0]["gyroscopic_over_traction"] for bearing in bearings]
     assert ratios[0] / ratios[1] == pytest.approx(3200.0 / 7800.0, rel=1e-9)
 
 

@@ -9,7 +9,7 @@ from checks.validation.scenes import rig_force, rotating
 from raceway.core.periodic.floquet import Floquet, floquet_of
 from raceway.extend import at_time, differentiation, from_orbit, steady_orbit
 from raceway.pipeline.simulate import start_of_motion
-from raceway.testing import b7206c, model_of, solve_equilibrium
+from raceway.testing import model_of, solve_equilibrium
 
 
 def test_differentiation_is_exact_for_harmonics():
@@ -97,13 +97,8 @@ def test_friction_starts_on_the_orbit_without_it_where_nothing_sticks(orbiting):
 def test_a_slow_motion_starts_on_its_orbit(built, rpm):
     """No mesh holds vibrations that are 4e3 to 6e5 times as fast as the force; the orbit is then that of Fourier collocation,
     whose secant is the tangent: the force is 3.5e-6 N and more."""
-    model = built(
-        **b7206c(
-            load={"axial": 1000.0},
-            excitation={"kind": "bidirectional", "speed_rpm": rpm, "unbalance": 3.2e-4},
-            integrator={"kind": "newmark"},
-        )
-    )
+    excitation = {"kind": "bidirectional", "speed_rpm": rpm, "unbalance": 3.2e-4}
+    model = built(load={"axial": 1000.0}, excitation=excitation, integrator={"kind": "newmark"})
     now = solve_equilibrium(model)
     start = start_of_motion(model, now)
     assert start.kind == "orbit" and start.repeats and not start.warnings

@@ -99,12 +99,8 @@ def test_a_point_does_not_feel_the_lanes_beside_it(loop):
 def test_extremes_are_those_of_the_polynomial_through_the_samples(spans):
     """Of harmonics that the samples hold exactly: 4000 values come within 1e-6 of the top, and forces do not pull."""
     n, z, times = 16, 3, np.arange(12) / 12.0
-    order, peak, least, turn = (
-        np.roll(np.arange(z), -1) if spans > 1 else np.arange(z),
-        np.zeros(6),
-        np.zeros(6),
-        np.zeros((12, 6)),
-    )
+    order = np.roll(np.arange(z), -1) if spans > 1 else np.arange(z)
+    peak, least, turn = np.zeros(6), np.zeros(6), np.zeros((12, 6))
 
     def curve(race, ball, turns):
         angle = 2.0 * np.pi * (turns + (ball / z if spans > 1 else 0.0)) + race + (ball if spans == 1 else 0.0)

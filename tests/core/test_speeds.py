@@ -152,14 +152,9 @@ def test_bad_speeds(speeds, words):
 
 def rising(first=6000.0, last=9000.0, duration=0.6, **tables):
     excitation = {"kind": "run_up", "first_speed_rpm": first, "speed_rpm": last, "duration_s": duration, "unbalance": 3.2e-4}
-    return steady(
-        **{
-            "excitation": {**excitation, **tables.pop("excitation", {})},
-            "identifier": {"kind": "order_tracking", "window_turns": 4.0},
-            "integrator": {"steps_per_turn": 120},
-            **tables,
-        }
-    )
+    tables["excitation"] = {**excitation, **tables.get("excitation", {})}
+    methods = {"identifier": {"kind": "order_tracking", "window_turns": 4.0}, "integrator": {"steps_per_turn": 120}}
+    return steady(**{**methods, **tables})
 
 
 @pytest.mark.parametrize(("first", "last"), [(6000.0, 9000.0), (9000.0, 6000.0)])

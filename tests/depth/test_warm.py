@@ -37,11 +37,8 @@ def fits_by_hand(scene) -> tuple[float, float]:
     tight = 0.5 * warm.shaft_interference + bore * warm.inner_temperature * ((shaft.thermal_expansion or 0.0) - steel)
     unit = lame(bore, race, (1.0, 0.0), bore, rings) - lame(core, bore, (0.0, 1.0), bore, shaft)
     inner = lame(bore, race, (max(tight, 0.0) / unit, 0.0), race, rings)
-    race, seat, wide = (
-        0.5 * (b.pitch_diameter + b.ball_diameter),
-        0.5 * (b.outer_diameter or 0.0),
-        0.5 * (warm.housing_diameter or 1e3),
-    )
+    race = 0.5 * (b.pitch_diameter + b.ball_diameter)
+    seat, wide = 0.5 * (b.outer_diameter or 0.0), 0.5 * (warm.housing_diameter or 1e3)
     tight = 0.5 * warm.housing_interference - seat * warm.outer_temperature * ((housing.thermal_expansion or 0.0) - steel)
     unit = lame(seat, wide, (1.0, 0.0), seat, housing) - lame(race, seat, (0.0, 1.0), seat, rings)
     return inner, lame(race, seat, (0.0, max(tight, 0.0) / unit), race, rings)
@@ -289,11 +286,8 @@ def test_growth_of_a_ball():
 def test_growing_balls_press_a_set():
     kinematics = {"spin_speed_rpm": 40000.0, "ring_growth": False}
     (slow, a), (fast, b) = (settled(scene(kinematics={**kinematics, "ball_growth": on})) for on in (False, True))
-    assert (
-        equilibrium_table(fast, b)["preload"]["running_n"]
-        > equilibrium_table(slow, a)["preload"]["running_n"]
-        == pytest.approx(300.0, rel=1e-8)
-    )
+    grown, kept = (equilibrium_table(*one)["preload"]["running_n"] for one in ((fast, b), (slow, a)))
+    assert grown > kept == pytest.approx(300.0, rel=1e-8)
 
 
 @pytest.mark.parametrize(

@@ -190,14 +190,9 @@ def outcome(cell: Combination) -> Outcome | SceneError:
     except RacewayError as failed:
         raise AssertionError(f"{cell} failed: {failed}") from failed
     found = result.identification
-    return Outcome(
-        json.dumps(result.to_dict(), allow_nan=False),
-        result.stability["energy_drift"],
-        found.equivalent_stiffness,
-        found.dynamic_stiffness,
-        found.speed,
-        float(result.model.system.mass[1, 1]),
-    )
+    text, drift = json.dumps(result.to_dict(), allow_nan=False), result.stability["energy_drift"]
+    mass = float(result.model.system.mass[1, 1])
+    return Outcome(text, drift, found.equivalent_stiffness, found.dynamic_stiffness, found.speed, mass)
 
 
 @cache

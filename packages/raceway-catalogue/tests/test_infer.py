@@ -159,10 +159,7 @@ def test_a_deep_groove_bearing_is_inferred_at_an_angle_of_zero():
 GOOD = Printed(0.07, 0.11, (Rating(15.0, 47e3, 43e3), Rating(25.0, 44.5e3, 41e3)))
 REFUSED = {
     "no integer": ({"ratings": (Rating(15.0, 47e3, 30e3),)}, "no whole number of balls"),
-    "angles contradict": (
-        {"ratings": (Rating(15.0, 47e3, 43e3), Rating(25.0, 55e3, 41e3))},
-        "contradicts 47000 N at 15 deg",
-    ),
+    "two angles": ({"ratings": (Rating(15.0, 47e3, 43e3), Rating(25.0, 55e3, 41e3))}, "contradicts 47000 N at 15 deg"),
     "twice": ({"ratings": (Rating(15.0, 47e3, 43e3),) * 2}, "listed twice"),
 }
 

@@ -92,13 +92,8 @@ def natural_frequency(factor: float, exponent: float, mass: float, amplitude: np
     T = 4 sqrt(m (n + 1) / (2 b)) A^((1 - n)/2) B(1/(n + 1), 1/2) / (n + 1).  For n = 3/2: w ~ A^(1/4).
     """
     n = exponent
-    period = (
-        4.0
-        * np.sqrt(mass * (n + 1.0) / (2.0 * factor))
-        * amplitude ** (0.5 * (1.0 - n))
-        * beta(1.0 / (n + 1.0), 0.5)
-        / (n + 1.0)
-    )
+    root = np.sqrt(mass * (n + 1.0) / (2.0 * factor))
+    period = 4.0 * root * amplitude ** (0.5 * (1.0 - n)) * beta(1.0 / (n + 1.0), 0.5) / (n + 1.0)
     return np.asarray(2.0 * np.pi / period)
 
 

@@ -88,15 +88,8 @@ def system(
         at = SurfacePoints(at.place, at.area, at.nodes + first, at.weights)
         circle = ORBIT - side * (TUBE - BALL + OVERLAP)
         name = "inner" if race == 0 else "outer"
-        pairs.append(
-            Pair(
-                f"ball, {name} race",
-                at,
-                groove(np.zeros(3), circle, TUBE),
-                Facets(points, floor),
-                int(assembly.starts[race]),
-            )
-        )
+        surface, facets = groove(np.zeros(3), circle, TUBE), Facets(points, floor)
+        pairs.append(Pair(f"ball, {name} race", at, surface, facets, int(assembly.starts[race])))
     area = np.concatenate([pair.points.area for pair in pairs])
     contact = NodalContact(
         pairs, assembly.nodes, PlaceLaw(law or linear, np.full((len(area), 1), penalty), 0, damping),
