@@ -93,13 +93,8 @@ class Deck:
     def step(self, loads: list[str], printed: str, part: float) -> str:
         """The whole file: one static step, first by a part of the load; prints a set's reaction and contact pressures."""
         tail = ["*STEP, INC=100", "*STATIC, SOLVER=ITERATIVE CHOLESKY", f"{part:g}, 1.0", *loads]
-        tail += [
-            f"*NODE PRINT, NSET={printed}, TOTALS=ONLY, FREQUENCY=100",
-            "RF",
-            "*CONTACT PRINT, FREQUENCY=100",
-            "CSTR",
-            "*END STEP",
-        ]
+        tail += [f"*NODE PRINT, NSET={printed}, TOTALS=ONLY, FREQUENCY=100", "RF"]
+        tail += ["*CONTACT PRINT, FREQUENCY=100", "CSTR", "*END STEP"]
         return "\n".join(self.lines + tail) + "\n"
 
 

@@ -124,13 +124,9 @@ print("whole")
 def test_two_processes_may_make_the_same_entries_at_once(folder):
     import time
 
-    start = str(time.time() + 1.0)
-    both = [
-        subprocess.Popen(
-            [sys.executable, "-W", "error", "-c", RACE, start], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-        )
-        for _ in range(2)
-    ]
+    words = [sys.executable, "-W", "error", "-c", RACE, str(time.time() + 1.0)]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    both = [subprocess.Popen(words, **pipes) for _ in range(2)]
     for process in both:
         out, err = process.communicate(timeout=PATIENCE_S)
         assert out == "whole\n", err

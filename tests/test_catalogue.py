@@ -69,14 +69,9 @@ def test_the_inferred_free_angle_of_harris_and_mindel_gives_what_they_print():
     The preset's angle is rounded to 0.01 deg, which moves the loaded one by up to 0.003 deg.  The load follows from axial
     equilibrium and is measured 1e-4 off; their equation (86) also has friction terms, and both prints are rounded.
     """
-    scene = scene_from_dict(
-        {
-            "title": "fig. 15",
-            "bearing": {"preset": "ACB21-HARRIS-MINDEL"},
-            "kinematics": {"spin_speed_rpm": 24000.0, "gyroscopic": "none", "ring_growth": False},
-            "load": {"axial": 3000.0 * POUND},
-        }
-    )
+    kinematics = {"spin_speed_rpm": 24000.0, "gyroscopic": "none", "ring_growth": False}
+    tables = {"bearing": {"preset": "ACB21-HARRIS-MINDEL"}, "kinematics": kinematics, "load": {"axial": 3000.0 * POUND}}
+    scene = scene_from_dict({"title": "fig. 15", **tables})
     state = run(scene).equilibrium
     assert np.degrees(state.angle_inner) == pytest.approx(29.762, abs=0.01)
     assert state.contact_force[:21] / POUND == pytest.approx(287.76, rel=3e-4)

@@ -153,13 +153,9 @@ def place(name, folder):
 
 def words(name, seen, folder, out=None):
     """A line of the table with its places; what it reads of other commands is made first."""
-    for other in {
-        "sweep, picture": ["sweep"],
-        "export": ["sweep"],
-        "fit, identify": ["study rig"],
-        "fit, signals": ["study rig"],
-    }.get(name, []):
-        look(other, seen, folder)
+    others = {"sweep, picture": "sweep", "export": "sweep", "fit, identify": "study rig", "fit, signals": "study rig"}
+    if name in others:
+        look(others[name], seen, folder)
     out = out or place(name, folder)
     places = {
         "OUT": out, "STATIC": folder / "static.toml", "DATA": folder / "data.csv", "STORE": folder / "sweep",

@@ -132,14 +132,9 @@ def _with_and_without_the_steady_motion(monkeypatch, tables):
 
 def test_without_a_steady_motion_a_beat_that_no_window_tells_from_1x_states_what_turns_differ_by(monkeypatch):
     """33 100 r/min lie within a line of the radial natural frequency: Hann's window sees 0.05 of an error of 0.3."""
-    tables = {
-        "bearing": {"preset": "7206A"},
-        "rotor": {"mass": 0.4},
-        "load": {"axial": 140.0},
-        "contact": {"damping": 300.0},
-        "excitation": {"kind": "unidirectional", "amplitude": "constant", "force": 5.7, "speed_rpm": 33100.0},
-        "integrator": {"kind": "newmark", "start": "ramp"},
-    }
+    parts = {"bearing": {"preset": "7206A"}, "rotor": {"mass": 0.4}, "load": {"axial": 140.0}, "contact": {"damping": 300.0}}
+    force = {"kind": "unidirectional", "amplitude": "constant", "force": 5.7, "speed_rpm": 33100.0}
+    tables = {**parts, "excitation": force, "integrator": {"kind": "newmark", "start": "ramp"}}
     found, true = _with_and_without_the_steady_motion(monkeypatch, tables)
     assert true > 0.2 and right(found.error["total"], true), (found.error["total"], true)
     assert found.error["transient"] >= found.identification.spread

@@ -197,15 +197,9 @@ def test_every_number_of_a_motion_has_its_derivative():
 
 def test_steps_pass_no_knot_of_the_tables_of_compliances():
     """One contact lies 2 % of an interval from a knot, where derivatives of the stiffness jump: 4e-6 of them if steps pass it."""
-    model, still = settled(
-        b7206c(
-            bodies={"kind": "condensed"},
-            load={"axial": 1843.8916451132752, "radial": [495.1466379641419, -92.98271863387704]},
-            supports={"tilt": "free"},
-            mounting={"inner_temperature": 1.4346647411771407},
-            kinematics={"spin_speed_rpm": 819.5406685711882},
-        )
-    )
+    load = {"axial": 1843.8916451132752, "radial": [495.1466379641419, -92.98271863387704]}
+    turning = {"mounting": {"inner_temperature": 1.4346647411771407}, "kinematics": {"spin_speed_rpm": 819.5406685711882}}
+    model, still = settled(b7206c(bodies={"kind": "condensed"}, load=load, supports={"tilt": "free"}, **turning))
     found = static_gradient(model, still, key_of(model.scene, "load.axial"))
     runs = by_runs(model, "load.axial", 1.5 * found.step, lambda _, e: e.stiffness)
     assert np.abs(found.stiffness - runs).max() <= 1e-8 * np.abs(runs).max()

@@ -211,13 +211,10 @@ def test_a_motion_says_that_the_heat_gives_its_k_no_band():
 
 @pytest.mark.slow
 def test_oil_by_the_flow_warns_beyond_the_speeds_of_its_measurements():
-    runs = [
-        rw.run(
-            published.warm_pair({"oil_flow": 3e-5}, bearing={"preload_kind": "spring"}, kinematics={"spin_speed_rpm": rpm})
-        )
-        for rpm in (20_000.0, 30_000.0)
-    ]
-    assert [any("Parker 1984" in text for text in run.warnings) for run in runs] == [True, False]
+    for rpm, warned in ((20_000.0, True), (30_000.0, False)):
+        turning = {"bearing": {"preload_kind": "spring"}, "kinematics": {"spin_speed_rpm": rpm}}
+        run = rw.run(published.warm_pair({"oil_flow": 3e-5}, **turning))
+        assert any("Parker 1984" in text for text in run.warnings) == warned
 
 
 def test_an_inner_ring_that_oil_wets_is_colder():

@@ -81,12 +81,9 @@ def _by_dask(point: float) -> list[Row]:
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     assert count == _MANY and 1e7 < mean < 1e9, "a mean stiffness of all points"
+    share = round(cpu / (_MANY * point), 3)
     return [
-        below(
-            "1e7 points by dask on two processes: processor time over that of one process",
-            round(cpu / (_MANY * point), 3),
-            1.1,
-        ),
+        below("1e7 points by dask on two processes: processor time over that of one process", share, 1.1),
         below("memory of a worker [GB]", round(1024e-9 * after.ru_maxrss, 3), 2.0),
     ]
 

@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 
 import raceway as rw
 from raceway import Scene
+from raceway.testing import b7206c
 
 #: B7206C as the scenes here have it.
 BALLS, DIAMETER, PITCH, CONFORMITY, ANGLE = 12, 9.525e-3, 46e-3, 0.522, pi / 12.0
@@ -102,15 +103,9 @@ def skf_reduction(speed_rpm: float, diameter: float, viscosity: float) -> float:
 
 def scene(contact: dict[str, Any], **tables: dict[str, Any]) -> Scene:
     """A B7206C under 1 kN and a small force that turns at 12 000 r/min, tilt locked."""
-    said: dict[str, Any] = {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 1000.0},
-        "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 1.0},
-        "contact": contact,
-        "kinematics": {"gyroscopic": "none", "ring_growth": False},
-        "integrator": {"kind": "newmark", "turns": 12},
-    }
-    return rw.Scene.from_dict({key: {**said.get(key, {}), **tables.get(key, {})} for key in {**said, **tables}})
+    force = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 1.0}
+    said: dict[str, Any] = b7206c(excitation=force, contact=contact, integrator={"kind": "newmark", "turns": 12})
+    return rw.Scene.from_dict(said | {key: {**said.get(key, {}), **table} for key, table in tables.items()})
 
 
 def pair(contact: dict[str, Any], kind: str, speed_rpm: float, inertia: bool = False) -> Scene:

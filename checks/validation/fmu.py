@@ -120,6 +120,7 @@ def force_difference(instance: Instance, scene: dict[str, Any], count: int = 60)
     for rpm in (500.0, 6000.0, 18000.0):
         ring = build_model(as_scene(scene | {"kinematics": scene["kinematics"] | {"spin_speed_rpm": rpm}})).system
         lengths = np.array([1.0, 1.0, 1.0, 1.0 / ring.arm, 1.0 / ring.arm])
+        areas = np.outer(lengths, lengths)
         for _ in range(count):
             x = rng.uniform(0.0, 60e-6) if balls == 12 else rng.normal() * 1e-5
             q = np.array([x, *rng.normal(size=2) * 8e-6, *rng.normal(size=2) * 3e-4])
@@ -127,10 +128,7 @@ def force_difference(instance: Instance, scene: dict[str, Any], count: int = 60)
             parts = {
                 "force": (-out[:5] * lengths, core.force * lengths),
                 "load": (out[7 : 7 + 2 * balls], core.contact_force),
-                "stiffness": (
-                    out[7 + 2 * balls :].reshape(5, 5) * np.outer(lengths, lengths),
-                    core.stiffness * np.outer(lengths, lengths),
-                ),
+                "stiffness": (out[7 + 2 * balls :].reshape(5, 5) * areas, core.stiffness * areas),
             }
             size = core.contact_force.max()
             for kind, (ours, theirs) in parts.items():

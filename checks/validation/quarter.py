@@ -63,14 +63,8 @@ def quarter_groove(
     radius = top[None, :] + share[:, None] * (rolling - depth[-1] - top)[None, :]
     ni, nj, nk = len(across), len(depth), len(along)
     shape = (nk, nj, ni)
-    points = np.stack(
-        [
-            np.broadcast_to(x, shape),
-            np.sin(along)[:, None, None] * radius,
-            np.cos(along)[:, None, None] * radius - (ball_radius + rolling),
-        ],
-        axis=-1,
-    ).reshape(-1, 3)
+    y, z = np.sin(along)[:, None, None] * radius, np.cos(along)[:, None, None] * radius - (ball_radius + rolling)
+    points = np.stack([np.broadcast_to(x, shape), y, z], axis=-1).reshape(-1, 3)
     number = np.arange(points.shape[0]).reshape(shape)
     k, j, i = np.meshgrid(np.arange(nk - 1), np.arange(nj - 1), np.arange(ni - 1), indexing="ij")
     # Local axes x, -depth, y would be left-handed the other way round: bottom first.

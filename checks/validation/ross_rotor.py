@@ -39,15 +39,9 @@ RIGID_MASS = 60.0  # kg: puts the critical speed of the rigid rotor inside the t
 
 def bearing(**changes: Any) -> dict[str, Any]:
     """The scene: one bearing, ring held against tilt, a force that turns with the shaft."""
-    scene = {
-        "title": "B7206C in a rotor",
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": AXIAL},
-        "supports": {"tilt": "locked"},
-        "excitation": {"kind": "bidirectional", "speed_rpm": SPEED_RPM, "amplitude": "constant", "force": FORCE},
-        "integrator": {"kind": "periodic"},
-    }
-    return {**scene, **changes}
+    parts = {"bearing": {"preset": "B7206C"}, "load": {"axial": AXIAL}, "supports": {"tilt": "locked"}}
+    force = {"kind": "bidirectional", "speed_rpm": SPEED_RPM, "amplitude": "constant", "force": FORCE}
+    return {"title": "B7206C in a rotor", **parts, "excitation": force, "integrator": {"kind": "periodic"}, **changes}
 
 
 def swept(generation: int) -> Any:

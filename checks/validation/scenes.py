@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from raceway import Result, run
-from raceway.testing import Model, default_registry
+from raceway.testing import Model, b7206c, default_registry
 
 #: The rig's unbalance, 7.1 g at 90 mm; two bearings carry half of its force each.
 UNBALANCE = 7.1e-3 * 0.09
@@ -24,31 +24,18 @@ def rig_force(speed_rpm: float) -> float:
 
 def static(axial: float, tilt: str, radial: float = 0.0, spin_rpm: float = 0.0, inertia: bool = False) -> dict[str, Any]:
     """A static B7206C with a radial load towards ball 0."""
-    return {
-        "title": "static",
-        "bearing": {"preset": "B7206C"},
-        "supports": {"tilt": tilt},
-        "load": {"axial": axial, "radial": [radial, 0.0]},
-        "kinematics": {"ball_inertia": inertia, "spin_speed_rpm": spin_rpm, "gyroscopic": "none", "ring_growth": False},
-    }
+    load, kinematics = {"axial": axial, "radial": [radial, 0.0]}, {"ball_inertia": inertia, "spin_speed_rpm": spin_rpm}
+    return b7206c(title="static", supports={"tilt": tilt}, load=load, kinematics=kinematics)
 
 
 def rotating(axial: float, tilt: str, speed_rpm: float, inertia: bool, integrator: str) -> dict[str, Any]:
     """The rig's rotating unbalance on a B7206C with 2 kg and the article's damping, 12 turns."""
-    return {
-        "title": "rotating",
-        "bearing": {"preset": "B7206C"},
-        "supports": {"tilt": tilt},
-        "rotor": {"mass": 2.0},
-        "load": {"axial": axial},
-        "excitation": {
-            "kind": "bidirectional", "speed_rpm": speed_rpm, "amplitude": "unbalance", "unbalance": UNBALANCE,
-            "load_share": SHARE,
-        },
-        "contact": {"damping": 0.001},
-        "kinematics": {"ball_inertia": inertia, "gyroscopic": "none", "ring_growth": False},
-        "integrator": {"kind": integrator, "turns": 12},
-    }  # fmt: skip
+    force = {"kind": "bidirectional", "speed_rpm": speed_rpm, "amplitude": "unbalance", "unbalance": UNBALANCE}
+    return b7206c(
+        title="rotating", supports={"tilt": tilt}, rotor={"mass": 2.0}, load={"axial": axial}, contact={"damping": 0.001},
+        excitation=force | {"load_share": SHARE}, kinematics={"ball_inertia": inertia},
+        integrator={"kind": integrator, "turns": 12},
+    )  # fmt: skip
 
 
 _BALL = 9.525e-3
@@ -56,15 +43,10 @@ _BALL = 9.525e-3
 
 def small_force(identifier: str, integrator: str, share: float, changes: dict[str, Any] | None = None) -> Result:
     """A run at 12 000 r/min under a force along one direction of a share of 400 N."""
-    tables: dict[str, Any] = {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 400.0},
-        "supports": {"tilt": "locked"},
-        "kinematics": {"spin_speed_rpm": 12000.0},
-        "excitation": {"kind": "unidirectional", "amplitude": "constant", "force": 400.0 * share, "speed_rpm": 12000.0},
-        "integrator": {"kind": integrator},
-        "identifier": {"kind": identifier},
-    }
+    force = {"kind": "unidirectional", "amplitude": "constant", "force": 400.0 * share, "speed_rpm": 12000.0}
+    tables: dict[str, Any] = {"bearing": {"preset": "B7206C"}, "load": {"axial": 400.0}, "supports": {"tilt": "locked"}}
+    tables |= {"kinematics": {"spin_speed_rpm": 12000.0}, "excitation": force}
+    tables |= {"integrator": {"kind": integrator}, "identifier": {"kind": identifier}}
     return run(tables | {name: tables.get(name, {}) | table for name, table in (changes or {}).items()})
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from checks.validation.reference.ring import Ring
 from checks.validation.reference.shooting import dynamic_stiffness, rotating, swinging, trajectory
 from raceway import Result
-from raceway.testing import ring_inertia
+from raceway.testing import b7206c, ring_inertia
 
 Tables = dict[str, Any]
 
@@ -21,15 +21,12 @@ class Damped(Ring):
 
 def heavy(mass: float, damping: float = 5000.0, **integrator: Any) -> Tables:
     """1000 N axial, 100 N that turn at 15 000 r/min, near resonance: the contacts soften."""
-    return {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 1000.0},
-        "rotor": {"mass": mass, "damping": damping},
-        "excitation": {"kind": "bidirectional", "speed_rpm": 15000, "amplitude": "constant", "force": 100.0},
-        "contact": {"damping": 0.0},
-        "kinematics": {"gyroscopic": "none", "ring_growth": False},
-        "integrator": {"kind": "newmark", **integrator},
-    }
+    return b7206c(
+        rotor={"mass": mass, "damping": damping},
+        excitation={"kind": "bidirectional", "speed_rpm": 15000, "amplitude": "constant", "force": 100.0},
+        contact={"damping": 0.0},
+        integrator={"kind": "newmark", **integrator},
+    )
 
 
 def article(axial: float, **integrator: Any) -> Tables:

@@ -169,12 +169,8 @@ def test_an_orbit_of_two_turns_that_still_settles_is_no_quasi_periodic_motion():
 @pytest.mark.slow
 def test_the_bearing_s_period_doubles_under_a_radial_load(tmp_path):
     """Near twice the radial natural frequency; the doubled orbit closes after two turns of the reference ring, not after one."""
-    tables = {
-        **SCENE,
-        "load": {"axial": 400.0, "radial": [200.0, 0.0]},
-        "rotor": {"mass": 2.0, "damping": 60.0},
-        "excitation": {**SCENE["excitation"], "force": 150.0},
-    }
+    load, excitation = {"axial": 400.0, "radial": [200.0, 0.0]}, {**SCENE["excitation"], "force": 150.0}
+    tables = {**SCENE, "load": load, "rotor": {"mass": 2.0, "damping": 60.0}, "excitation": excitation}
     found = rw.follow(tables, "excitation.speed_rpm=50000:48500", doubled=True)
     (flip,) = [label for label in found.labels if label.kind == DOUBLING]
     (branch,) = found.doubled

@@ -141,10 +141,7 @@ def test_equilibria_of_random_scenes(built):
             bearing={"preset": ["B7206C", "7206A-NSK"][rng.integers(2)], "ball_count": int(rng.integers(5, 13))},
             load={"axial": axial, "radial": [float(size * np.cos(angle)), float(size * np.sin(angle))]},
             supports={"tilt": ["locked", "free", 3e4][rng.integers(3)]},
-            kinematics={
-                "gyroscopic": ["outer_race", "shared"][rng.integers(2)],
-                "spin_speed_rpm": float(rng.uniform(1e3, 4e4)),
-            },
+            kinematics={"gyroscopic": ["outer_race", "shared"][rng.integers(2)], "spin_speed_rpm": rng.uniform(1e3, 4e4)},
         )
         system = model.system
         q, ball, _ = system.solve_equilibrium(model.guess)
@@ -200,15 +197,10 @@ def linear(stiffness: np.ndarray, model, polar: float, whirl: float) -> complex:
 @pytest.mark.parametrize("whirl", ["forward", "backward"])
 def test_what_spins_stiffens_forward_whirl_and_softens_backward_whirl(whirl, polar):
     """The inner ring alone, 1.9e-5 kg m2, and with a disc."""
-    tables = b7206c(
-        load={"axial": 400.0},
-        supports={"tilt": "free"},
-        rotor={"polar_inertia": polar, "transverse_inertia": TRANSVERSE if polar else 0.0},
-        excitation={"kind": "bidirectional", "speed_rpm": SPEED_RPM, "amplitude": "constant", "force": 0.1, "whirl": whirl},
-        contact={"damping": 0.0},
-        integrator={"kind": "periodic"},
-    )
-    result = run(tables)
+    force = {"kind": "bidirectional", "speed_rpm": SPEED_RPM, "amplitude": "constant", "force": 0.1, "whirl": whirl}
+    rotor = {"polar_inertia": polar, "transverse_inertia": TRANSVERSE if polar else 0.0}
+    free = {"supports": {"tilt": "free"}, "contact": {"damping": 0.0}, "integrator": {"kind": "periodic"}}
+    result = run(b7206c(load={"axial": 400.0}, rotor=rotor, excitation=force, **free))
     # A hollow cylinder of the bore and a land at 0.2 D, without its groove: 0.5 m (r_i^2 + r_a^2), 10 % more than the ring.
     bore, land = 15e-3, 0.5 * (46e-3 - 9.525e-3) + 0.2 * 9.525e-3
     cylinder = 0.5 * 7810.0 * np.pi * 16e-3 * (land**4 - bore**4)

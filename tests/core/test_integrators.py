@@ -177,15 +177,10 @@ def registry():
 
 
 def scene(bodies, integrator):
-    tables = {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 1000.0},
-        "rotor": {"mass": 0.5},
-        "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 20.0},
-        "integrator": {"kind": integrator, "turns": 1, "start": "static"},
-        **BODIES[bodies],
-    }
-    return scene_from_dict(tables, registry())
+    parts = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "rotor": {"mass": 0.5}}
+    force = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 20.0}
+    steps = {"kind": integrator, "turns": 1, "start": "static"}
+    return scene_from_dict({**parts, "excitation": force, "integrator": steps, **BODIES[bodies]}, registry())
 
 
 @pytest.mark.parametrize("integrator", ["trapezoidal", "by_numbers"])

@@ -118,18 +118,14 @@ def test_ball_passes_are_those_of_the_cage_against_both_rings(angle):
 
 
 def test_a_result_has_them_at_the_loaded_angle_and_in_hertz():
-    tables = {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 1200.0},
-        "kinematics": {"spin_speed_rpm": 6000.0, "ball_inertia": False},
-    }
-    result = run(tables)
+    tables = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1200.0}}
+    result = run({**tables, "kinematics": {"spin_speed_rpm": 6000.0, "ball_inertia": False}})
     (row,) = result.ball_pass["rows"]
     assert row["contact_angle_deg"] == pytest.approx(19.26, abs=0.02)  # shared expectation of the loaded angle, 1200 N
     assert row["bpfo"] == pytest.approx(ball_pass(12, 9.525e-3, 46e-3, np.cos(np.radians(row["contact_angle_deg"])))["bpfo"])
     assert row["bpfo_hz"] == pytest.approx(100.0 * row["bpfo"], rel=1e-12)
     assert result.to_dict()["ball_pass"] == result.ball_pass
-    still = run({**tables, "kinematics": {}}).ball_pass
+    still = run(tables).ball_pass
     assert still["speed_rpm"] == 0.0 and still["rows"][0]["bpfo_hz"] is None
 
 
@@ -150,12 +146,8 @@ def test_the_angle_is_the_mean_of_the_balls_that_carry():
 
 def test_forces_know_one_cage_speed_which_the_table_has_beside_the_loaded_one():
     """Centrifugal forces and orbiting balls go round at the free angle."""
-    tables = {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 2000.0},
-        "kinematics": {"spin_speed_rpm": 15000.0, "orbiting": True},
-    }
-    result = run(tables)
+    orbiting = {"spin_speed_rpm": 15000.0, "orbiting": True}
+    result = run({"bearing": {"preset": "B7206C"}, "load": {"axial": 2000.0}, "kinematics": orbiting})
     model, row = result.model, result.ball_pass["rows"][0]
     cage, b = row["ftf_in_forces"] * model.problem.spin_speed, model.scene.bearing
     assert model.system.scalars[CAGE] == pytest.approx(cage, rel=1e-14)

@@ -200,12 +200,8 @@ def test_every_roller_finds_its_place(exponent, count):
 
 
 def test_a_moment_tilts_the_ring_on_its_rollers():
-    tables = {
-        "bearing": {"preset": "NU206"},
-        "supports": {"tilt": "free"},
-        "load": {"radial": [4000.0, 0.0], "moment": [0.0, 1.0]},
-    }
-    result = rw.run(tables)
+    load = {"radial": [4000.0, 0.0], "moment": [0.0, 1.0]}
+    result = rw.run({"bearing": {"preset": "NU206"}, "supports": {"tilt": "free"}, "load": load})
     clearance = result.model.scene.bearing.radial_clearance
     shift, tilt = result.equilibrium.displacement[1], result.equilibrium.displacement[4]
     numbers = {"length": result.model.scene.bodies.roller_length}
@@ -229,12 +225,8 @@ def test_energy_of_laminae_balances_along_a_motion():
 
 
 def test_columns_are_the_runs_to_rounding():
-    scene = {
-        "bearing": {"preset": "NU206"},
-        "supports": {"tilt": "free"},
-        "load": {"radial": [2000.0, 0.0], "moment": [0.0, 0.5]},
-        "kinematics": {"spin_speed_rpm": 6000.0},
-    }
+    load, kinematics = {"radial": [2000.0, 0.0], "moment": [0.0, 0.5]}, {"spin_speed_rpm": 6000.0}
+    scene = {"bearing": {"preset": "NU206"}, "supports": {"tilt": "free"}, "load": load, "kinematics": kinematics}
     keys = ("load.radial[0]", "bearing.radial_clearance", "kinematics.spin_speed_rpm", "bearing.ball_diameter")
     columns = np.linspace((500.0, 5e-6, 0.0, 8.9e-3), (9000.0, 60e-6, 15e3, 9e-3), 5).T
     many = rw.function(scene, keys, ["kyy", "displacement", "ball_load", "p0_inner", "p0_outer"])(*columns)

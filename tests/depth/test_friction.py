@@ -207,15 +207,13 @@ def test_stick_stiffness_by_default_is_the_ellipses_along_the_groove(built):
 def test_balls_without_mass_rub_as_slow_ones_do():
     """Centrifugal forces of 1e-2 r/min are 1e-12 N; what is rubbed begins at the balls' own places, with mass or without."""
     scene = {
-        "bearing": {"preset": "B7206C"},
         "load": {"axial": 400.0, "radial": [300.0, 0.0]},
         "contact": {"friction": 0.05},
         "excitation": {"kind": "bidirectional", "speed_rpm": 3000.0, "unbalance": 1e-4},
         "integrator": {"kind": "newmark", "turns": 3, "steps_per_turn": 120},
     }
-    plain = {"gyroscopic": "none", "ring_growth": False}
     light, slow = (
-        run(scene | {"kinematics": plain | own}).identification.dynamic_stiffness
+        run(b7206c(**scene, kinematics=own)).identification.dynamic_stiffness
         for own in ({"ball_inertia": False}, {"spin_speed_rpm": 1e-2})
     )
     assert light == pytest.approx(slow, rel=1e-8)

@@ -60,11 +60,8 @@ def test_growth_loads_a_pair(built, growth, told):
 
 @pytest.mark.parametrize(("rpm", "growth"), [(30000.0, 0.0), (15000.0, 0.0), (0.0, 2e-6), (15000.0, 2e-6)])
 def test_a_held_displacement_is_that_of_the_mounted_bearing(rpm, growth):
-    tables = b7206c(
-        load={"axial": 400.0},
-        supports={"axial": "displacement"},
-        kinematics={"spin_speed_rpm": rpm, "radial_expansion": growth},
-    )
+    kinematics = {"spin_speed_rpm": rpm, "radial_expansion": growth}
+    tables = b7206c(load={"axial": 400.0}, supports={"axial": "displacement"}, kinematics=kinematics)
     found = run(tables).to_dict()["equilibrium"]
     running, x = row(rpm, growth), approach(row(), 400.0)
     force, tangent, _ = running(np.array([x, 0.0, 0.0, 0.0, 0.0]))

@@ -231,12 +231,8 @@ def test_a_row_carries_nothing_at_its_lift_off(kind, rpm):
     more = {"bodies": {"kind": kind}, "kinematics": {"ball_inertia": rpm > 0.0, "spin_speed_rpm": rpm}}
     preload = equilibrium_table(*built("TBT", 200.0, bearing, **more))["preload"]
     for load, row in zip(preload["lift_off_axial_n"], preload["lift_off_row"], strict=True):
-        left, there = (
-            equilibrium_table(*built("TBT", 200.0, bearing, load={"axial": part * load}, **more))["preload"]["rows_n"][
-                row - 1
-            ]
-            for part in (1.0, 0.99)
-        )
+        loaded = [built("TBT", 200.0, bearing, load={"axial": part * load}, **more) for part in (1.0, 0.99)]
+        left, there = (equilibrium_table(*each)["preload"]["rows_n"][row - 1] for each in loaded)
         # At lift-off a force goes with the 1.5th power of a displacement that is solved to 1e-11 of all forces.
         assert left < 1e-4 * 200.0 < 1e-3 * abs(load) and left < 0.1 * there
 

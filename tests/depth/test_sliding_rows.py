@@ -208,11 +208,8 @@ def test_the_screen_names_the_three_states():
 
 def test_the_travel_of_a_spring_counts_from_where_the_preload_sets_the_rows(built):
     """Not from where an oil film's first equilibrium has put them, which is nearly where its last one does."""
-    tables = sprung(
-        load={"axial": 0.0},
-        contact={"kind": "film", "oil": "VG 32", "temperature_c": 40.0},
-        kinematics={"spin_speed_rpm": 15000.0},
-    )
+    film = {"kind": "film", "oil": "VG 32", "temperature_c": 40.0}
+    tables = sprung(load={"axial": 0.0}, contact=film, kinematics={"spin_speed_rpm": 15000.0})
     model = built(**tables)
     slid = abs(model.system.table[-1, layout.SHIFT] - built(**sprung(load={"axial": 0.0})).system.table[-1, layout.SHIFT])
     tables["bearing"]["spring_travel"] = 1.01 * slid

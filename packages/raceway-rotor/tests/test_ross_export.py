@@ -195,13 +195,9 @@ def test_damping_along_directions_is_held_against_the_errors_of_their_receptance
 @pytest.mark.parametrize("tilt", ["locked", "free"])
 def test_forces_along_three_directions_find_the_tangent_of_a_loaded_bearing(tmp_path, tilt):
     """A real bearing with a load across its axis: two ways to one matrix with different diagonal and cross terms."""
-    scene = b7206c(
-        title="loaded",
-        supports={"tilt": tilt},
-        load={"axial": 1000.0, "radial": [200.0, 150.0]},
-        excitation={"kind": "unidirectional", "speed_rpm": 1000.0, "amplitude": "constant", "force": 1.0},
-        integrator={"kind": "quasi_static"},
-    )
+    force = {"kind": "unidirectional", "speed_rpm": 1000.0, "amplitude": "constant", "force": 1.0}
+    tables = {"load": {"axial": 1000.0, "radial": [200.0, 150.0]}, "supports": {"tilt": tilt}, "excitation": force}
+    scene = b7206c(title="loaded", integrator={"kind": "quasi_static"}, **tables)
     plan = prepare(scene, grid(["excitation.speed_rpm=1000:9000:5", f"{DIRECTION}=0,45,90"]), tmp_path / "sweep")
     with fill_store(plan, built_in("executor", "serial")()) as store:
         data = store.to_xarray()

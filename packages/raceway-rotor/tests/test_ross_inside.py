@@ -22,12 +22,8 @@ UNITS = np.ones(2)
 
 def scene(axial, force):
     turning = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": force}
-    return {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": axial},
-        "excitation": turning,
-        "integrator": {"kind": "quasi_static"},
-    }
+    tables = {"bearing": {"preset": "B7206C"}, "load": {"axial": axial}}
+    return {**tables, "excitation": turning, "integrator": {"kind": "quasi_static"}}
 
 
 def test_a_circle_changes_both_stiffnesses_alike_and_a_line_only_its_own():
@@ -71,12 +67,9 @@ def test_the_force_has_the_stiffness_of_small_motions_as_derivative(tilt, axial)
     wanted = one.dynamic_stiffness(SPEED, SPEED).real
     assert wanted.shape == ((5, 5) if tilt == "node" else (3, 3))
     step = np.array([1e-8, 1e-8, 1e-8, 1e-6, 1e-6])[: one.size]
-    found = np.column_stack(
-        [
-            (one.resistance(SPEED, h * row)[0] - one.resistance(SPEED, -h * row)[0]) / (2.0 * h)
-            for h, row in zip(step, np.eye(one.size), strict=True)
-        ]
-    )
+    moves = [h * row for h, row in zip(step, np.eye(one.size), strict=True)]
+    changes = [one.resistance(SPEED, move)[0] - one.resistance(SPEED, -move)[0] for move in moves]
+    found = np.transpose(changes) / (2.0 * step)
     scale = np.sqrt(np.outer(np.diag(wanted), np.diag(wanted)))
     # Forces of 1e3 N to 1e-11 over 2e-8 m of 3e7 N/m, and the curvature of the force over 1e-8 m.
     np.testing.assert_allclose(found / scale, wanted / scale, atol=1e-5)
