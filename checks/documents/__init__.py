@@ -33,6 +33,7 @@ VERSIONS = ROOT / "docs" / "installation.md"
 DRAWING = ROOT / "docs" / "pictures" / "parameters.svg"
 STABILITY = ROOT / "docs" / "pictures" / "stability.svg"
 SHOWN = ROOT / "examples" / "minimal.toml"
+EXAMPLE = ROOT / "examples" / "k_over_speed.py"
 _SCENE = re.compile(r"(<!-- scene -->\n```toml\n)(.*?)(```\n<!-- /scene -->)", re.DOTALL)
 _EXAMPLE = re.compile(r"(<!-- example -->\n```python\n)(.*?)(```\n<!-- /example -->)", re.DOTALL)
 _SCREEN = re.compile(r"(<!-- screen -->\n```\n)(.*?)(```\n<!-- /screen -->)", re.DOTALL)
@@ -185,7 +186,7 @@ def answer(shown: str) -> str:
 
 def with_screen(text: str, shown: str) -> str:
     """The README with its example, its scene and the answer on the screen of that scene replaced."""
-    scene, example = SHOWN.read_text(encoding="utf-8"), (ROOT / "examples" / "k_over_speed.py").read_text(encoding="utf-8")
+    scene, example = SHOWN.read_text(encoding="utf-8"), EXAMPLE.read_text(encoding="utf-8")
     text = _EXAMPLE.sub(lambda match: match[1] + example + match[3], text)
     text = _SCENE.sub(lambda match: match[1] + scene + match[3], text)
     return _SCREEN.sub(lambda match: match[1] + answer(shown) + match[3], text)
