@@ -111,6 +111,7 @@ def test_the_largest_part_without_holes_holds_the_last_axes():
         ([3, 2, 1], [0, 0, 0], "falls"),
         ([1, 3, 2], [0, 0, 0], "not monotonic"),
         ([1, 1.001, 1], [1e-3, 1e-3, 1e-3], "level"),
+        ([1, 1.0015], [1e-3, 1e-3], "level"),  # within both errors together
         ([1, 1.001, 2], [1e-3, 1e-3, 1e-3], "rises"),
         ([1, 1.001, 1.002, 1.003], [1e-3, 1e-3, 1e-3, 1e-3], "rises"),  # no step does, the whole does
         ([1, 0.99, 1.02], [1e-3, 0.2, 1e-3], "rises"),  # over one that is hardly known

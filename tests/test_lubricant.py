@@ -55,6 +55,7 @@ def test_viscosities_are_columns_where_their_keys_are():
     film = column_problem(resolve(scene(contact={"kind": "film"}, lubricant=OIL)), {"lubricant.temperature_c": warm})
     assert film.contact.law.dynamic_viscosity == pytest.approx(film.lubricant.dynamic_viscosity, rel=1e-14)
     # Of a viscosity alone beta is that of the mineral oil that has it at the temperature, within and beyond the grades.
+    assert Oil(viscosity=0.03).beta == Oil(viscosity=0.03, temperature_c=40.0).beta
     for eta in (1e-4, 0.03, 3.0):
         several = Oil(viscosity=eta).at(warm).beta
         assert several == pytest.approx([Oil(viscosity=eta, temperature_c=t).beta for t in warm.tolist()], rel=1e-14)

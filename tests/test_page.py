@@ -62,6 +62,10 @@ def test_columns_of_numbers_stand_right_and_wide_tables_scroll_in_their_box():
     text = _page().html()
     assert '<td class="number">1.5</td>' in text and '<span class="tone good">holds</span>' in text
     assert re.search(r'<div class="scroll" tabindex="0" role="region" aria-label="A table"><table>', text)
+    for words, count in ((["1.5", "failed"], 2), (["1.5", "failed", "lost"], 0)):  # half of them numbers, or less
+        page = Page("title")
+        page.table(["case", "K"], [["a", word] for word in words])
+        assert page.html().count('<td class="number">') == count
 
 
 def test_an_unknown_tone_is_refused():

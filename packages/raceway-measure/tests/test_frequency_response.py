@@ -46,6 +46,7 @@ FORMS = {
     "feet": ([function(RECEPTANCE / 0.3048, 8, ("ft", "N"))], "receptance in ft over N"),
     "units of dataset 164": ([units(7, 39.37007874015748, 0.22480894309971), function(RECEPTANCE / 0.0254 * 4.4482216152605, 8)], "dataset 164"),
     "opposite directions": ([function(-RECEPTANCE, 8, rsp_dir=-3)], "opposite directions"),
+    "force against its direction": ([function(-RECEPTANCE, 8, ref_dir=-3)], "opposite directions"),
     "reaction force": ([function(RECEPTANCE, 8, orddenom_spec_data_type=9)], "receptance"),
     "a transfer function beside it": ([function(2.0 * RECEPTANCE, 8, rsp_node=8), function(RECEPTANCE, 8)], "receptance"),
 }  # fmt: skip

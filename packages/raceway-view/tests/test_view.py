@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import attrs
 import numpy as np
 import pytest
 from raceway_view.bodies import BearingSolids, contact_patch
@@ -83,6 +84,17 @@ def test_contacts_lie_where_ring_and_ball_meet(result):
         away = np.hypot(x - 1e3 * shape.centre_x, y - 1e3 * shape.centre_r)
         # The rings are drawn unloaded: off by no more than the approach and the groove's clearance for a turned angle.
         assert away == pytest.approx(1e3 * shape.groove, abs=0.06)
+
+
+def test_a_drawn_ring_moves_and_tilts_as_it_is_said():
+    """Turned about y by the right hand, what stands on +z goes along +x; about z what stands on -y."""
+    result = run(scene_from_dict(b7206c(load={"axial": 1000.0, "moment": [2.0, 3.0]}, supports={"tilt": "free"})))
+    state, places = at_rest(result), np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [0.0, 0.0, 0.0]])
+    q = result.equilibrium.displacement
+    assert state.load[3] > state.load[9] and state.load[6] > state.load[0]  # balls on +z and -y are pressed more
+    drawn = attrs.evolve(state, motion=q)
+    moved = BearingSolids.of(result).moved(places, drawn) - places
+    assert moved[:, 0] == pytest.approx(q[0] + np.array([q[3], q[4], 0.0])) and moved[2] == pytest.approx(q[:3])
 
 
 def test_the_peak_is_the_record_s_largest_load(moving):
