@@ -240,6 +240,13 @@ def _k(point, tilt=1.0, law=1.0):
     return 4e7 * (1.2 if point["excitation.amplitude"] == "unbalance" and law else 1.01) ** s
 
 
+def test_the_error_of_k_is_that_of_z_over_its_own_size():
+    row = with_error(_synthetic(_k), 0.5).rows[0]
+    z, k = (row.value(name) for name in ("dynamic_stiffness", "equivalent_stiffness"))
+    assert z < 0.99 * k and row.error_of("dynamic_stiffness") == 0.5
+    assert row.error_of("equivalent_stiffness") == pytest.approx(0.5 * z / k, rel=1e-14)
+
+
 def test_a_motion_that_is_larger_at_other_frequencies_is_no_basis():
     row = _synthetic(_k).rows[0]
     loud = attrs.evolve(row, result={**row.result, "identification": {**row.result["identification"], "residual": 1.5}})

@@ -63,6 +63,8 @@ def test_a_comparison_shows_itself_and_is_labelled(comparison):
     for row in comparison.rows:
         k = float(data.equivalent_stiffness.sel(row.point))
         assert k == row.result["identification"]["equivalent_stiffness"]
+        error = row.result["identification"]["equivalent_stiffness_error"]
+        assert float(data.equivalent_stiffness_error.sel(row.point)) == pytest.approx(error, rel=1e-12)
     assert data.equivalent_stiffness.attrs["units"] == "N/m"
     assert comparison.plot().get_xlabel() == "axial load [N]"
     one = rw.compare(SCENE, {"supports.tilt": ["locked", "free"]})

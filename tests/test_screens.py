@@ -156,6 +156,13 @@ def test_what_a_screen_has_no_room_for_is_told_when_it_is_asked_for(caplog):
     assert not any("Palmgren" in line for line in short)
 
 
+def test_a_line_that_is_cut_ends_at_a_part_of_its_sentence_or_at_a_word():
+    assert table.in_a_line("short", 20) == "short"
+    words = "word " * 10
+    assert table.in_a_line(f"a part of a sentence: {words}", 40) == "a part of a sentence …"
+    assert table.in_a_line(f"a: {words}", 40) == f"a: {'word ' * 7}…"
+
+
 def test_what_is_nothing_has_no_sign_and_a_direction_is_no_state():
     """A loose row carries 0 N; a ring that the balls push off its seat is not said to be seated."""
     pair = {"preset": "B7206C", "arrangement": "DB", "preload": 100.0}

@@ -88,6 +88,7 @@ def test_entries_of_arrays_have_their_own_unit():
     [
         (AXES, {"at": {"load.axail": 400.0}}, "is not an axis of this sweep (did you mean 'load.axial'?)"),
         (AXES, {"at": {LOAD: 500.0}}, "is not in the sweep, which has 400, 1000, 2000"),
+        (AXES, {"at": {LOAD: 1000.5}}, "is not in the sweep"),
         (AXES, {"at": {LOAD: "many"}}, "is not in the sweep"),
         ({SPEED: SPEEDS}, {"value": "p1"}, "is not a quantity of this sweep"),
         ({SPEED: SPEEDS}, {"value": "stiffness"}, "takes 2 labels after a colon, for instance stiffness:y,y; 0 given"),

@@ -109,6 +109,8 @@ def test_a_sign_and_millivolts_are_part_of_the_sensitivity():
     assert lengths == [(1, 1.0), (1, 1e-3), (1, 1e-6), (1, 1e-9)]
     units = columns_of(["Temps [s]", "Force (Newtons)", "Acc [m/s²]"]), columns_of(["in ms", "F(N)", "acceleration g"])
     assert [found["acceleration"][1] for found in units] == [1.0, 9.80665] and units[1]["time"] == (0, 1e-3)
+    turning = columns_of(["Time [µs]", "X [um]", "Speed [Hz]"])
+    assert turning["time"] == (0, 1e-6) and turning["speed"] == (2, 2.0 * np.pi)
 
 
 def test_a_reader_of_damaged_files_raises_nothing_but_its_own_errors(tmp_path):
