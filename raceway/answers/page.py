@@ -104,9 +104,8 @@ class Page:
     def card(self, heading: str, badge: Cell, parts: Iterable[tuple[str, str]]) -> None:
         """A box about one thing: what it is, a coloured word on it, and named paragraphs."""
         lines = "".join(f"<dt>{_inline(name)}</dt><dd>{_inline(words)}</dd>" for name, words in parts)
-        self._blocks.append(
-            f'<section class="card"><h3>{_inline(heading)}</h3><p class="badge">{_in_tone(badge)}</p><dl>{lines}</dl></section>'
-        )
+        text = f'<section class="card"><h3>{_inline(heading)}</h3><p class="badge">{_in_tone(badge)}</p><dl>{lines}</dl></section>'
+        self._blocks.append(text)
 
     def figures(self, items: Iterable[tuple[Figure | bytes, str, str]], wide: bool = False) -> None:
         """Figures side by side as far as the screen is wide, or one below the other with ``wide``.

@@ -351,11 +351,8 @@ def solved_columns(bearing: ColumnBearing, states: States, turn: Callable[[int],
 
 def _rows(record: R, chosen: np.ndarray | slice) -> R:
     """Rows of the columns (n, ...) of a record; what all points share stays."""
-    columns: dict[str, Any] = {
-        name: np.ascontiguousarray(value[chosen])
-        for name, value in record._asdict().items()
-        if isinstance(value, np.ndarray) and name != "order" and len(value)
-    }
+    arrays = {name: value for name, value in record._asdict().items() if isinstance(value, np.ndarray) and len(value)}
+    columns: dict[str, Any] = {name: np.ascontiguousarray(x[chosen]) for name, x in arrays.items() if name != "order"}
     return record._replace(**columns)
 
 

@@ -254,9 +254,8 @@ def build_model(
     """
     plan = make_plan(scene) if plan is None else plan
     if scene.heat is not None and plan.problem.mounting is scene.mounting:
-        raise SceneError.at(
-            "heat", None, "is supported by runs, functions, sweeps and bands: set the temperatures of [mounting] here"
-        )
+        why = "is supported by runs, functions, sweeps and bands: set the temperatures of [mounting] here"
+        raise SceneError.at("heat", None, why)
     return model_of(plan.problem if plan.problem.scene is scene else resolve(scene), plan)
 
 
@@ -264,9 +263,8 @@ def model_of(problem: Problem, plan: ScenePlan) -> Model:
     """The same as ``build_model``, of a problem."""
     bearing = problem.body_kind.build(plan)
     if not isinstance(bearing, BuiltBearing):
-        raise PluginError(
-            f"bodies '{problem.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.extend.BuiltBearing"
-        )
+        why = f"bodies '{problem.bodies.name}': build() returned {type(bearing).__name__}; it must be a raceway.extend.BuiltBearing"
+        raise PluginError(why)
     return Model(problem, plan, bearing, bearing.system)
 
 

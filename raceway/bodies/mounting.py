@@ -152,11 +152,9 @@ def _follow_spring(problem: Problem, basis: Basis, origin: float, system: Ring, 
             trial = 0.5 * (low + high) if bounded else shift - np.copysign(step, excess)
         shift = trial
     key = "preload" if problem.bearing.second_preload is None else "second_preload"
-    raise ConvergenceError(
-        f"no position of the second row was found at which it carries the spring of `bearing.{key}` = {preload:g} N under these "
-        "loads: raise the preload, or use preload_kind = 'rigid'.",
-        {"q": q},
-    )
+    spring = f"the spring of `bearing.{key}` = {preload:g} N under these loads"
+    remedy = "raise the preload, or use preload_kind = 'rigid'."
+    raise ConvergenceError(f"no position of the second row was found at which it carries {spring}: {remedy}", {"q": q})
 
 
 def preload_table(model: Model, equilibrium: Equilibrium) -> Tables | None:

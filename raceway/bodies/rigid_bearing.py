@@ -57,13 +57,9 @@ def with_hertz(problem: Problem) -> Problem:
 
 def rigid_system(problem: Problem, plan: ScenePlan, basis: Basis) -> System:
     """Arrays and kernels; the preload of a pair is not built in yet (``raceway.bodies.mounting``)."""
-    return System(
-        law_state=np.zeros((2 * len(basis.azimuth), problem.contact.law.state_size)),
-        **contact_parts(problem, plan, basis),
-        **linear_parts(problem, plan),
-        **excitation(problem),
-        spin=changing_speed(problem),
-    )
+    law_state = np.zeros((2 * len(basis.azimuth), problem.contact.law.state_size))
+    parts = contact_parts(problem, plan, basis) | linear_parts(problem, plan) | excitation(problem)
+    return System(law_state=law_state, spin=changing_speed(problem), **parts)
 
 
 def contact_parts(problem: Problem, plan: ScenePlan, basis: Basis) -> Tables:

@@ -100,10 +100,8 @@ def renew(
         if system.spin is not None:
             system.spin = attrs.evolve(system.spin, law=_following(problem, basis, force, angles))
         before = force
-    raise ConvergenceError(
-        f"contact law '{problem.contact.kind}': loads and parameters do not converge in {ITERATIONS} equilibria",
-        {"q": q, "ball": ball},
-    )
+    reason = f"contact law '{problem.contact.kind}': loads and parameters do not converge in {ITERATIONS} equilibria"
+    raise ConvergenceError(reason, {"q": q, "ball": ball})
 
 
 def _following(

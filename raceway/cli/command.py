@@ -182,9 +182,8 @@ class Command(NamedTuple):
             several = f"{text.removesuffix('.')}; repeat for more."
             of = _TYPES.get(kind.partition("Iterable[")[2].partition("]")[0], str)
             keys = scene_keys if parameter.name in OF_KEYS else None
-            return click.option(
-                *flags, type=of, multiple=True, required=needed, metavar=about.metavar, help=several, shell_complete=keys
-            )
+            parts: dict[str, Any] = {"type": of, "multiple": True, "required": needed, "shell_complete": keys}
+            return click.option(*flags, metavar=about.metavar, help=several, **parts)
         empty = default is inspect.Parameter.empty
         # None too is a value to click, also of what is required.
         start: dict[str, Any] = {} if empty else {"default": default}

@@ -63,19 +63,15 @@ class _CommandsByName(Commands):
                 return super().resolve_command(ctx, [name, *(arg for arg in args[1:] if arg != flag)])
         return super().resolve_command(ctx, args)
 
-    def _lines(self) -> dict[str, list[tuple[str, str]]]:
-        """Heading -> name and summary of each command, for the help; those of packages as these list them: none is imported."""
-        lines = {heading: [(about.name, about.summary) for about in own] for heading, own in self.sections.items()}
-        for word, name, summary in sorted(listed_commands()):
-            if heading := self.heading(word):
-                lines.setdefault(heading, []).append((name, summary))
-        return lines
-
     def elsewhere(self, word: str) -> str:
         return missing_package(word, "commands")
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        for heading, commands in self._lines().items():
+        lines = {heading: [(about.name, about.summary) for about in own] for heading, own in self.sections.items()}
+        for word, name, summary in sorted(listed_commands()):  # of packages, as these list them: none is imported
+            if heading := self.heading(word):
+                lines.setdefault(heading, []).append((name, summary))
+        for heading, commands in lines.items():
             with formatter.section(heading):
                 formatter.write_dl(commands)
 

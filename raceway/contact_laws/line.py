@@ -58,9 +58,8 @@ class Line:
 
     def build(self, pairs: ContactPairs) -> np.ndarray:
         if self.length is None and pairs.length is None:
-            raise PluginError(
-                "the contacts are not line contacts: use bodies.kind = 'cylindrical_rollers', or give contact.length"
-            )
+            why = "the contacts are not line contacts: use bodies.kind = 'cylindrical_rollers', or give contact.length"
+            raise PluginError(why)
         length = np.full_like(pairs.hertz_factor, pairs.length if self.length is None else self.length)
         return np.asarray((length ** (8.0 / 9.0) / self.coefficient ** (10.0 / 9.0))[:, None].copy())
 

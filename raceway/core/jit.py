@@ -71,23 +71,17 @@ def kernel_folder() -> OpenFolder | None:
     folder = opened(current_folder())
     if isinstance(folder, OpenFolder):
         return folder
-    warnings.warn(
-        f"compiled kernels cannot be cached in {current_folder()} ({folder}); compiling in memory, which costs some ten seconds "
-        "a run. Set RACEWAY_CACHE_DIR to a writable folder of yours.",
-        RuntimeWarning,
-        stacklevel=2,
-    )
+    remedy = "compiling in memory, which costs some ten seconds a run. Set RACEWAY_CACHE_DIR to a writable folder of yours."
+    words = f"compiled kernels cannot be cached in {current_folder()} ({folder}); {remedy}"
+    warnings.warn(words, RuntimeWarning, stacklevel=2)
     return None
 
 
 @cache
 def _warn_incomplete(folder: Path, why: str) -> None:
-    warnings.warn(
-        f"{folder} cannot be written ({why}) and lacks some kernels: they are compiled in memory at every run. Set "
-        "RACEWAY_CACHE_DIR to a folder of your own that can be written.",
-        RuntimeWarning,
-        stacklevel=4,
-    )
+    remedy = "Set RACEWAY_CACHE_DIR to a folder of your own that can be written."
+    words = f"{folder} cannot be written ({why}) and lacks some kernels: they are compiled in memory at every run. {remedy}"
+    warnings.warn(words, RuntimeWarning, stacklevel=4)
 
 
 class Kernel(Dispatcher):
@@ -261,12 +255,8 @@ class Kernel(Dispatcher):
                 if files is not None:
                     files.discard()
                 if attempt == 2 or self.overloads:
-                    warnings.warn(
-                        f"the kernel cache in {folder.path} did not serve `{self.py_func.__qualname__}` ({why}); compiled in "
-                        "memory",
-                        RuntimeWarning,
-                        stacklevel=3,
-                    )
+                    words = f"the kernel cache in {folder.path} did not serve `{self.py_func.__qualname__}` ({why}); compiled in memory"
+                    warnings.warn(words, RuntimeWarning, stacklevel=3)
         self._cache = NullCache()
         clock["unkept"] += 1
         super().compile(self.signature)

@@ -21,11 +21,8 @@ _REPORT_S = 0.1
 def unbounded(schedule: Schedule, when: str, limit: float, state: dict[str, Any]) -> StabilityError:
     """The error for a motion that grows without bound, with the stable limit of explicit steps [s] where one is known."""
     hint = f"; stable limit of explicit steps there {limit:.3g} s" if 0.0 < limit < float("inf") else ""
-    return StabilityError(
-        f"the motion grew without bound {when}, step {schedule.dt:.3g} s{hint}. Use more `integrator.steps_per_turn`, add "
-        "damping, or move away from a resonance.",
-        state,
-    )
+    words = f"the motion grew without bound {when}, step {schedule.dt:.3g} s{hint}. Use more `integrator.steps_per_turn`, add damping, or move away from a resonance."
+    return StabilityError(words, state)
 
 
 class Recorder:
@@ -160,16 +157,10 @@ class Recorder:
 
     def stalled(self, residuals: list[float], why: str = "the iteration of a step did not converge") -> ConvergenceError:
         """The error for a step that found no balance, with the residuals [N] of its iterations."""
-        tail = ", ".join(f"{r:.2g}" for r in residuals[-6:])
-        history = (
-            f" (residuals of {len(residuals)} iterations: {'..., ' if len(residuals) > 6 else ''}{tail} N)"
-            if residuals
-            else ""
-        )
-        return ConvergenceError(
-            f"{why} {self.schedule.when(self.done)}{history}. Use more `integrator.steps_per_turn`.",
-            {**self._last_good(), "residuals": np.array(residuals)},
-        )
+        tail = ("..., " if len(residuals) > 6 else "") + ", ".join(f"{r:.2g}" for r in residuals[-6:])
+        history = f" (residuals of {len(residuals)} iterations: {tail} N)" if residuals else ""
+        words = f"{why} {self.schedule.when(self.done)}{history}. Use more `integrator.steps_per_turn`."
+        return ConvergenceError(words, {**self._last_good(), "residuals": np.array(residuals)})
 
     def _last_good(self) -> dict[str, np.ndarray]:
         self.system.rollback()

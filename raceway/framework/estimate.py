@@ -144,8 +144,7 @@ class Estimate(Enum):
     UNLOADED = ("no contact carries anything",)
     NO_BALL_LOADED = ("no ball carries anything",)
     CALIBRATED = (
-        "calibrated on contacts at surface points: their own error and the change of compliance with the load, over a ball's "
-        "compliance",
+        "calibrated on contacts at surface points: their own error and the change of compliance with the load, over a ball's compliance",
         "what the calibration of the contacts leaves",
     )
     CALIBRATED_ON_MESH = (f"{CALIBRATED[0]}, with half the spread over depths of what is taken off the mesh", CALIBRATED[1])
@@ -154,8 +153,7 @@ class Estimate(Enum):
         "compliances are matched at depth",
     )
     AGAINST_HERTZ = (
-        "largest difference of a contact's stiffness ({stiffness:.1e}) or approach ({approach:.1e}) from exact Hertz at the same "
-        "load; not part of the total",
+        "largest difference of a contact's stiffness ({stiffness:.1e}) or approach ({approach:.1e}) from exact Hertz at the same load; not part of the total",
         "against exact Hertz; not in the total",
     )
     HERTZ_ITSELF = (

@@ -167,9 +167,8 @@ def inside(low: float, high: float) -> Rule:
         ...
     ValueError: must be greater than 0.5 and less than 1
     """
-    return _rule(
-        f"greater than {low:g} and less than {high:g}", lambda v: low < v < high, exclusiveMinimum=low, exclusiveMaximum=high
-    )
+    words = f"greater than {low:g} and less than {high:g}"
+    return _rule(words, lambda v: low < v < high, exclusiveMinimum=low, exclusiveMaximum=high)
 
 
 def length() -> Rule:

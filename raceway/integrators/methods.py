@@ -32,10 +32,8 @@ class Newmark:
 
     def __attrs_post_init__(self) -> None:
         if 2.0 * self.beta < self.gamma:
-            raise ValueError(
-                f"`beta` = {self.beta:g} must be at least gamma / 2 = {self.gamma / 2:g}: else steps are not "
-                "unconditionally stable"
-            )
+            why = f"`beta` = {self.beta:g} must be at least gamma / 2 = {self.gamma / 2:g}: else steps are not unconditionally stable"
+            raise ValueError(why)
 
     @property
     def scheme(self) -> OneStep:

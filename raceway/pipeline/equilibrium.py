@@ -83,15 +83,13 @@ def _warnings(model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndar
             warnings.append(f"{name} lifts off: none of its balls touches the inner race")
         elif row.contact_angle > 0.0 and row.radial_clearance is None and least <= _SEATED * free:
             angles = f"{np.degrees(least):.2f} deg, {np.degrees(free):.3g} deg without loads"
-            warnings.append(
-                f"{name} loses axial contact: the contact angle of a loaded ball is {angles}. The axial load is too small or has the wrong sign"
-            )
+            words = f"{name} loses axial contact: the contact angle of a loaded ball is {angles}. The axial load is too small or has the wrong sign"
+            warnings.append(words)
     if any(problem.load.moment) and not problem.tilts:
         warnings.append("`load.moment` has no effect: supports.tilt is locked")
     if problem.contact.friction > 0.0 and model.traits.every_node:
-        warnings.append(
-            "equilibria and static stiffness of elastic bodies are frictionless: contact.friction acts in motions only"
-        )
+        words = "equilibria and static stiffness of elastic bodies are frictionless: contact.friction acts in motions only"
+        warnings.append(words)
     elif problem.contact.friction > 0.0:
         warnings.append("friction is on: balls that do not roll add a tangential stiffness, which rotating bearings lack")
     return (*warnings, *model.bearing.edge_warnings(model, inner, outer, force))

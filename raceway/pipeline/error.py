@@ -160,9 +160,8 @@ def error_warnings(errors: Errors, identified: bool) -> list[str]:
         number, what = ("Z", "K and C carry") if identified else ("the stiffness", "it carries")
         warnings.append(f"{number} is not resolved: {cause} is {size:.2g} times its size, so that {what} no information")
     elif contact >= _OTHER_LAW:
-        warnings.append(
-            f"the contact law deviates from Hertz's by {contact:.2g}, which the stated error does not include: {errors.contact.how}"
-        )
+        words = f"the contact law deviates from Hertz's by {contact:.2g}, which the stated error does not include: {errors.contact.how}"
+        warnings.append(words)
     if identified and errors.total.estimate in _TOTAL_UNKNOWN:
         warnings.append(f"the error of Z is {errors.total.how}")
     return warnings

@@ -240,11 +240,8 @@ class Gradients:
         inside = [key for key in keys if not why.get(key.path)]
         why |= ends(inside, 1.0) | ends(inside, -1.0)
         zero = "is 0, the end of its range: it switches a part of the model on"
-        return {
-            key.path: NoDerivative(f"is at the end of its range: {why[key.path]}" if key.value else zero)
-            for key in keys
-            if why.get(key.path)
-        }
+        at_end = {key: f"is at the end of its range: {why[key.path]}" for key in keys if why.get(key.path)}
+        return {key.path: NoDerivative(words if key.value else zero) for key, words in at_end.items()}
 
     def _by_columns(self, keys: Sequence[Key], relative: float = _STEP) -> dict[str, Gradient]:
         """Of keys whose neighbours are solved in compiled loops."""
@@ -295,7 +292,14 @@ class Gradients:
         wide = self.model.problem.bearing.preloaded or renews(self.model.problem.contact.law)
         step, shifts = _difference_step(key, _WIDE if wide else relative), (-2, -1, 1, 2) if wide else (-1, 1)
         base, ahead = self._values(self.model, self.equilibrium), self._model(key, step)
-        solutions, moves = dict.fromkeys(shifts, base), _has_other_contacts(self.model, ahead)
+        solutions, systems = dict.fromkeys(shifts, base), (surrogate(self.model.system), surrogate(ahead.system))
+        arrays = [tuple(getattr(system, name) for system in systems) for name in _ARRAYS]
+        if any(value.shape != other.shape for value, other in arrays):
+            raise NoDerivative("switches a part of the model on or off")
+        periods = [None if each.excitation is None else each.excitation.period_s for each in (self.model, ahead)]
+        arrays.append((self.model.guess, ahead.guess))
+        # Whether anything of the contacts differs, to the last bit.
+        moves = periods[0] != periods[1] or not all(np.array_equal(value, other) for value, other in arrays)
         if moves or self.stated:
             models = {k: ahead if k == 1 else self._model(key, k * step) for k in shifts}
             solve = self._solution if moves else partial(self._values, equilibrium=self.equilibrium)
@@ -352,17 +356,6 @@ def other_meshes(problem: Problem, other: Problem) -> str:
     if problem.body_kind.same_bodies(other):
         return ""
     return "changes the meshes of the bodies: the difference of two meshes is their error, no derivative. bodies.kind = 'rigid' has one"
-
-
-def _has_other_contacts(model: Model, neighbour: Model) -> bool:
-    """Whether anything differs, to the last bit; NoDerivative: parts of one that the other does not have."""
-    systems = surrogate(model.system), surrogate(neighbour.system)
-    pairs = [tuple(getattr(system, name) for system in systems) for name in _ARRAYS]
-    if any(value.shape != other.shape for value, other in pairs):
-        raise NoDerivative("switches a part of the model on or off")
-    periods = [None if each.excitation is None else each.excitation.period_s for each in (model, neighbour)]
-    pairs.append((model.guess, neighbour.guess))
-    return periods[0] != periods[1] or not all(np.array_equal(value, other) for value, other in pairs)
 
 
 def _difference_step(key: Key, relative: float) -> float:

@@ -102,6 +102,5 @@ def series_warnings(identification: Identification | None) -> list[str]:
     error, speed = max(errors)
     return [
         f"the motion lags behind the speed in {len(bad)} of {len(identification.series)} windows, {min(bad):.0f} to {max(bad):.0f} "
-        f"r/min: the error of Z is up to {error:.2g} of |Z| there (at {speed * 30.0 / pi:.0f} r/min). Change the speed more slowly, or "
-        "run these speeds one by one"
+        f"r/min: the error of Z is up to {error:.2g} of |Z| there (at {speed * 30.0 / pi:.0f} r/min). Change the speed more slowly, or run these speeds one by one"
     ]

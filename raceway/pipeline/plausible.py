@@ -103,8 +103,7 @@ def refuse_impossible(model: Model, equilibrium: Equilibrium, record: Record) ->
     if distance > limit:
         raise ConvergenceError(
             f"the ring moves by {1e3 * distance:.3g} mm, more than the groove centres are apart ({1e3 * limit:.3g} mm): balls "
-            f"would leave their grooves. The excitation's force is {model.excitation.amplitude_n:.4g} N: check its unit "
-            "(unbalance in kg m), or load the bearing more.",
+            f"would leave their grooves. The excitation's force is {model.excitation.amplitude_n:.4g} N: check its unit (unbalance in kg m), or load the bearing more.",
             {"q": record.final.q, "v": record.final.v, "ball": record.final.ball},
         )
 
@@ -141,9 +140,8 @@ def motion_warnings(model: Model, record: Record) -> tuple[str, ...]:
             beyond.setdefault(text.split(" reaches ")[0], text)
     b = model.problem.bearing
     if b.radial_clearance is None and b.contact_angle > 0.0 and np.nanmin(inner, initial=np.inf) <= 0.0:
-        warnings.append(
-            "the bearing loses axial contact during a turn: the contact angle of a loaded ball is zero or negative"
-        )
+        words = "the bearing loses axial contact during a turn: the contact angle of a loaded ball is zero or negative"
+        warnings.append(words)
     return (*warnings, *(f"during a turn {text}" for text in beyond.values()))
 
 

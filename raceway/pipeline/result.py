@@ -529,9 +529,8 @@ def chosen_reports(names: Iterable[str], registry: Registry) -> list[Chosen]:
     writing = sorted({each.name for each in registry.of_kind("format") if of_results(each.plugin)}) if names else []
     for name in names:
         if name not in writing:
-            raise PluginError(
-                f"no format of results named '{name}'{nearest(name, writing)}; installed: {', '.join(writing)}"
-            )
+            why = f"no format of results named '{name}'{nearest(name, writing)}; installed: {', '.join(writing)}"
+            raise PluginError(why)
         entry = registry.find("format", name)
         with blamed(str(entry), "making it without options"):
             reports.append((entry, entry.plugin()))

@@ -79,9 +79,8 @@ def run(
                 return attrs.evolve(result, warnings=(*result.warnings, f"after the run: {why}"))
             return result
         except (ArithmeticError, np.linalg.LinAlgError) as why:
-            raise ConvergenceError(
-                f"the numbers of this scene exceed the range of floating-point arithmetic ({why}): check its units"
-            ) from why
+            reason = f"the numbers of this scene exceed the range of floating-point arithmetic ({why}): check its units"
+            raise ConvergenceError(reason) from why
     except RacewayError as error:
         try:
             registry.notify("raceway_run_failed", error=error)

@@ -342,11 +342,10 @@ def work_of(motions: list[Simulation]) -> dict[str, Any]:
 def stability_of(motions: list[Simulation]) -> Tables:
     """The table ``stability``: the worst of all motions (several speeds may be run); friction's energy is their sum."""
     drifts = [drift for drift in map(_drift, motions) if drift is not None]
-    rubbing = [
-        friction_lost(m.whole.energies) if m.whole.energies else m.model.bearing.friction_lost(m.model.system, m.whole)
-        for m in motions
-        if m.model.problem.contact.friction > 0.0
-    ]
+    rubbing = []
+    for model, whole in ((m.model, m.whole) for m in motions if m.model.problem.contact.friction > 0.0):
+        lost = friction_lost(whole.energies) if whole.energies else model.bearing.friction_lost(model.system, whole)
+        rubbing.append(lost)
     energies = [motion.whole.energies for motion in motions if motion.whole.energies]
     limits = [motion.critical_time_step for motion in motions if motion.critical_time_step is not None]
     counts = [motion.whole.counts for motion in motions]

@@ -365,8 +365,7 @@ _UNSTEADY: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "kinematics.orbiting", lambda p: p.kinematics.orbiting and not p.force_alone_directs,
-        "kinematics.orbiting: the ball-pass frequency differs from that of the force, no motion repeats every turn unless the "
-        "force turns and no radial load acts",
+        "kinematics.orbiting: the ball-pass frequency differs from that of the force, no motion repeats every turn unless the force turns and no radial load acts",
     ),
 )  # fmt: skip
 
@@ -489,12 +488,10 @@ def refuse_memory(problem: Problem, turns: int, steps_per_turn: int, count: int)
     """Records that will not fit are refused before anything is computed."""
     need = record_bytes(turns, steps_per_turn, count, problem.integrator.method.inertial)
     if need > _MEMORY_LIMIT:
-        raise SceneError.at(
-            "integrator.turns",
-            problem.integrator.turns,
-            f"the record of {turns} turns would take {need / 2**30:.1f} GiB, above {_MEMORY_LIMIT / 2**30:.0f} GiB: take "
-            "fewer turns, or steps_per_turn = 360 or a multiple of it",
-        )
+        remedy = "take fewer turns, or steps_per_turn = 360 or a multiple of it"
+        sizes = f"{need / 2**30:.1f} GiB, above {_MEMORY_LIMIT / 2**30:.0f} GiB"
+        why = f"the record of {turns} turns would take {sizes}: {remedy}"
+        raise SceneError.at("integrator.turns", problem.integrator.turns, why)
 
 
 def series_factor(b: Bearing) -> float:

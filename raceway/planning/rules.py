@@ -64,10 +64,7 @@ def _inertial(p: Problem) -> bool:
     return p.recorded and p.integrator.method.inertial
 
 
-_DAMPS = (
-    "is damping proportional to the contact stiffness, which contact resultants on rigid or condensed bodies support: use those, "
-    "or contact.damping in N s/m"
-)
+_DAMPS = "is damping proportional to the contact stiffness, which contact resultants on rigid or condensed bodies support: use those, or contact.damping in N s/m"
 
 #: What no bodies, or no other part, can compute, before the growth of grooves is looked at.
 _CONTACTS: tuple[Rule[Problem], ...] = (
@@ -77,8 +74,7 @@ _CONTACTS: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "contact.kind", lambda p: renews(p.contact.law) and p.spin_speed == 0.0,
-        "needs the running speed of its contacts: set excitation.speed_rpm or kinematics.spin_speed_rpm, or "
-        "use kind = 'hertz', the dry law",
+        "needs the running speed of its contacts: set excitation.speed_rpm or kinematics.spin_speed_rpm, or use kind = 'hertz', the dry law",
     ),
     Rule(
         "contact.kind", lambda p: renews(p.contact.law) and _has_law(p) and not p.traits.renews,
@@ -180,8 +176,7 @@ _MOTION: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "identifier.kind", lambda p: _unsteady_speed(p) is not None,
-        lambda p: f"runs several speeds, but excitation '{p.excitation.name}' does not repeat every turn at "
-        f"{_unsteady_speed(p):g} r/min",
+        lambda p: f"runs several speeds, but excitation '{p.excitation.name}' does not repeat every turn at {_unsteady_speed(p):g} r/min",
     ),
     Rule(
         "integrator.kind", lambda p: p.recorded and missing_driver(p.integrator.method.scheme, p.traits.compiled),
@@ -245,8 +240,7 @@ _FORESEEN: tuple[Rule[Problem], ...] = (
     ),
     Rule(
         "integrator.steps_per_turn", lambda p: (least := _least_steps(p)) and p.steps_per_turn * _ROUGH < least,
-        lambda p: f"is far above the stable step of an explicit method: some {_least_steps(p)} steps per turn are needed, which "
-        "'auto' chooses",
+        lambda p: f"is far above the stable step of an explicit method: some {_least_steps(p)} steps per turn are needed, which 'auto' chooses",
     ),
 )  # fmt: skip
 

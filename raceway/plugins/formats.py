@@ -93,17 +93,9 @@ def labelled(result: RunResult) -> Any:
             (quantities.CONTACT_FORCE, record.contact_force.reshape(len(record.time), 2, z)),
         ]
     if result.identification is not None:
+        impedance, stiffness = (quantities.Z_REAL, quantities.Z_IMAG, quantities.SPEED), (quantities.K, quantities.K_ERROR)
         numbers = (
-            (quantity, quantity.of(result))
-            for quantity in (
-                quantities.Z_REAL,
-                quantities.Z_IMAG,
-                quantities.SPEED,
-                quantities.K,
-                quantities.K_ERROR,
-                quantities.C,
-                quantities.C_ERROR,
-            )
+            (quantity, quantity.of(result)) for quantity in (*impedance, *stiffness, quantities.C, quantities.C_ERROR)
         )
         arrays += [(quantity, np.nan if value is None else value) for quantity, value in numbers]
     ends = {quantity: quantity.of(result) for quantity in quantities.ENDS.values()}

@@ -219,8 +219,7 @@ class OrderTracking:
     name: ClassVar[str] = "order_tracking"
     needs: ClassVar[frozenset[str]] = frozenset({"record", "phase"})
     definition: ClassVar[str] = (
-        "secant: 1x force over 1x displacement in the direction of the force, order tracked over a changing speed, less the "
-        "inertia of that change"
+        "secant: 1x force over 1x displacement in the direction of the force, order tracked over a changing speed, less the inertia of that change"
     )
 
     window_turns: float = option(6.0, help="turns in a window", rule=between(2.0, 1000.0))
@@ -247,9 +246,8 @@ class OrderTracking:
             series.append((last.speed, last.value))
             errors.append(last.error)
         if last is None:
-            raise ConvergenceError(
-                f"the record holds less than {self.window_turns:g} turns: shorten identifier.window_turns"
-            )
+            why = f"the record holds less than {self.window_turns:g} turns: shorten identifier.window_turns"
+            raise ConvergenceError(why)
         frequency = last.speed / (2.0 * np.pi)
         return attrs.evolve(
             identification(self.definition, frequency, last.line[:5], last.line[5:], model.mass_used),

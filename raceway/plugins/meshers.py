@@ -29,16 +29,14 @@ class Structured:
     element_size: float = option(0.5e-3, unit="m", help="longest edge of a cell", rule=positive())
     nodes_per_semi_axis: int = option(
         4,
-        help="cells along each semi-axis of a ball's contact ellipse, and the major one of a race's; 0: no refinement, for "
-        "elastic bodies with resultants",
+        help="cells along each semi-axis of a ball's contact ellipse, and the major one of a race's; 0: no refinement, for elastic bodies with resultants",
         rule=between(0, 64),
     )
     growth: float = option(1.3, help="ratio of neighbouring cells between patch and bulk", rule=between(1.02, 3.0))
     patch: float = option(1.25, help="refined zone, in semi-axes of the contact ellipse", rule=between(0.5, 5.0))
     azimuth_cells: int | str = option(
         "auto",
-        help="cells around each ring, a multiple of the balls; 'auto': from element_size; 'graded': fine at each "
-        "ball along its minor semi-axis, and in depth",
+        help="cells around each ring, a multiple of the balls; 'auto': from element_size; 'graded': fine at each ball along its minor semi-axis, and in depth",
         rule=word_or(between(3, 1_000_000), "auto", "graded"),
     )
     ball_load: float | None = option(

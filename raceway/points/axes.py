@@ -195,9 +195,8 @@ def _range(key: str, text: str, most: int) -> list[Any]:
     start, stop, count = (parse_value(part) for part in parts)
     for name, value in (("start", start), ("stop", stop)):
         if not is_number(value) or not math.isfinite(value):
-            raise SceneError.at(
-                key, text, f"the {name} of a range must be a finite number, not {shown(value) or 'nothing'!r}"
-            )
+            why = f"the {name} of a range must be a finite number, not {shown(value) or 'nothing'!r}"
+            raise SceneError.at(key, text, why)
     if not is_number(count) or not isinstance(count, int) or count < 1:
         raise SceneError.at(key, text, f"the count of a range must be a whole number of at least 1, not {shown(count)!r}")
     if count > most:
@@ -358,11 +357,9 @@ def _csv_points(path: Path) -> list[Tables]:
     if not rows:
         return []
     keys = [key.strip() for key in rows[0]]
-    mistakes = [
-        Mistake(f"{path}, row {k}", ",".join(row), f"has {len(row)} values for {len(keys)} keys")
-        for k, row in enumerate(rows[1:], 1)
-        if len(row) != len(keys)
-    ]
+    uneven = {k: row for k, row in enumerate(rows) if len(row) != len(keys)}
+    why = f"values for {len(keys)} keys"
+    mistakes = [Mistake(f"{path}, row {k}", ",".join(row), f"has {len(row)} {why}") for k, row in uneven.items()]
     if mistakes:
         raise SceneError(mistakes[:10])
     return [{key: parse_value(value) for key, value in zip(keys, row, strict=True)} for row in rows[1:]]
@@ -394,9 +391,8 @@ def _point_list(path: Path | str, points: object) -> Design:
     for number, point in enumerate(points, 1):
         if set(point) != set(keys):
             odd = sorted(set(point) ^ set(keys))
-            raise SceneError.at(
-                f"{path}, point {number}", None, f"all points need the same keys; not in all: {', '.join(odd)}"
-            )
+            why = f"all points need the same keys; not in all: {', '.join(odd)}"
+            raise SceneError.at(f"{path}, point {number}", None, why)
     bad = [key for key in keys if not key or not all(part.strip() for part in key.split("."))]
     if bad:
         raise SceneError.at(str(path), bad[0], "is not a key of a scene, such as load.axial")

@@ -319,9 +319,8 @@ def band(
     """
     read = as_scene(scene, plugins=plugins)
     if count < 2 or count & (count - 1):
-        raise SceneError.at(
-            "samples", count, "must be a power of 2, at least 2: the samples of a Sobol' sequence are balanced then"
-        )
+        why = "must be a power of 2, at least 2: the samples of a Sobol' sequence are balanced then"
+        raise SceneError.at("samples", count, why)
     widths, registry = tolerances_of(read, tolerances or stated_tolerances(read)), default_registry()
     nominal, words = _scene_numbers(read)
     paths, low, high = zip(*((tolerance.key.path, tolerance.low, tolerance.high) for tolerance in widths), strict=True)
@@ -375,9 +374,8 @@ def uncertainty(
     """
     if samples:
         if keys:
-            raise SceneError.at(
-                "keys", ", ".join(keys), "requests derivatives, which samples do not provide: omit it, or the samples"
-            )
+            why = "requests derivatives, which samples do not provide: omit it, or the samples"
+            raise SceneError.at("keys", ", ".join(keys), why)
         if plan:
             read = as_scene(scene, plugins=plugins)
             widths = tolerances_of(read, tolerances or stated_tolerances(read))

@@ -156,15 +156,10 @@ class Comparison(Answer, Findings):
     def _facts(self) -> tuple[str, list[Fact]]:
         names, (first, about) = _short_names(self.axes), next(iter(self.quantities.items()))
         label = about.symbol
-        changes = [
-            (
-                " x ".join(names[key] for key in effect.term),
-                f"{effect.percent:+.3g} %",
-                f"of {label} on average" if len(effect.term) == 1 else f"interaction on {label}",
-            )
-            for name, effect in self.terms
-            if name == first
-        ]
+        changes: list[Fact] = []
+        for effect in (effect for name, effect in self.terms if name == first):
+            meaning = f"of {label} on average" if len(effect.term) == 1 else f"interaction on {label}"
+            changes.append((" x ".join(names[key] for key in effect.term), f"{effect.percent:+.3g} %", meaning))
         runs = [(", ".join(f"{names[key]} {shown(row.point[key])}" for key in names), *_number_of(row)) for row in self.rows]
         words: Fact = ("words", "", f"{len(self.words)} sentences in .words")
         return f"{len(self.rows)} runs compared\n{self.title.splitlines()[0]}", [*changes[:3], words, *runs]

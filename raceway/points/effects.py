@@ -329,8 +329,13 @@ class Findings:
                 good = sorted((row for row in rows if row.doubt is None), key=lambda row: row.point[axis.key])
                 if axis.values[0] > axis.values[-1]:
                     good.reverse()
+                at_ends = all(any(_same(row.point[axis.key], end) for row in good) for end in axis.ends)
                 for quantity in self.factorials or self.quantities:
-                    courses.append(_course(quantity, good, len(rows) - len(good), axis, at))
+                    values = [row.value(quantity) or 0.0 for row in good]
+                    reaches = len(good) > 1 and min(values) > 0.0 and at_ends
+                    runs = trend(values, [row.error_of(quantity) for row in good]) if len(good) > 1 else "unknown"
+                    percent = 100.0 * (values[-1] / values[0] - 1.0) if reaches else None
+                    courses.append(Course(quantity, axis.key, at, runs, percent, len(rows) - len(good)))
         return courses
 
     @property
@@ -341,15 +346,6 @@ class Findings:
 
 def _same(a: object, b: object) -> bool:
     return isinstance(a, bool) == isinstance(b, bool) and a == b
-
-
-def _course(quantity: str, good: list[Row], doubtful: int, axis: Axis, at: Tables) -> Course:
-    values = [row.value(quantity) or 0.0 for row in good]
-    at_ends = all(any(_same(row.point[axis.key], end) for row in good) for end in axis.ends)
-    reaches = len(good) > 1 and min(values) > 0.0 and at_ends
-    runs = trend(values, [row.error_of(quantity) for row in good]) if len(good) > 1 else "unknown"
-    percent = 100.0 * (values[-1] / values[0] - 1.0) if reaches else None
-    return Course(quantity, axis.key, at, runs, percent, doubtful)
 
 
 #: A change of less than half a percent "hardly matters".
@@ -438,14 +434,12 @@ def _courses(comparison: Findings) -> list[str]:
         changes = {c: math.log1p(c.percent / 100.0) for c in along if c.percent is not None}
         if len(changes) < 2 or max(changes.values()) - min(changes.values()) < _HARDLY:
             continue
-        partner = comparison.axis(
-            max(
-                [key for key in factorial.keys if key != axis.key],
-                key=lambda key: max(
-                    (abs(e.log_change) for e in factorial.effects if set(e.term) == {axis.key, key}), default=0.0
-                ),
-            )
-        )
+        interactions = dict.fromkeys((key for key in factorial.keys if key != axis.key), 0.0)
+        for effect in factorial.effects:
+            if len(effect.term) == 2 and axis.key in effect.term:
+                other = next(key for key in effect.term if key != axis.key)
+                interactions[other] = max(interactions[other], abs(effect.log_change))
+        partner = comparison.axis(max(interactions, key=lambda key: interactions[key]))
         for value in partner.values:
             here = [c for c in changes if c.at[partner.key] == value]
             parts = []
@@ -456,9 +450,8 @@ def _courses(comparison: Findings) -> list[str]:
             left_out = sum(c.doubtful for c in here)
             note = f"; doubtful runs between the ends left out: {left_out}" if left_out else ""
             if parts:
-                words.append(
-                    f"With {partner.key} = {shown(value)}, {label} along {_axis_ends(axis)} {enumeration(parts)}{note}."
-                )
+                text = f"With {partner.key} = {shown(value)}, {label} along {_axis_ends(axis)} {enumeration(parts)}{note}."
+                words.append(text)
     return words
 
 

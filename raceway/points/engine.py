@@ -34,11 +34,8 @@ if TYPE_CHECKING:
 
 def plugins_of(scene: Scene) -> list[tuple[str, str]]:
     """(kind, name) of every plug-in that a scene uses."""
-    plugins = [
-        ("contact_law", scene.contact.kind),
-        ("integrator", scene.integrator.kind),
-        ("identifier", scene.identifier.kind),
-    ]
+    plugins = [("contact_law", scene.contact.kind), ("integrator", scene.integrator.kind)]
+    plugins.append(("identifier", scene.identifier.kind))
     plugins += [("excitation", scene.excitation.name)] if scene.excitation is not None else []
     return plugins + ([("mesher", scene.mesh.name)] if scene.mesh is not None else [])
 

@@ -175,14 +175,8 @@ def _follow_branch(
         return float(np.sqrt(max(squares[0] + part * (squares[1] - squares[0]), min(squares))))
 
     branch = Branch(lambda p: parameter.problem_at(p, symmetry), unit, first.size, ERROR, MOST, None, fastest, aim)
-    curve = Followed(
-        parameter.key,
-        parameter.first,
-        parameter.last,
-        float(np.degrees(symmetry.span)),
-        model.scene.title,
-        unit=key_of(parameter.base, parameter.key).unit,
-    )
+    span, ends = float(np.degrees(symmetry.span)), (parameter.first, parameter.last)
+    curve = Followed(parameter.key, *ends, span, model.scene.title, unit=key_of(parameter.base, parameter.key).unit)
     sense = 1.0 if parameter.last > parameter.first else -1.0
     try:
         start = branch.start(first, parameter.first, sense)
@@ -341,6 +335,5 @@ class _Continuation:
                 label(OPENS, lambda point: open_contacts(point.solved)[0])
         except (ConvergenceError, ValueError) as why:
             span = f"between {before.parameter:.6g} and {ahead.parameter:.6g}"
-            curve.notes.append(
-                f"{span} a fold, peak or change of stability or contact is not located, use a smaller --aim ({why})"
-            )
+            words = f"{span} a fold, peak or change of stability or contact is not located, use a smaller --aim ({why})"
+            curve.notes.append(words)

@@ -211,8 +211,7 @@ class Function:
         seconds = self._seconds(len(left)) if len(left) and not self.force else 0.0
         if seconds > _LIMIT_S:
             answer["reason"][left] = (
-                f"the compiled loop finds no regular solution; runs of these {len(left)} points would take about "
-                f"{duration(seconds)}: force = True runs them"
+                f"the compiled loop finds no regular solution; runs of these {len(left)} points would take about {duration(seconds)}: force = True runs them"
             )
             return answer
         return self._run_all(flat, left, answer)
@@ -266,9 +265,8 @@ class Function:
 
     def _by_key(self, columns: Sequence[ArrayLike], by_name: Mapping[str, ArrayLike]) -> dict[str, ArrayLike]:
         if len(columns) > len(self.inputs):
-            raise SceneError.at(
-                "inputs", len(columns), f"are more columns than the {len(self.inputs)} inputs of this function"
-            )
+            why = f"are more columns than the {len(self.inputs)} inputs of this function"
+            raise SceneError.at("inputs", len(columns), why)
         values = dict(zip(self.inputs, columns, strict=False))
         for key, value in by_name.items():
             if key not in self.inputs:
@@ -312,15 +310,10 @@ class Function:
         for name, column in answer.items():
             further, labels = ((), {}) if name not in quantities else (quantities[name].dims, quantities[name].labels)
             variables[name] = ((*dims, *further), column.reshape((*shape, *column.shape[1:])), labels)
-        meanings = {
-            "flag_values": [int(s) for s in PointStatus],
-            "flag_meanings": " ".join(s.name.lower() for s in PointStatus),
-        }
-        variables["status"] = (*variables["status"][:2], meanings)
-        coordinates = dict(same[0].coords) | {
-            k: v for k, v in DIMENSIONS.items() if any(k in part[0] for part in variables.values())
-        }
-        return labelled_dataset(variables, coordinates, {"title": self.scene.title})
+        flags, meanings = [int(s) for s in PointStatus], " ".join(s.name.lower() for s in PointStatus)
+        variables["status"] = (*variables["status"][:2], {"flag_values": flags, "flag_meanings": meanings})
+        further_dims = {k: v for k, v in DIMENSIONS.items() if any(k in part[0] for part in variables.values())}
+        return labelled_dataset(variables, dict(same[0].coords) | further_dims, {"title": self.scene.title})
 
     def _put_block(self, flat: Mapping[str, np.ndarray], block: slice, answer: Columns) -> None:
         """Compute one block of points in the compiled loop; rows that it cannot do keep the status FAILED and get no values."""
@@ -383,10 +376,8 @@ class Function:
             ):
                 # Rules are intervals, or compare two options of a law: numbers beyond them are looked at one by one, where their block is.
                 if (half := len(numbers) // 2) >= BLOCK[self.moving]:
-                    parts = (
-                        {key: column[part] for key, column in columns.items()} for part in (slice(half), slice(half, None))
-                    )
-                    return np.concatenate([self._refusals(part) for part in parts])
+                    first, second = ({key: c[k] for key, c in columns.items()} for k in (slice(half), slice(half, None)))
+                    return np.concatenate([self._refusals(first), self._refusals(second)])
                 several, place = np.unique(numbers, axis=0, return_inverse=True)
                 fitness = [bool(np.isfinite(row).all()) and self._is_allowed(keys, row) for row in several]
                 refusals |= ~np.array(fitness)[place.ravel()]
@@ -534,7 +525,6 @@ def _name(output: str) -> str:
     symbols = {quantity.symbol: name for name, quantity in KNOWN.items() if name in QUANTITIES}
     name = {**symbols, **names}.get(output)
     if name is None:
-        raise SceneError.at(
-            "outputs", output, f"is no quantity of a function{nearest(output, [*names, *symbols])}: {', '.join(names)}"
-        )
+        why = f"is no quantity of a function{nearest(output, [*names, *symbols])}: {', '.join(names)}"
+        raise SceneError.at("outputs", output, why)
     return name

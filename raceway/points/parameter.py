@@ -94,8 +94,7 @@ class Parameter:
         if model.system.scalars[CAGE] != 0.0:
             words = (
                 "the ball-pass frequency of orbiting balls differs from that of the force, so K, C and multipliers per turn are undefined: follow the branch "
-                "with stationary balls, --set kinematics.orbiting=false. Single values with orbiting balls: "
-                "`raceway run` or `raceway sweep`"
+                "with stationary balls, --set kinematics.orbiting=false. Single values with orbiting balls: `raceway run` or `raceway sweep`"
             )
             raise SceneError.at("kinematics.orbiting", True, words)
         first, between, last = (self._ring_at(p) for p in (self.first, self.value(_BETWEEN), self.last))

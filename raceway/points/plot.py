@@ -245,9 +245,8 @@ def quantity(dataset: Dataset, text: str | None) -> tuple[DataArray, str]:
     name, _, labels = text.partition(":")
     if name not in dataset or dataset[name].dtype.kind not in "fiu":
         variables = names(dataset)
-        raise SceneError.at(
-            "--plot", text, f"is not a quantity of this sweep{nearest(name, variables)}; there are {', '.join(variables)}"
-        )
+        reason = f"is not a quantity of this sweep{nearest(name, variables)}; there are {', '.join(variables)}"
+        raise SceneError.at("--plot", text, reason)
     data = dataset[name]
     dimensions = [str(dim) for dim in data.dims if "." not in str(dim) and dim != LIST]
     entry = [label.strip() for label in labels.split(",") if label.strip()]

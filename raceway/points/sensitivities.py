@@ -162,19 +162,15 @@ class Sensitivities(Answer):
         if self.tolerances is not None:
             yield sections(tolerance_rows(self.tolerances))
             yield "first order holds where the answer is nearly linear over the tolerances; --samples N samples them"
-        yield [
-            {"key": row.key.path, "value": f"{row.key.value:.6g} {row.key.unit}".strip()}
-            | {
-                f"{name.replace('_', ' ')} [% per %]": ""
-                if share is None
-                else "0"
-                if abs(share) < _SHOWN
-                else f"{share:+.3g}"
-                for name, share in ((name, row.influence.get(name)) for name in self.values)
-            }
-            for row in self.rows
-            if row.influence
-        ]
+        influences = []
+        for row in (row for row in self.rows if row.influence):
+            cells = {"key": row.key.path, "value": f"{row.key.value:.6g} {row.key.unit}".strip()}
+            for name in self.values:
+                share = row.influence.get(name)
+                words = "" if share is None else "0" if abs(share) < _SHOWN else f"{share:+.3g}"
+                cells[f"{name.replace('_', ' ')} [% per %]"] = words
+            influences.append(cells)
+        yield influences
         yield from (f"warning: {text}" for text in self.warnings)
         yield f"cost: {self.gradients_s:.2g} s beside {self.run_s:.2g} s of the run" + (
             f", {self.models} models built" if self.models else ""

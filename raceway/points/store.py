@@ -76,9 +76,8 @@ class Store:
         except (ValueError, TypeError):
             raise _damage(path) from None
         if self.facts.get("schema") != SCHEMA:
-            raise RacewayError(
-                f"`{path}` is a store of schema {self.facts.get('schema')}, this version reads {SCHEMA}: choose another folder"
-            )
+            why = f"`{path}` is a store of schema {self.facts.get('schema')}, this version reads {SCHEMA}: choose another folder"
+            raise RacewayError(why)
         self._origin = facts_digest(records)
         if self.facts.pop("digest", None) != self._origin:
             raise _damage(path)
@@ -158,9 +157,8 @@ class Store:
         if bad or strange:
             self._write("DELETE FROM points WHERE key = ?", [(key,) for key in strange])
             self.wait(bad)
-            warnings.warn(
-                f"{max(len(bad), len(strange))} rows of the store are damaged: they are computed again", stacklevel=2
-            )
+            words = f"{max(len(bad), len(strange))} rows of the store are damaged: they are computed again"
+            warnings.warn(words, stacklevel=2)
 
     def _digest(self, *columns: object) -> str:
         """Of a finished row as it stands in the file, and of the store's facts: a row of another store fails it."""
@@ -200,9 +198,8 @@ def written(path: str | Path | None, facts: ReadTables | None = None, keys: Coll
         try:
             fcntl.flock(guard, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise RacewayError(
-                f"`{folder}` is being written by another process: wait for it, or choose another --out"
-            ) from None
+            why = f"`{folder}` is being written by another process: wait for it, or choose another --out"
+            raise RacewayError(why) from None
         new = not exists(folder)
         with told(folder):
             connection = sqlite3.connect(folder / POINTS, timeout=30.0)
@@ -353,10 +350,6 @@ def _row_hash(paths: tuple[Path, ...]) -> str:
 def files_of(scene: Scene) -> list[str]:
     """Files that the plug-ins of a scene read."""
     parts = (scene.excitation, scene.mesh, scene.contact.law, scene.integrator.method, scene.identifier.method)
-    return [
-        str(getattr(part, field.name))
-        for part in parts
-        if part is not None
-        for field in attrs.fields(type(part))
-        if field.metadata.get("path") and getattr(part, field.name)
-    ]
+    fields = ((part, field) for part in parts if part is not None for field in attrs.fields(type(part)))
+    paths = (getattr(part, field.name) for part, field in fields if field.metadata.get("path"))
+    return [str(path) for path in paths if path]

@@ -185,18 +185,13 @@ def prepare(
         warnings.warn(note, stacklevel=2)
     # Intervals are known to runs alone.
     function = None if files or further else _column_function(base, overview.scene, design)
+    stated = stated_columns(overview.scene, base.registry) | {name: ENDS[name] for name in further}
     facts = {
         "scene": overview.scene.to_dict(),
         "given": base.tables_at(design.point(0)),
         "design": design.to_dict(),
         "block": 0 if function is None else _SHARED * BLOCK[function.moving],
-        "quantities": {
-            name: each.labels
-            for name, each in (
-                *stated_columns(overview.scene, base.registry).items(),
-                *((name, ENDS[name]) for name in further),
-            )
-        },
+        "quantities": {name: each.labels for name, each in stated.items()},
         "identity": identity(base.registry, overview.used),
         "files": overview.files,
     }
@@ -225,9 +220,8 @@ def refuse_large(task: Sweep, executor: Executor, force: bool) -> None:
     if task.function is None and not force:
         work = workload(task, executor, planned=1)
         if work.seconds > _LIMIT_S:
-            raise RacewayError(
-                f"{work.runs + work.refused} runs would take about {duration(work.seconds)}: give fewer points or more workers, or force them"
-            )
+            why = f"{work.runs + work.refused} runs would take about {duration(work.seconds)}: give fewer points or more workers, or force them"
+            raise RacewayError(why)
 
 
 def workload(task: Sweep, executor: Executor, planned: int = 100) -> Workload:
@@ -326,9 +320,8 @@ def _refuse_other(present: SweepStore, facts: ReadTables, store: Path) -> None:
         difference, reasons = "another version", differences(present.facts["identity"], facts["identity"])
     if reasons:
         words = "; ".join(reasons[:5]) + ("; ..." if len(reasons) > 5 else "")
-        raise RacewayError(
-            f"`{store}` holds results of {difference} ({words}). It is not overwritten: choose another folder with --out."
-        )
+        why = f"`{store}` holds results of {difference} ({words}). It is not overwritten: choose another folder with --out."
+        raise RacewayError(why)
 
 
 def _tree_changes(old: object, new: object, path: str = "") -> list[str]:

@@ -139,8 +139,7 @@ class Bearing:
     )
     preload_kind: str = option(
         "rigid",
-        help="'rigid': constant offset of the rows; 'spring': constant force on the rows opposite to the first, "
-        "whose outer rings slide together",
+        help="'rigid': constant offset of the rows; 'spring': constant force on the rows opposite to the first, whose outer rings slide together",
         rule=one_of("rigid", "spring"),
     )
     spring_travel: float | None = option(
@@ -261,9 +260,8 @@ class Bearing:
             raise ValueError(f"`row[{without[0]}]` has no `direction`: give each row '+' or '-', or an `arrangement`")
         with_positions = bool(self.row) and all(row.position is not None for row in self.row)
         if len(self.signs) > 1 and not with_positions and self.row_distance is None and self.width is None:
-            raise ValueError(
-                f"`arrangement` = '{self.arrangement}' needs `row_distance`, or the bearing's `width`, or a `position` in each row"
-            )
+            reason = f"`arrangement` = '{self.arrangement}' needs `row_distance`, or the bearing's `width`, or a `position` in each row"
+            raise ValueError(reason)
         places = [position for _, position in self.rows]
         if len(set(places)) < len(places):
             raise ValueError(f"`row` puts two rows at the same place: {', '.join(f'{position:g}' for position in places)} m")
@@ -341,8 +339,7 @@ DIMENSIONS: tuple[Rule[Bearing], ...] = (
     ),
     Rule(
         "outer_diameter", lambda b: b.outer_diameter is not None and b.outer_diameter <= b.pitch_diameter + b.ball_diameter,
-        lambda b: f"`outer_diameter` = {b.outer_diameter:g} m cuts the outer raceway: it must exceed d_m + D = "
-        f"{b.pitch_diameter + b.ball_diameter:g} m",
+        lambda b: f"`outer_diameter` = {b.outer_diameter:g} m cuts the outer raceway: it must exceed d_m + D = {b.pitch_diameter + b.ball_diameter:g} m",
     ),
     Rule(
         "shoulder_height", lambda b: b.shoulder_height is not None and b.shoulder_height >= 0.5 * b.ball_diameter,
@@ -351,8 +348,7 @@ DIMENSIONS: tuple[Rule[Bearing], ...] = (
     ),
     Rule(
         "radial_clearance", lambda b: b.radial_clearance is not None and b.radial_clearance >= 2.0 * b._centre_distance,
-        lambda b: f"`radial_clearance` = {b.radial_clearance:g} m must be below twice the groove-centre distance, "
-        f"{2 * b._centre_distance:g} m",
+        lambda b: f"`radial_clearance` = {b.radial_clearance:g} m must be below twice the groove-centre distance, {2 * b._centre_distance:g} m",
     ),
 )  # fmt: skip
 

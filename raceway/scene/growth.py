@@ -351,8 +351,7 @@ def _closed_words(b: RunningBearing) -> str:
     distance, radial = b.centre_distance(_closed_rows(b)[0])
     return (
         f"temperatures and fits close the bearing: its grooves leave {1e6 * (radial - max(distance, 0.0)):.3g} µm too little room for "
-        "the balls, which would be squeezed all around at a contact angle of 0. Use smaller differences of temperature, a looser "
-        "fit, or more clearance"
+        "the balls, which would be squeezed all around at a contact angle of 0. Use smaller differences of temperature, a looser fit, or more clearance"
     )
 
 

@@ -28,10 +28,7 @@ GRADES: dict[str, tuple[float, float]] = {
     "VG 68": (68.0, 8.53), "VG 100": (100.0, 11.1), "VG 150": (150.0, 14.5), "VG 220": (220.0, 18.8),
 }  # fmt: skip
 #: How an oil is given.
-_WAYS = (
-    "give `oil` (such as 'VG 32') or `viscosity_40` with `viscosity_100`, both with `temperature_c`, or `viscosity` at the running "
-    "temperature"
-)
+_WAYS = "give `oil` (such as 'VG 32') or `viscosity_40` with `viscosity_100`, both with `temperature_c`, or `viscosity` at the running temperature"
 #: Temperatures [C] over which a line through two measured viscosities is used.
 COLDEST, HOTTEST = 0.0, 140.0
 _AT, _ZERO = (40.0, 100.0), 273.15

@@ -13,10 +13,7 @@ from raceway.scene.bearing import Bearing, Material
 from raceway.scene.lubricant import Lubricant
 from raceway.storage.tables import Tables
 
-_AROUND = (
-    "must be one number: a seat that differs around the ring is not axisymmetric. Mesh what it sits in, with "
-    "bodies.kind = 'elastic'"
-)
+_AROUND = "must be one number: a seat that differs around the ring is not axisymmetric. Mesh what it sits in, with bodies.kind = 'elastic'"
 
 
 def _seat(of: str) -> float | str:
@@ -224,8 +221,7 @@ class Heat:
     oil_heat_capacity: float = option(2000.0, unit="J/kg/K", help="of the oil; usually 1900 to 2300", rule=between(1.0, 1e5))
     inner_wetting: float | str = option(
         "auto",
-        help="wetted share of the inner rings, a factor of inner_oil 'auto'; 'auto': 1 - Z D / (pi d_m), the gaps between the balls; "
-        "under-race lubrication: 1",
+        help="wetted share of the inner rings, a factor of inner_oil 'auto'; 'auto': 1 - Z D / (pi d_m), the gaps between the balls; under-race lubrication: 1",
         rule=word_or(between(1e-3, 1.0), "auto"),
     )
     inner_balls: float | str = _conductance("inner rings and balls", "infinite")

@@ -55,14 +55,10 @@ def _idle(scene: SceneTables) -> list[tuple[str, str]]:
     }
     given_keys = {f"{table}.{key}" for table, keys in scene.source.items() if isinstance(keys, dict) for key in keys}
     options = {"kind", *(field.name for field in attrs.fields(type(scene.bodies)))}
-    foreign = [
-        (f"bodies.{key}", f"bodies.kind is '{scene.bodies.name}'")
-        for key in scene.source.get("bodies", {})
-        if key not in options
-    ]
-    by_plugins = [
-        (f"{table}.{option}", why) for table, plugin in plugins.items() for option, why in unused_options(plugin).items()
-    ]
+    why_foreign, of_bodies = f"bodies.kind is '{scene.bodies.name}'", scene.source.get("bodies", {})
+    foreign = [(f"bodies.{key}", why_foreign) for key in of_bodies if key not in options]
+    unused = {table: unused_options(plugin) for table, plugin in plugins.items()}
+    by_plugins = [(f"{table}.{option}", why) for table, whys in unused.items() for option, why in whys.items()]
     core = [*speaking(_RULES, scene), *unused_with_bodies(scene)]
     return [*by_plugins, *((key, why) for key, why in core if key in given_keys), *foreign]
 

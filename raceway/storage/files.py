@@ -53,9 +53,8 @@ def writable(folder: Path) -> Path:
     while not os.path.exists(parent) and parent != parent.parent:
         parent = parent.parent
     if not parent.is_dir():
-        raise RacewayError(
-            f"`{folder}` cannot be the folder of the results: `{parent}` is a file. Choose another with --out."
-        )
+        reason = f"`{folder}` cannot be the folder of the results: `{parent}` is a file. Choose another with --out."
+        raise RacewayError(reason)
     if not os.access(parent, os.W_OK | os.X_OK):
         raise RacewayError(f"`{folder}` cannot be written: no permission in `{parent}`. Choose another folder with --out.")
     if not os.path.exists(folder):
@@ -64,9 +63,8 @@ def writable(folder: Path) -> Path:
             folder.mkdir(parents=True)
             folder.rmdir()
         except OSError as why:
-            raise RacewayError(
-                f"`{folder}` cannot be made: {why.strerror or why}. Choose another folder with --out."
-            ) from None
+            reason = f"`{folder}` cannot be made: {why.strerror or why}. Choose another folder with --out."
+            raise RacewayError(reason) from None
     return folder
 
 

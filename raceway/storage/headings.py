@@ -120,11 +120,8 @@ def heading_of(path: Path, encoding: str) -> Heading:
     heading = Heading(header, (first if line is None else line) + 1, first, sign, choice, most, notes)
     beside = [f"{name};{unit}" for name, unit in list(zip(names, units, strict=False))[fields[-1] + 1 :]]
     text = "\n".join([lines[k] for k in above if k != line] + beside)
-    return _with_clock(
-        heading,
-        text.replace(",", ";") if sign == "," else text,
-        [float(words[fields[0]].replace(",", ".")) for words in rows],
-    )
+    first_column = [float(words[fields[0]].replace(",", ".")) for words in rows]
+    return _with_clock(heading, text.replace(",", ";") if sign == "," else text, first_column)
 
 
 def _runs(lines: Sequence[str], full: Sequence[int], sign: str) -> list[tuple[_Rank, int, tuple[int, ...]]]:

@@ -90,9 +90,8 @@ def read_numbers(path: Path, judge: Callable[[list[str]], object]) -> NumberTabl
                         marks += "".join(mark for mark in ",." if mark in text and mark not in marks)
                         if len(marks) > 1:
                             begin = text.strip()[:_SHOWN]
-                            raise ValueError(
-                                f"line {number}: commas and points in the file's numbers ({begin}): write one decimal sign only"
-                            )
+                            why = f"line {number}: commas and points in the file's numbers ({begin}): write one decimal sign only"
+                            raise ValueError(why)
                     rows, marks = [text.replace(",", ".") for text in rows] if marks == "," else rows, marks
                 end = count + len(rows)
                 sign = heading.sign if heading.fields is None else "\t"

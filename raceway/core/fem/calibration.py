@@ -71,10 +71,9 @@ def calibrated(
     def make() -> dict[str, np.ndarray]:
         calibration = []
         for contact_angle in (angle, angle + _FURTHER):
+            loaded = _Loaded(load, radius, balls, contact_angle)
             try:
-                calibration.append(
-                    [_compliances(body, ball, ellipses, n, _Loaded(load, radius, balls, contact_angle)) for n in POINTS]
-                )
+                calibration.append([_compliances(body, ball, ellipses, n, loaded) for n in POINTS])
             except (BeyondPatch, ConvergenceError, MeshError):
                 break
         return {"compliance": np.array(calibration)}

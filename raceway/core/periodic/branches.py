@@ -255,18 +255,17 @@ def _continued_to(
 _SAME = 1e-3
 #: Angles at which motions are compared: no harmonic of a turn hides between them.
 _COMPARED = 2.0 * np.pi * np.arange(17) / 17
+#: What to do where no periodic motion is found.
+_INSTEAD = "A transient integrator with start = 'ramp' shows the motion of the ring."
 
 
 def grown_from_rest(problem: Problem, q: np.ndarray, tangent: np.ndarray, tolerance: float, highest: float) -> Refined:
     try:
         return _by_force_steps(problem, q, tangent, tolerance)
     except ConvergenceError as why:
-        raise ConvergenceError(
-            "no motion with the period of the force was found from rest; branches are not searched: natural "
-            f"frequencies go up to {highest:.3g} times the force's, or dashpots are strong. A transient integrator with "
-            "start = 'ramp' shows the motion of the ring.",
-            {"q": q.copy()},
-        ) from why
+        what = "no motion with the period of the force was found from rest; branches are not searched"
+        cause = f"natural frequencies go up to {highest:.3g} times the force's, or dashpots are strong"
+        raise ConvergenceError(f"{what}: {cause}. {_INSTEAD}", {"q": q.copy()}) from why
 
 
 def chosen(
@@ -319,12 +318,9 @@ def chosen(
     if not motions:
         back = "where its branch turns back (an internal resonance)"
         end = back if branch.folds else "beyond which it could not be followed"
-        raise ConvergenceError(
-            f"no motion with the period of the force was found: the branch from rest ends at {100 * (fold or 0.0):.3g} % "
-            f"of the force, {end}, and no branch leads here from other speeds or a heavier load. A transient integrator with start = 'ramp' shows "
-            "the motion of the ring.",
-            {"q": q.copy()},
-        )
+        ends = f"the branch from rest ends at {100 * (fold or 0.0):.3g} % of the force, {end}"
+        why = f"{ends}, and no branch leads here from other speeds or a heavier load. {_INSTEAD}"
+        raise ConvergenceError(f"no motion with the period of the force was found: {why}", {"q": q.copy()})
     # Taken is the first that is not unstable, else the one that is left slowest.
     slowest = min(motions, key=lambda motion: motion.floquet.largest)
     first = next((motion for motion in motions if motion.floquet.verdict != "unstable"), slowest)

@@ -186,31 +186,24 @@ def _place_step(problem: Problem, path: Path) -> float:
     return _STEP * max(float(np.abs(path.v / problem.weight).max()), 1e-9) * problem.speed
 
 
-def _places(problem: Problem, path: Path, coordinates: list[list[int]]) -> list[np.ndarray]:
-    """Columns (m s, Z, r) of the balls at the Gauss points, for each set of columns with the rates of that set moved."""
-    system, rule = problem.system, problem.rule
-    angles, q, v = path.states((rule.points, rule.velocity, rule.position))
-    places = []
-    for columns in coordinates:
-        ball, rate = path.ball.copy(), path.rate.copy()
-        rate[:, :, columns] += _place_step(problem, path)
-        at = States(angles.ravel() / problem.speed, q.reshape(-1, 5), v.reshape(-1, 5) * problem.speed, ball, rate)
-        responses(system, at)
-        places.append(ball[:, :, system.rated_columns])
-    return places
-
-
 def _solve_places(problem: Problem, path: Path, residual: np.ndarray) -> np.ndarray:
     """(I - D T)^-1 of a residual (m s, Z, r), all balls of a span together: one goes on where another one ends."""
     from scipy.sparse import bsr_array, eye_array
     from scipy.sparse.linalg import splu
 
     n, z, r = residual.shape
-    s, order = len(problem.rule.points), problem.symmetry.order
+    system, rule, order, step = problem.system, problem.rule, problem.symmetry.order, _place_step(problem, path)
+    s, places = len(rule.points), []
+    angles, q, v = path.states((rule.points, rule.velocity, rule.position))
+    time, q, v = angles.ravel() / problem.speed, q.reshape(-1, 5), v.reshape(-1, 5) * problem.speed
+    # Columns (m s, Z, r) of the balls at the Gauss points, as they are and with each rate moved.
+    for columns in ([], *([c] for c in system.rated_columns)):
+        ball, rate = path.ball.copy(), path.rate.copy()
+        rate[:, :, columns] += step
+        responses(system, States(time, q, v, ball, rate))
+        places.append(ball[:, :, system.rated_columns])
     # T (m s, Z, r, r) [s]: places by rates.
-    columns: list[list[int]] = [[c] for c in problem.system.rated_columns]
-    here, *others = _places(problem, path, [[], *columns])
-    lags = np.stack([(balls - here) / _place_step(problem, path) for balls in others], axis=-1)
+    lags = np.stack([(balls - places[0]) / step for balls in places[1:]], axis=-1)
     weights = problem.speed * _weights(problem.rule, path.nodes)
     back = np.argsort(order)
     ball, sample = np.meshgrid(np.arange(z), np.arange(n), indexing="ij")
@@ -284,11 +277,8 @@ def solve(problem: Problem, path: Path, tolerance: float, patience: int = 12, li
             return attrs.evolve(solution, sweeps=sweeps)
         problem.watch()
         renew(problem, path, True)
-    raise ConvergenceError(
-        f"no periodic motion found near the first guess: the rates of the balls change it by {change:.2g} m still: too "
-        "strong dashpots in the contacts",
-        {"q": path.q[0].copy()},
-    )
+    why = f"no periodic motion found near the first guess: the rates of the balls change it by {change:.2g} m still: too strong dashpots in the contacts"
+    raise ConvergenceError(why, {"q": path.q[0].copy()})
 
 
 def linearised(problem: Problem, path: Path) -> Eliminated:
@@ -319,11 +309,8 @@ def newton_iteration(
         why = {newton.STALLED: "the iteration stalls", newton.SINGULAR: "the motion is singular"}.get(
             status, "the balls have no equilibrium between the races"
         )
-        raise ConvergenceError(
-            f"no periodic motion found near the first guess: {why} after {int(report[newton.SWEEPS])} iterations, imbalance "
-            f"{report[newton.WORST_IMBALANCE]:.2g} N",
-            {"q": q[0] if np.isfinite(q[0]).all() else path.q[0].copy()},
-        )
+        reason = f"no periodic motion found near the first guess: {why} after {int(report[newton.SWEEPS])} iterations, imbalance {report[newton.WORST_IMBALANCE]:.2g} N"
+        raise ConvergenceError(reason, {"q": q[0] if np.isfinite(q[0]).all() else path.q[0].copy()})
     size, correction = float(report[newton.SIZE]), float(report[newton.CORRECTION])
     whole, sweeps = report[newton.SHORTENED] == 0.0, int(report[newton.SWEEPS])
     return Solved(problem, solution, elimination, size, whole, sweeps, correction)

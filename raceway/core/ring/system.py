@@ -270,17 +270,14 @@ class System(Ring):
                 return q_now, ball_now, total
             if status == RUN_AWAY:
                 free = COORDINATES[int(np.argmax(np.abs(q_now) * [1.0, 1.0, 1.0, self.arm, self.arm]))]
-                raise ConvergenceError(
-                    f"no static equilibrium: no stiffness against the load along {free}. Hold it or load more balls.",
-                    {"q": np.array(q, dtype=float), "ball": ball_now},
-                )
+                why = f"no static equilibrium: no stiffness against the load along {free}. Hold it or load more balls."
+                raise ConvergenceError(why, {"q": np.array(q, dtype=float), "ball": ball_now})
         cause = "the balls have no equilibrium between the races" if status == BALLS_FAILED else "the iteration stalls"
         remainder = f"relative residual {report[RESIDUAL]:.1e}"
         if not np.isfinite(report[RESIDUAL]):
             remainder = "the forces exceed the range of floating-point arithmetic: check the units of loads and materials"
-        raise ConvergenceError(
-            f"no static equilibrium found after {total} iterations: {cause}, {remainder}", {"q": q_now, "ball": ball_now}
-        )
+        why = f"no static equilibrium found after {total} iterations: {cause}, {remainder}"
+        raise ConvergenceError(why, {"q": q_now, "ball": ball_now})
 
 
 @attrs.define(eq=False, kw_only=True)

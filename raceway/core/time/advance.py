@@ -109,6 +109,5 @@ def _failure(
         return ConvergenceError(f"the balls have no equilibrium between the races {when}", state)
     residual = counters[compiled.RESIDUAL]
     remainder = f"residual {residual:.3g} N" if np.isfinite(residual) else "forces beyond all numbers"
-    return ConvergenceError(
-        f"the iteration of a step did not converge {when}, {remainder}. Use more `integrator.steps_per_turn`.", state
-    )
+    words = f"the iteration of a step did not converge {when}, {remainder}. Use more `integrator.steps_per_turn`."
+    return ConvergenceError(words, state)

@@ -74,9 +74,8 @@ def integrate(
         return scheme.compiled(ring, start, schedule, on_chunk)
     if scheme.stepped is None:
         name = getattr(integrator, "name", type(integrator).__name__)
-        raise PluginError(
-            f"integrator '{name}' has no driver `{missing_driver(scheme, ring is not None)}`, which these bodies need"
-        )
+        why = f"integrator '{name}' has no driver `{missing_driver(scheme, ring is not None)}`, which these bodies need"
+        raise PluginError(why)
     from raceway.core.recorder import Recorder
     from raceway.core.ring.stepped import SteppedBearing
 

@@ -131,12 +131,10 @@ def compare(limit: float, system: SteppedSystem, recorder: Recorder, where: str)
     schedule = recorder.schedule
     if schedule.dt >= limit:
         motion = system.motion(recorder.state)
-        raise StabilityError(
-            f"`integrator.steps_per_turn` = {schedule.steps_per_turn} makes a step of {schedule.dt:.4g} s, above the stable "
-            f"limit of central differences, {limit:.4g} s{where}. Use at least "
-            f"{int(schedule.steps_per_turn * schedule.dt / (0.8 * limit)) + 1}.",
-            {"q": motion.q, "ball": motion.ball},
-        )
+        step = f"`integrator.steps_per_turn` = {schedule.steps_per_turn} makes a step of {schedule.dt:.4g} s"
+        least = int(schedule.steps_per_turn * schedule.dt / (0.8 * limit)) + 1
+        why = f"{step}, above the stable limit of central differences, {limit:.4g} s{where}. Use at least {least}."
+        raise StabilityError(why, {"q": motion.q, "ball": motion.ball})
 
 
 def quasi_static(system: SteppedSystem, recorder: Recorder, tolerance: float) -> None:

@@ -12,7 +12,6 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache, cached_property
 from importlib import import_module
-from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 
@@ -131,7 +130,12 @@ class Registry:
         points, missing = chosen_entry_points(third_party)
         self.faults += [Fault(name, "named in RACEWAY_PLUGINS, but not installed") for name in missing]
         for point in points:
-            self._load(point)
+            distribution, version = owner(point)
+            plugin, why = attempted(point.load)
+            if why:
+                self.faults.append(Fault(f"{point.name} ({distribution})", f"fails to import: {why}"))
+            else:
+                self._register(plugin, point.name, distribution, version)
 
     @property
     def hook(self) -> Any:
@@ -285,14 +289,6 @@ class Registry:
         """(kind, name) that more than one plug-in claims."""
         return [key for key, entries in sorted(self.entries.items()) if len(entries) > 1]
 
-    def _load(self, point: EntryPoint) -> None:
-        distribution, version = owner(point)
-        plugin, why = attempted(point.load)
-        if why:
-            self.faults.append(Fault(f"{point.name} ({distribution})", f"fails to import: {why}"))
-        else:
-            self._register(plugin, point.name, distribution, version)
-
     def _register(self, plugin: object, source: str, distribution: str, version: str) -> None:
         label = _label(source, distribution)
         try:
@@ -329,15 +325,12 @@ class Registry:
                             reason = f'maps {shown(name)} to {shown(place)}: a name, then "module:Class"'
                             self.faults.append(Fault(label, f"`{hook_name}` {reason}"))
                 else:
-                    for plugin_class in given:
-                        self._add(kind, plugin_class, label, distribution, version, source)
-
-    def _add(self, kind: str, plugin: Any, label: str, distribution: str, version: str, source: str) -> None:
-        if reason := _fault_of(kind, plugin):
-            self.faults.append(Fault(label, reason))
-        else:
-            place = f"{plugin.__module__}:{plugin.__qualname__}"
-            self._enter(Entry(kind, plugin.name, place, distribution, version, source, plugin))
+                    for cls in given:
+                        if reason := _fault_of(kind, cls):
+                            self.faults.append(Fault(label, reason))
+                        else:
+                            place = f"{cls.__module__}:{cls.__qualname__}"
+                            self._enter(Entry(kind, cls.name, place, distribution, version, source, cls))
 
     def _enter(self, entry: Entry) -> None:
         same = self.entries.setdefault((entry.kind, entry.name), [])

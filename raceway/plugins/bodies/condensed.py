@@ -113,8 +113,7 @@ _PATCHES: tuple[Rule[Problem], ...] = (
     Rule(
         "integrator.kind",
         lambda s: s.excitation is not None and "record" in s.identifier.method.needs and not s.integrator.method.implicit,
-        "is explicit and needs too many steps for contacts at surface points: use 'newmark' or 'quasi_static', or "
-        f"{_INSTEAD}",
+        f"is explicit and needs too many steps for contacts at surface points: use 'newmark' or 'quasi_static', or {_INSTEAD}",
     ),
     Rule(
         "mesh.nodes_per_semi_axis", lambda s: patch_cost(s).bytes > _LIMIT,

@@ -134,20 +134,9 @@ def _elastic_bodies(problem: Problem, basis: Basis, coarser: float) -> ElasticBo
         shape = ring_shape(b, inner)
         half = float((basis.inner if inner else basis.outer).semi_axes(typical)[0])
         bulk, fine = _element_sizes(problem, shape, half)
-        rings.append(
-            ring_compliance(
-                shape,
-                b.ball_diameter,
-                b.ball_count,
-                half,
-                b.rings.young,
-                b.rings.poisson,
-                seat_of(problem, inner),
-                coarser * bulk,
-                coarser * min(fine, bulk),
-                coarser * min(2.0 * fine, bulk),
-            )  # fmt: skip
-        )
+        contacts, elastic = (b.ball_diameter, b.ball_count, half), (b.rings.young, b.rings.poisson, seat_of(problem, inner))
+        sizes = (coarser * bulk, coarser * min(fine, bulk), coarser * min(2.0 * fine, bulk))
+        rings.append(ring_compliance(shape, *contacts, *elastic, *sizes))
         size = _CALIBRATED_BULK * reach(shape, b.ball_diameter)
         steel, balls = (Solid(material.young, material.poisson, bulk=size) for material in (b.rings, b.balls))
         body = RingBody(shape, steel, seat_of(problem, inner), (0.0, 0.0))
@@ -278,12 +267,9 @@ def _refuse_stiff_law(problem: Problem, stiff: RigidBearing, bodies: ElasticBodi
     if stiffness * -compliance >= 1.0:
         thin = "The walls below the grooves are too thin: check bore, outer_diameter and profiles"
         remedy = thin if is_hertzian(problem.contact.law) else "Use 'hertz', or a softer law"
-        raise SceneError.at(
-            "contact.kind",
-            problem.contact.kind,
-            f"its contact of {1e-6 * stiffness:.3g} N/µm is stiffer than elastic bodies allow: they take "
-            f"{-1e9 * compliance:.3g} nm/N off it, since they are stiffer than half-spaces. {remedy}",
-        )
+        taken = f"they take {-1e9 * compliance:.3g} nm/N off it, since they are stiffer than half-spaces"
+        why = f"its contact of {1e-6 * stiffness:.3g} N/µm is stiffer than elastic bodies allow: {taken}. {remedy}"
+        raise SceneError.at("contact.kind", problem.contact.kind, why)
 
 
 def _law_stiffness(problem: Problem, basis: Basis, law: Kernel, params: np.ndarray) -> np.ndarray:

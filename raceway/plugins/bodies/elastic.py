@@ -254,8 +254,7 @@ class Elastic:
     )
     hourglass: float = option(
         0.05,
-        help="stiffness of the hourglass modes of 'one_point', over lambda + 2 mu; impacts: 0.005 and elements "
-        "of at most 0.6 of the contact's radius",
+        help="stiffness of the hourglass modes of 'one_point', over lambda + 2 mu; impacts: 0.005 and elements of at most 0.6 of the contact's radius",
         rule=positive(),
     )
 

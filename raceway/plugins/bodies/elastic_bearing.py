@@ -60,13 +60,11 @@ def build(problem: Problem, plan: ScenePlan) -> ElasticBodies:
         contact.law(gap, np.zeros(n), contact.params, contact.memory, contact.memory.copy(), 0.0, force, d_gap, d_rate)
         if (-d_gap * contact.local).max() >= 1.0:
             remedy = "Take a smaller load" if is_hertzian(problem.contact.law) else "Use 'hertz' or a softer law"
-            raise SceneError.at(
-                "contact.kind",
-                problem.contact.kind,
-                f"its contact of {-1e-6 * d_gap.min():.3g} N/µm at an approach of {-1e6 * gap[0]:.3g} µm is stiffer than the mesh below it, which gives "
-                f"{1e9 * contact.local.max():.3g} nm/N alone: no compliance remains for the law. {remedy}, or take "
-                "contact.discretisation = 'nodal'",
-            )
+            contacts = f"contact of {-1e-6 * d_gap.min():.3g} N/µm at an approach of {-1e6 * gap[0]:.3g} µm"
+            mesh = f"the mesh below it, which gives {1e9 * contact.local.max():.3g} nm/N alone"
+            remedy = f"{remedy}, or take contact.discretisation = 'nodal'"
+            why = f"its {contacts} is stiffer than {mesh}: no compliance remains for the law. {remedy}"
+            raise SceneError.at("contact.kind", problem.contact.kind, why)
     fields = {f.name: getattr(rigid, f.name) for f in attrs.fields(Ring)}
     held_by = problem.load.axial if problem.supports.axial == "displacement" else None
     fields["mass"] = rigid.mass + bodies.system.assembly.added_inertia()

@@ -47,10 +47,8 @@ def _check_size(mesher: Mesher, bearing: Bearing, meshes: Mapping[str, HexMesh])
                 raise _refusal(mesher, name, words, ratio)
             if abs(ratio - 1.0) > _OTHER_SIZE and not key.startswith("the size") and key not in told_of:
                 told_of.add(key)
-                warnings.warn(
-                    f"the mesh of '{name}' measures {measured:.4g} m where {key} of the bearing is {expected:.4g} m",
-                    stacklevel=3,
-                )
+                text = f"the mesh of '{name}' measures {measured:.4g} m where {key} of the bearing is {expected:.4g} m"
+                warnings.warn(text, stacklevel=3)
 
 
 def check_sets(mesher: Mesher, meshes: Mapping[str, HexMesh], supports: Supports) -> None:
@@ -79,15 +77,11 @@ def _sizes(bearing: Bearing, name: str, points: np.ndarray) -> list[tuple[str, f
     if name.startswith("ball"):
         return [("`ball_diameter`", bearing.ball_diameter, float(np.ptp(points, axis=0).max()))]
     reach = 2.0 * np.hypot(points[:, 1], points[:, 2])
+    rough = [("the size (`pitch_diameter`)", bearing.pitch_diameter, float(reach.max()))]
     if name.startswith("outer_ring"):
         outer = bearing.outer_diameter
-        return (
-            [("`outer_diameter`", outer, float(reach.max()))]
-            if outer
-            else [("the size (`pitch_diameter`)", bearing.pitch_diameter, float(reach.max()))]
-        )
+        return [("`outer_diameter`", outer, float(reach.max()))] if outer else rough
     if name.startswith("inner_ring"):
-        rough = [("the size (`pitch_diameter`)", bearing.pitch_diameter, float(reach.max()))]
         return rough + ([("`bore`", bearing.bore, float(reach.min()))] if bearing.bore and reach.min() > 0.0 else [])
     return []
 
@@ -217,9 +211,8 @@ def _prediction(problem: Problem) -> Prediction | None:
     if isinstance(prediction, Mapping) and all(isinstance(cells, int) for cells in prediction.values()):
         prediction = Prediction.of({str(name): cells for name, cells in prediction.items()})
     if not isinstance(prediction, Prediction):
-        raise PluginError(
-            f"mesher '{mesher.name}': predict() returned {type(prediction).__name__}; it must be body -> number of cells"
-        )
+        why = f"mesher '{mesher.name}': predict() returned {type(prediction).__name__}; it must be body -> number of cells"
+        raise PluginError(why)
     refuse_memory(prediction, "mesh.kind", mesher.name, "take larger elements")
     return prediction
 

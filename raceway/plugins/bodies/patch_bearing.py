@@ -213,11 +213,8 @@ class _NodalBearing(BuiltBearing):
         loaded = equilibrium.contact_force[:z] > 0.05 * equilibrium.contact_force[:z].max(initial=1e-300)
         least = float(columns["points_per_semi_axis_inner"][loaded].min(initial=np.inf))
         if least < _ENOUGH:
-            sentences.insert(
-                0,
-                f"only {least:.1f} points lie along a semi-axis of a loaded contact: use more mesh.nodes_per_semi_axis for its "
-                "pressure, which is off by percents below 3",
-            )
+            remedy = "use more mesh.nodes_per_semi_axis for its pressure, which is off by percents below 3"
+            sentences.insert(0, f"only {least:.1f} points lie along a semi-axis of a loaded contact: {remedy}")
         return sentences
 
 

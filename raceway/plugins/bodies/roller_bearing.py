@@ -62,9 +62,8 @@ class RollerBearing(BuiltBearing):
     def refuse_impossible(self, model: Model, force: np.ndarray, state: dict[str, np.ndarray] | None = None) -> None:
         """A contact as wide as half a roller."""
         if self.over_edges(model, force, force, force[None]).any():
-            raise ConvergenceError(
-                f"{force.max():.3g} N per roller make a contact as wide as half a roller: check the units", state
-            )
+            why = f"{force.max():.3g} N per roller make a contact as wide as half a roller: check the units"
+            raise ConvergenceError(why, state)
 
     def edge_warnings(self, model: Model, inner: np.ndarray, outer: np.ndarray, force: np.ndarray) -> list[str]:
         """None: the length is the effective one, inside the edges."""
@@ -123,13 +122,8 @@ def build(problem: Problem, plan: ScenePlan, kind: Rollers) -> RollerBearing:
     parts = roller_parts(problem, plan, basis, radii, kind)
     linear = linear_parts(problem, plan)
     linear["mass"][:3, :3] = (problem.rotor.mass + kind.ring_mass(b)) * np.eye(3)
-    system = System(
-        law_state=np.zeros((2 * b.ball_count, problem.contact.law.state_size)),
-        **parts,
-        **linear,
-        **excitation(problem),
-        spin=changing_speed(problem),
-    )
+    law_state = np.zeros((2 * b.ball_count, problem.contact.law.state_size))
+    system = System(law_state=law_state, spin=changing_speed(problem), **parts, **linear, **excitation(problem))
     probe_law(problem.contact.law, system.law, system.law_params, system.law_state)
     if problem.excitation is not None:
         probe_excitation(problem.excitation, system.force, system.force_params)

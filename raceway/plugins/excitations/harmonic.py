@@ -56,10 +56,8 @@ class Amplitude:
             raise ValueError("`amplitude` = 'unbalance' needs the key `unbalance` (kg m)")
         computable = self.unbalance is not None and self.reference_speed_rpm is not None
         if self.amplitude == "constant" and self.force is None and not computable:
-            raise ValueError(
-                "`amplitude` = 'constant' needs the key `force` (N), or `unbalance` and `reference_speed_rpm` to "
-                "compute it from"
-            )
+            why = "`amplitude` = 'constant' needs the key `force` (N), or `unbalance` and `reference_speed_rpm` to compute it from"
+            raise ValueError(why)
 
     @classmethod
     def examples(cls, **options: Any) -> list[Self]:

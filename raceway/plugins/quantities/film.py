@@ -77,13 +77,8 @@ class FilmThickness:
         oil = (
             f"{number(1e3 * table['viscosity_pa_s'], 'mPa s')}, {number(1e9 * table['pressure_viscosity_per_pa'], '1/GPa')}"
         )
-        facts = [
-            (
-                "Oil film",
-                "",
-                "Hamrock and Dowson, smooth surfaces; without contact.kind = 'film' it does not separate the surfaces",
-            )
-        ]
+        model = "Hamrock and Dowson, smooth surfaces; without contact.kind = 'film' it does not separate the surfaces"
+        facts = [("Oil film", "", model)]
         for race in sorted(("inner", "outer"), key=lambda race: float(table[race]["minimum_m"])):
             film = table[race]
             thickness = ", ".join(f"{1e6 * film[name]:.4g}" for name in ("central_m", "minimum_m"))

@@ -78,10 +78,7 @@ class Friction:
         if problem.traits.line_contacts:
             return "friction of rollers is not computed"
         if problem.lubricant is None:
-            return (
-                "friction needs an oil: a table [lubricant] with `oil` and `temperature_c`, `viscosity_40`, `viscosity_100` and "
-                "`temperature_c`, or `viscosity`"
-            )
+            return "friction needs an oil: a table [lubricant] with `oil` and `temperature_c`, `viscosity_40`, `viscosity_100` and `temperature_c`, or `viscosity`"
         return ""
 
     def compute(self, points: SolvedPoints) -> Mapping[str, np.ndarray]:

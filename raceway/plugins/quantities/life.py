@@ -132,9 +132,8 @@ class Life:
     def warnings(self, points: SolvedPoints, values: Mapping[str, np.ndarray]) -> list[str]:
         sentences, share = [], float(values["equivalent_load_n"][0] / values["rating_n"][0])
         if share > _LARGEST_LOAD:
-            sentences.append(
-                f"life: the equivalent load is {share:.2g} of the dynamic rating; ISO 281 holds up to {_LARGEST_LOAD:g}"
-            )
+            words = f"life: the equivalent load is {share:.2g} of the dynamic rating; ISO 281 holds up to {_LARGEST_LOAD:g}"
+            sentences.append(words)
         rows = points.once("lives", lambda: self._rows(points))
         if any(row.viscosity_ratio[0] < VISCOSITY_RATIOS[0] for row in rows):
             sentences.append(f"life: not modified: {self._why_not_modified(points, rows)}")

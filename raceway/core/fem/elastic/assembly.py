@@ -310,9 +310,8 @@ class Assembly:
                 continue
             why = "it touches nothing" if index not in touching else "frictionless contact does not constrain them"
             free = ", ".join(MOTIONS if index not in touching else MOTIONS[3:])
-            sentences.append(
-                f"{body.name}: {free} ({why}); constrain it by the cage, fixed nodes, or an elastic foundation under one of its surfaces"
-            )
+            words = f"{body.name}: {free} ({why}); constrain it by the cage, fixed nodes, or an elastic foundation under one of its surfaces"
+            sentences.append(words)
         return sentences
 
     def _beds(self) -> list[tuple[csr_matrix, np.ndarray]]:

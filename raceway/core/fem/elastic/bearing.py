@@ -411,12 +411,10 @@ class ElasticBearing:
             for index, (name, seat) in enumerate(zip(("inner", "outer"), seats, strict=True)):
                 groove = under[assembly.starts[index] : assembly.starts[index + 1]]
                 if groove.any() and not (groove & free_nodes(assembly, index)).any():
-                    raise MeshError.at(
-                        f"supports.{name}_seat",
-                        seat,
-                        f"it holds the set 'seat' of the {name} ring, and that has every node of the groove below the contacts: none is free. "
-                        f'Take the groove out of the set in mesh.{name}_ring, or name the right one: [mesh.sets.{name}_ring] seat = "..."',
-                    )
+                    held = f"the set 'seat' of the {name} ring, and that has every node of the groove below the contacts"
+                    remedy = f"Take the groove out of the set in mesh.{name}_ring, or name the right one"
+                    why = f'it holds {held}: none is free. {remedy}: [mesh.sets.{name}_ring] seat = "..."'
+                    raise MeshError.at(f"supports.{name}_seat", seat, why)
             condensed_solver = CondensedSolver(assembly, contact)
         self.system = ElasticSystem(assembly, contact, setup.modulus, load, condensed_solver, self.look)
 

@@ -259,9 +259,8 @@ class Contact(ABC):
 
         touching = np.flatnonzero(blocks.any(axis=(1, 2)))
         move, size = self.move[of_nodes(touching)], len(touching)
-        middle = bsr_array(
-            (np.ascontiguousarray(blocks[touching]), np.arange(size), np.arange(size + 1)), shape=(3 * size, 3 * size)
-        )
+        diagonal = (np.ascontiguousarray(blocks[touching]), np.arange(size), np.arange(size + 1))
+        middle = bsr_array(diagonal, shape=(3 * size, 3 * size))
         return (move.T @ (middle @ move)).tocsr()
 
     def resultants(self) -> np.ndarray:

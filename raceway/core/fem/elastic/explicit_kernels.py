@@ -42,8 +42,7 @@ Frame = namedtuple("Frame", "q half a push stiffness damping inverse tied tie pl
 Points = namedtuple(
     "Points",
     "nodes weights x pair starts surfaces area params memory memory_trial stick committed place dissipated projected "
-    "far stiffest displacement shift where velocity normal force trial direction factors bend stiffness tangent "
-    "scalar sums parts surface",
+    "far stiffest displacement shift where velocity normal force trial direction factors bend stiffness tangent scalar sums parts surface",
 )
 _INTEGERS, _TABLE = int64[::1], int64[:, ::1]
 _BODIES = record(Bodies, _TABLE, uint32[:, ::1], VECTOR, MATRIX, VECTOR, VECTOR)

@@ -283,8 +283,6 @@ def _eliminate(front: np.ndarray, s: int, inner: np.ndarray, border: np.ndarray,
     complement = np.asfortranarray(front[s:, s:])
     del front
     fronts.append(_Front(inner, border, *(np.asarray(x, dtype=np.float32, order="F") for x in (lower, across))))
-    return (
-        np.asarray(dsyrk(-1.0, across, beta=1.0, c=complement, trans=1, lower=1, overwrite_c=1))
-        if len(border)
-        else complement
-    )
+    if not len(border):
+        return complement
+    return np.asarray(dsyrk(-1.0, across, beta=1.0, c=complement, trans=1, lower=1, overwrite_c=1))

@@ -136,14 +136,9 @@ class _Balls:
 
 #: Cells of a part from which factors take seconds, and reading them pays.
 LEAST_CELLS = 8000
+_ELASTIC = ("copies", "fronts", "linear_statics", "superelement", "interface", "unknowns")
 #: The code that the numbers depend on.
-SOURCES = (
-    "core/fem/hexahedron",
-    *(
-        f"core/fem/elastic/{name}.py"
-        for name in ("copies", "fronts", "linear_statics", "superelement", "interface", "unknowns")
-    ),
-)
+SOURCES = ("core/fem/hexahedron", *(f"core/fem/elastic/{name}.py" for name in _ELASTIC))
 
 Arrays = dict[str, np.ndarray]
 #: Called with what is done, how much of it, and how much there is.
@@ -397,9 +392,8 @@ def _ring(assembly: Assembly, group: Group, contacts: np.ndarray, mass: float, o
     local = copies.nodes[0] - first
     contact = contact[free[local[contact]]]
     if not contact.size:
-        raise MeshError(
-            f"{body.name}: no node of its groove below a contact is free: its seat reaches into the groove. Mesh the ring with free nodes there"
-        )
+        why = f"{body.name}: no node of its groove below a contact is free: its seat reaches into the groove. Mesh the ring with free nodes there"
+        raise MeshError(why)
     bed = None
     if body.foundation is not None:  # the cells of a sector that stand on it, numbered in the sector
         (on_bed, matrices), key = bed_of_cells(body), {tuple(row): k for k, row in enumerate(local[copies.cells])}

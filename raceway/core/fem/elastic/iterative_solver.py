@@ -170,18 +170,11 @@ def resultant_contact(setup: BearingData, meshes: list[HexMesh], assembly: Assem
             rotation = s.turn(k) @ s.turn(answers[k][0]).T
             above = answers[k][1].replaced(on_ball, rotation.T @ -normal, sphere)
             name, first = f"ball {k}, {word} race", int(assembly.starts[k + 2])
-            touches.append(
-                Touch(
-                    name,
-                    attrs.evolve(on_ball, nodes=on_ball.nodes + first),
-                    attrs.evolve(on_ring, nodes=on_ring.nodes + int(assembly.starts[race])),
-                    middle,
-                    surface,
-                    below.local + above - beyond[race * s.ball_count + k],
-                    below.spread,
-                    min(float(facets.short.mean()), _OVERLAP * g.ball_diameter),
-                )  # fmt: skip
-            )
+            on_ball = attrs.evolve(on_ball, nodes=on_ball.nodes + first)
+            on_ring = attrs.evolve(on_ring, nodes=on_ring.nodes + int(assembly.starts[race]))
+            local = below.local + above - beyond[race * s.ball_count + k]
+            overlap = min(float(facets.short.mean()), _OVERLAP * g.ball_diameter)
+            touches.append(Touch(name, on_ball, on_ring, middle, surface, local, below.spread, overlap))
     params = s.params(np.arange(len(touches)), np.ones(len(touches)))
     return ResultantContact(touches, assembly.nodes, PlaceLaw(s.law, params, s.state_size, s.contact_damping))
 

@@ -309,9 +309,8 @@ class Preconditioner:
         try:
             import pyamg
         except ImportError:
-            raise RacewayError(
-                "large elastic bodies need pyamg: pip install '.[elastic]' in a checkout of Raceway"
-            ) from None
+            why = "large elastic bodies need pyamg: pip install '.[elastic]' in a checkout of Raceway"
+            raise RacewayError(why) from None
         # Whole nodes, so that aggregates are made of nodes: a node that is held in part keeps unit rows for what is held.
         free = np.repeat(~fixed_dofs.reshape(-1, 3).all(axis=1), 3)
         loose = ~fixed_dofs[free]
@@ -393,6 +392,5 @@ def _refuse_free_motion(matrix: csr_matrix, points: np.ndarray, mask: np.ndarray
         if loose:
             where = f" of part {index + 1} of {count}, {len(nodes)} nodes," if count > 1 else ""
             names = ", ".join(MOTIONS[i] for i in loose)
-            raise ConvergenceError(
-                f"no support against the rigid motion{where or ' of the body'}: {names}. Prescribe displacements that stop it"
-            )
+            why = f"no support against the rigid motion{where or ' of the body'}: {names}. Prescribe displacements that stop it"
+            raise ConvergenceError(why)

@@ -191,11 +191,8 @@ def stress_profile(axis: ContactAxis, body: HexOperator, u: np.ndarray, reach: f
     corners = axis.local(body.points[cells])
     # Of the three mean edges of an element, what lies along each axis: the element's own edges where it is aligned.
     edges = np.einsum("ne,kna->kea", CORNERS, corners) / 4.0
-    fit = StressFit(
-        corners.mean(axis=1),
-        np.sqrt(np.square(edges).sum(axis=1)),
-        centre_stress(body.points, cells, u, body.moduli, body.formulation),
-    )
+    stress = centre_stress(body.points, cells, u, body.moduli, body.formulation)
+    fit = StressFit(corners.mean(axis=1), np.sqrt(np.square(edges).sum(axis=1)), stress)
     depth = np.linspace(0.0, deep, _PLACES)
     line = np.stack([0.0 * depth, 0.0 * depth, depth], axis=1)
     return StressProfile(depth, fit.at(line), fit.lengths_at(line))

@@ -436,9 +436,8 @@ class _Step:
             change = Motions(pressed_on.nodes - residual, pressed_on.balls, frame_change)
             way = self.face.moved(Motions(-change.nodes, -change.balls, frame_change), frame_change)
             state, force, residual = self._along(state, way, force, change, imbalance, residual)
-        raise ConvergenceError(
-            f"Newton's residual in the contacts stands at {np.abs(residual).max() / size:.1e} of the largest force after {NEWTON_LIMIT} iterations."
-        )
+        why = f"Newton's residual in the contacts stands at {np.abs(residual).max() / size:.1e} of the largest force after {NEWTON_LIMIT} iterations."
+        raise ConvergenceError(why)
 
     @staticmethod
     def _along(

@@ -71,14 +71,11 @@ class HexOperator:
         self.points: Floats = np.ascontiguousarray(points, dtype=np.float64)
         numbers = np.asarray(cells)
         if self.points.shape[1:] != (3,) or numbers.shape[1:] != (8,) or not len(numbers):
-            raise MeshError(
-                f"points of shape {self.points.shape} and cells of shape {numbers.shape}: a mesh of hexahedra has points "
-                "(n, 3) and at least one cell, cells (m, 8)"
-            )
+            why = f"points of shape {self.points.shape} and cells of shape {numbers.shape}: a mesh of hexahedra has points (n, 3) and at least one cell, cells (m, 8)"
+            raise MeshError(why)
         if numbers.min() < 0 or numbers.max() >= len(self.points):
-            raise MeshError(
-                f"cells name nodes {numbers.min()} to {numbers.max()}, but there are nodes 0 to {len(self.points) - 1}"
-            )
+            why = f"cells name nodes {numbers.min()} to {numbers.max()}, but there are nodes 0 to {len(self.points) - 1}"
+            raise MeshError(why)
         self.cells: NDArray[np.uint32] = np.ascontiguousarray(numbers, dtype=np.uint32)
         self.formulation, self.hourglass, self.density = formulation, float(hourglass), float(density)
         self._least_step = least_step

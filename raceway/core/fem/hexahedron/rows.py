@@ -57,8 +57,7 @@ def nodal_volumes(points: Floats, cells: NDArray[np.uint32]) -> Floats:
             e = part.start + int(np.argmax(bad))
             raise MeshError(
                 f"element {e} is inverted or degenerate: the determinant of its Jacobian falls to "
-                f"{determinant[e - part.start].min():.3g} m3 at a Gauss point; it must be positive. Check the order of its "
-                "nodes (VTK's hexahedron) and its shape"
+                f"{determinant[e - part.start].min():.3g} m3 at a Gauss point; it must be positive. Check the order of its nodes (VTK's hexahedron) and its shape"
             )
         out[part] = np.einsum("kp,pn->kn", determinant * weights, values)
     return out

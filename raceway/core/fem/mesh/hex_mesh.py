@@ -160,12 +160,9 @@ class HexMesh:
         sequence = np.argsort(cells.min(axis=1), kind="stable")
         cell_rank = np.empty(len(sequence), dtype=np.int64)
         cell_rank[sequence] = np.arange(len(sequence))
-        return HexMesh(
-            self.points[order],
-            cells[sequence],
-            {name: rank[nodes] for name, nodes in self.node_sets.items()},
-            {name: np.column_stack([cell_rank[f[:, 0]], f[:, 1]]) for name, f in self.facet_sets.items()},
-        )
+        node_sets = {name: rank[nodes] for name, nodes in self.node_sets.items()}
+        facet_sets = {name: np.column_stack([cell_rank[f[:, 0]], f[:, 1]]) for name, f in self.facet_sets.items()}
+        return HexMesh(self.points[order], cells[sequence], node_sets, facet_sets)
 
 
 def merged(meshes: Mapping[str, HexMesh]) -> HexMesh:

@@ -84,14 +84,10 @@ class RingShape:
             return self.profile
         reach = self.groove * sin(self.edge)
         # A hollow cylinder: radii of seat and land, width between its faces, and the groove's ends on the land [m].
-        ends = (self.centre_x - reach, self.centre_x + reach)
-        half = 0.5 * self.width
-        return Outline(
-            np.array([[-half, self.land], [ends[0], self.land]]),
-            np.array([[ends[1], self.land], [half, self.land]]),
-            np.array([[-half, self.seat], [half, self.seat]]),
-            (-self.edge, self.edge),
-        )
+        half, land = 0.5 * self.width, self.land
+        before = np.array([[-half, land], [self.centre_x - reach, land]])
+        beyond = np.array([[self.centre_x + reach, land], [half, land]])
+        return Outline(before, beyond, np.array([[-half, self.seat], [half, self.seat]]), (-self.edge, self.edge))
 
     @property
     def wall(self) -> float:
@@ -242,13 +238,9 @@ def ring_shape(bearing: Any, inner: bool) -> RingShape:
         if getattr(bearing, key, None) is None:
             raise MeshError.at(f"bearing.{key}", None, "is missing: rings of hexahedra need bore, outer_diameter and width")
     middle, depth = 0.5 * bearing.pitch_diameter, bearing.shoulder_height or 0.2 * bearing.ball_diameter
-    return RingShape(
-        inner=inner,
-        seat=0.5 * (bearing.bore if inner else bearing.outer_diameter),
-        land=middle + (-1.0 if inner else 1.0) * (0.5 * bearing.ball_diameter - depth),
-        width=bearing.width,
-        **_groove_arc(bearing, inner),
-    )
+    seat = 0.5 * (bearing.bore if inner else bearing.outer_diameter)
+    land = middle + (-1.0 if inner else 1.0) * (0.5 * bearing.ball_diameter - depth)
+    return RingShape(inner=inner, seat=seat, land=land, width=bearing.width, **_groove_arc(bearing, inner))
 
 
 def _groove_arc(bearing: Any, inner: bool) -> Tables:

@@ -132,12 +132,9 @@ def refuse_memory(prediction: Prediction, key: str, value: float | str, remedy: 
     MeshError: With the predicted number of elements and bytes.
     """
     if prediction.memory_bytes > MEMORY_LIMIT:
-        raise MeshError.at(
-            key,
-            value,
-            f"would give about {float(prediction.cells):.3g} elements and take {prediction.memory_bytes / 2**30:.3g} GiB, above "
-            f"{MEMORY_LIMIT / 2**30:.0f} GiB: {remedy}",
-        )
+        elements, limit = f"{float(prediction.cells):.3g} elements", f"{MEMORY_LIMIT / 2**30:.0f} GiB"
+        why = f"would give about {elements} and take {prediction.memory_bytes / 2**30:.3g} GiB, above {limit}: {remedy}"
+        raise MeshError.at(key, value, why)
 
 
 def refuse_coarse(size: float, wall: float, where: str) -> None:
@@ -146,6 +143,5 @@ def refuse_coarse(size: float, wall: float, where: str) -> None:
     MeshError: With both numbers.
     """
     if size > wall:
-        raise MeshError.at(
-            "mesh.element_size", size, f"is larger than the {where}, {wall:.4g} m: use no more than that, in metres"
-        )
+        why = f"is larger than the {where}, {wall:.4g} m: use no more than that, in metres"
+        raise MeshError.at("mesh.element_size", size, why)

@@ -198,10 +198,8 @@ def polygon_outline(
     for end in (x.min(), x.max()):
         on = np.flatnonzero(np.abs(x - end) <= 1e-9 * size)
         if len(on) != 2 or (on[1] - on[0]) % count not in (1, count - 1):
-            raise MeshError(
-                f"`{key}` has {len(on)} points at x = {1e3 * end:.4g} mm: each end of a ring is a side face, two neighbouring "
-                "points with the same x"
-            )
+            why = f"`{key}` has {len(on)} points at x = {1e3 * end:.4g} mm: each end of a ring is a side face, two neighbouring points with the same x"
+            raise MeshError(why)
         faces.append(on)
     for first in faces[0]:
         step = 1 if (first + 1) % count not in faces[0] else -1
@@ -213,10 +211,8 @@ def polygon_outline(
         bad = np.flatnonzero(np.diff(line[:, 0]) <= 1e-9 * size)
         if len(bad):
             at = line[bad[0]]
-            raise MeshError(
-                f"`{key}` does not go on in x after [{at[0]:g}, {at[1]:g}]: a vertical step or an undercut cannot be meshed: "
-                "incline or remove it"
-            )
+            why = f"`{key}` does not go on in x after [{at[0]:g}, {at[1]:g}]: a vertical step or an undercut cannot be meshed: incline or remove it"
+            raise MeshError(why)
     lines.sort(key=lambda line: float(np.interp(0.5 * (x.min() + x.max()), line[:, 0], line[:, 1])))
     every = np.union1d(lines[0][:, 0], lines[1][:, 0])
     wall = np.interp(every, *lines[1].T) - np.interp(every, *lines[0].T)

@@ -324,6 +324,5 @@ class Balls:
             position, force, now = position + part * step, force + part * change, trial
             if self.residual(now) >= size and size <= 1e3 * tolerance * scale:
                 return position, force, now
-        raise ConvergenceError(
-            "the balls have no equilibrium between the races", {"place": position, "residual": self.residual(now)}
-        )
+        why = "the balls have no equilibrium between the races"
+        raise ConvergenceError(why, {"place": position, "residual": self.residual(now)})

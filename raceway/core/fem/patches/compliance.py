@@ -104,7 +104,14 @@ class ComplianceFactor:
         exchanges = int(joining.sum() + leaving.sum())
         self._nodes = nodes.copy()
         if not len(self._base) or exchanges > max(2, _BORDER * len(nodes)):
-            self._factorise(nodes)
+            matrix = self.block(nodes, nodes)
+            matrix[np.diag_indices(len(nodes))] += self._extra
+            self._lower, status = dpotrf(matrix, lower=1)
+            if status != 0:
+                why = "the compliance of a contact is not positive definite: its mesh is too coarse or distorted"
+                raise ConvergenceError(why)
+            self._base, self._same = nodes.copy(), True
+            self.factorisations += 1
             return
         self._same = exchanges == 0
         if self._same:
@@ -121,15 +128,3 @@ class ComplianceFactor:
         schur = -sides.T @ self._reach
         schur[:count, :count] += self.block(new, new) + self._extra * np.eye(count)
         self._schur = schur
-
-    def _factorise(self, nodes: np.ndarray) -> None:
-        matrix = self.block(nodes, nodes)
-        matrix[np.diag_indices(len(nodes))] += self._extra
-        self._lower, status = dpotrf(matrix, lower=1)
-        if status != 0:
-            raise ConvergenceError(
-                "the compliance of a contact is not positive definite: its mesh is too coarse or distorted"
-            )
-        self._base = nodes.copy()
-        self._same = True
-        self.factorisations += 1

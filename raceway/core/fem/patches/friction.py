@@ -107,9 +107,8 @@ class Friction:
             return
         self._lower, status = dpotrf(self._block[np.ix_(sticking, sticking)], lower=1)
         if status != 0:
-            raise ConvergenceError(
-                "the compliance along a groove is not positive definite: its mesh is too coarse or distorted"
-            )
+            why = "the compliance along a groove is not positive definite: its mesh is too coarse or distorted"
+            raise ConvergenceError(why)
         self._stuck = sticking.copy()
 
     def _solve(self, right: np.ndarray) -> np.ndarray:

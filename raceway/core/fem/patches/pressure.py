@@ -239,11 +239,9 @@ class Contact:
         force = slope.T @ load
         load_slope = solve(slope)
         stiffness = slope.T @ load_slope - curvature
-        viscous = (
-            np.zeros((2, 2))
-            if state is None or not state.viscous.any()
-            else -load_slope.T @ (state.viscous[:, None] * slope)
-        )
+        viscous = np.zeros((2, 2))
+        if state is not None and state.viscous.any():
+            viscous = -load_slope.T @ (state.viscous[:, None] * slope)
         normal = ContactState(force, stiffness, viscous, nodes, load, penetration, self._ends(nodes, force))
         return normal if slipping is None else self._friction_forces(normal, position, slipping, -load_slope)
 

@@ -411,10 +411,10 @@ class PatchSystem(SteppedRing):
                     break
                 part *= 0.4
             q, where, force, now = trial_q, where + part * step, force + part * change, trial
-        raise ConvergenceError(
-            f"no static equilibrium of the nodal contacts found after {_LIMIT} iterations, relative residual {relative:.1e}",
-            {"q": q, "ball": where},
+        why = (
+            f"no static equilibrium of the nodal contacts found after {_LIMIT} iterations, relative residual {relative:.1e}"
         )
+        raise ConvergenceError(why, {"q": q, "ball": where})
 
     def pressures(self) -> list[ContactState]:
         """Answers of all contacts, inner races first, at the last state."""

@@ -103,10 +103,8 @@ def graded_profile(
         )
     first, last = ceil((low - contact) / step - 1e-9), floor((high - contact) / step + 1e-9)
     if last - first < 1:
-        raise MeshError(
-            f"a step of {1e3 * arc_step:.4g} mm along the groove leaves fewer than two nodes in the contact window: use a "
-            "smaller one"
-        )
+        why = f"a step of {1e3 * arc_step:.4g} mm along the groove leaves fewer than two nodes in the contact window: use a smaller one"
+        raise MeshError(why)
     zone = contact + step * np.arange(first, last + 1)
     coarse = bulk / shape.groove
     below = zone[0] - growing(zone[0] - edges[0], min(growth * step, coarse), coarse, growth)[:0:-1]
@@ -157,9 +155,8 @@ def _profile(shape: RingShape, angles: np.ndarray, race: slice, depth_step: floa
     # Chamfers stand off the bore or the cylinder that the ring sits on.
     on_seat = np.flatnonzero(np.abs(bottom[:, 1] - shape.seat) <= 1e-9 * shape.seat)
     if len(on_seat) < 2 or np.ptp(on_seat) != len(on_seat) - 1:
-        raise MeshError(
-            f"the seat of the ring, its surface at radius {1e3 * shape.seat:.4g} mm, is not one cylinder: a support needs one"
-        )
+        why = f"the seat of the ring, its surface at radius {1e3 * shape.seat:.4g} mm, is not one cylinder: a support needs one"
+        raise MeshError(why)
     return Profile(points, quads, lines * rows, on_seat * rows + rows - 1, angles[race], rows)
 
 
@@ -171,9 +168,8 @@ def _onto(lines: np.ndarray, corners: np.ndarray) -> np.ndarray:
     for i, corner in enumerate(corners):
         low, high = (corner_lines[-1] + 1 if corner_lines else 1), len(lines) - 1 - (len(corners) - i)
         if high < low:
-            raise MeshError(
-                f"the outline has {len(corners)} corners on its seat side, the mesh {len(lines)} lines: too coarse"
-            )
+            why = f"the outline has {len(corners)} corners on its seat side, the mesh {len(lines)} lines: too coarse"
+            raise MeshError(why)
         corner_lines.append(low + int(np.argmin(np.abs(lines[low : high + 1] - corner))))
     ends = [0, len(lines) - 1]
     old, new = lines[[ends[0], *corner_lines, ends[1]]], np.concatenate([lines[:1], corners, lines[-1:]])
