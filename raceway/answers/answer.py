@@ -97,10 +97,8 @@ class Answer(Shown):
         """
         folder = Path(folder)
         paths = [write_json(self.to_dict(), folder / f"{self.stem}.json")]
-        paths += [
-            write_whole(text.encode(), folder / f"{self.stem}.{suffix}")
-            for suffix, text in self.texts(bool(pictures)).items()
-        ]
+        texts = self.texts(bool(pictures))
+        paths += [write_whole(text.encode(), folder / f"{self.stem}.{suffix}") for suffix, text in texts.items()]
         return paths + (self.picture(folder, "png", *([pictures] if isinstance(pictures, str) else [])) if pictures else [])
 
     @door

@@ -137,10 +137,8 @@ def excitation(problem: Problem) -> Tables:
         from raceway.core.ring.system import no_force
 
         return {"force": no_force, "force_params": np.zeros(1)}
-    return {
-        "force": plugin_kernel(problem.excitation, "excitation", FORCE, "FORCE"),
-        "force_params": force_params(problem.excitation),
-    }
+    kernel = plugin_kernel(problem.excitation, "excitation", FORCE, "FORCE")
+    return {"force": kernel, "force_params": force_params(problem.excitation)}
 
 
 def changing_speed(problem: Problem) -> ChangingSpeed | None:

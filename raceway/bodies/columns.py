@@ -68,10 +68,8 @@ class ColumnBearing:
             numbers = np.broadcast_to(params, (*n, params.shape[-1])), np.broadcast_to(np.array(period), n)
         else:
             several, which = distinct(excitation)
-            numbers = (
-                np.array([force_params(each) for each in several])[which],
-                np.array([each.period_s for each in several])[which],
-            )
+            numbers = np.array([force_params(each) for each in several]), np.array([each.period_s for each in several])
+            numbers = numbers[0][which], numbers[1][which]
         return np.ascontiguousarray(numbers[0]), 2.0 * np.pi / numbers[1].astype(float)
 
     def under(self, problem: Problem) -> ColumnBearing | None:

@@ -68,9 +68,8 @@ class StaticGradient:
     key: Key
     step: float  # of the differences, in the unit of the key; 0 where it changes nothing at rest
     displacement: np.ndarray  # (5,) [m, rad]
-    #: stiffness, damping : (5, 5) of the contacts
-    stiffness: np.ndarray
-    damping: np.ndarray
+    stiffness: np.ndarray  # (5, 5) of the contacts
+    damping: np.ndarray  # (5, 5)
     contact_force: np.ndarray  # (2 Z,) inner races first [N]
     stated: np.ndarray  # of ``Gradients.stated``
     remark: str  # why they may not be smooth; empty where they are
@@ -286,9 +285,8 @@ class Gradients:
     def _by_models(self, key: Key, relative: float = _STEP) -> Gradient:
         """Of a key whose neighbours are models of their own; NoDerivative with the reason where there is none."""
         if self.model.scene.heat is not None:
-            raise NoDerivative(
-                "also changes the steady temperatures, which derivatives do not solve for. Sample it: raceway band --samples"
-            )
+            remedy = "Sample it: raceway band --samples"
+            raise NoDerivative(f"also changes the steady temperatures, which derivatives do not solve for. {remedy}")
         wide = self.model.problem.bearing.preloaded or renews(self.model.problem.contact.law)
         step, shifts = _difference_step(key, _WIDE if wide else relative), (-2, -1, 1, 2) if wide else (-1, 1)
         base, ahead = self._values(self.model, self.equilibrium), self._model(key, step)
@@ -335,8 +333,7 @@ class Gradients:
         return np.stack([np.zeros(n), *(numbers[name] for name in self.stated)], axis=1)[:, 1:]
 
     def _values(self, model: Model, equilibrium: Equilibrium, line: np.ndarray | None = None) -> _Solutions:
-        names = ("displacement", "stiffness", "damping", "contact_force")
-        values = {name: getattr(equilibrium, name) for name in names}
+        values = {name: getattr(equilibrium, name) for name in ("displacement", "stiffness", "damping", "contact_force")}
         values["stated"] = self._stated(solved_point(model, equilibrium, None), 1)[0]
         if self.orbit is not None:
             values["line"] = self.orbit.line if line is None else line
@@ -345,8 +342,7 @@ class Gradients:
 
 def refuse_points(problem: Problem) -> None:
     """Raise ``SceneError`` for bodies whose contacts are pressures at surface points, or are not compiled."""
-    traits = problem.traits
-    if not (traits.compiled and traits.resultants):
+    if not (problem.traits.compiled and problem.traits.resultants):
         why = "surface points open and close one by one: their forces have no derivative. Use contact.discretisation = 'resultant'"
         raise SceneError.at("bodies.kind", problem.bodies.name, f"{why} on rigid or condensed bodies")
 
@@ -389,9 +385,8 @@ def _gradients(
             line = _MotionGradient(complex(real, imag), stiffness, damping, amplitude)
         remark = _AT_THE_EDGE if edges[k] else _BENDS if bends[k] > _KINK else ""
         step = float(steps[k]) if any(slope.any() for name, slope in statics.items() if name != "stated") else 0.0
-        answers[key.path] = Gradient(
-            StaticGradient(key, step, remark=remark if step else "", models=models, **statics), line
-        )
+        at_rest = StaticGradient(key, step, remark=remark if step else "", models=models, **statics)
+        answers[key.path] = Gradient(at_rest, line)
         if edges[k] or largest[k] > _UNEVEN:
             uneven.append(key)
     return answers, uneven

@@ -202,11 +202,9 @@ def _step_warnings(
         return ()
     if dt >= critical:
         least = int(period / (SAFETY * critical)) + 1
-        raise StabilityError(
-            f"`integrator.steps_per_turn` = {steps_per_turn} makes a step of {dt:.3g} s, above the stable limit of "
-            f"'{problem.integrator.kind}', {critical:.3g} s. Use at least {least}, or 'auto'.",
-            {"q": equilibrium.displacement, "ball": equilibrium.ball},
-        )
+        step = f"`integrator.steps_per_turn` = {steps_per_turn} makes a step of {dt:.3g} s"
+        limit = f"the stable limit of '{problem.integrator.kind}', {critical:.3g} s. Use at least {least}, or 'auto'."
+        raise StabilityError(f"{step}, above {limit}", {"q": equilibrium.displacement, "ball": equilibrium.ball})
     if dt > SAFETY * critical * (1.0 + 1e-9):
         return (
             f"the step is {dt / critical:.2f} of the stable limit, which holds for one state: where balls lose and regain contact "

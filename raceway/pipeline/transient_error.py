@@ -103,10 +103,9 @@ def without_free_vibration(motion: Simulation) -> Clean | None:
     free = np.flatnonzero(system.free > 0.0)
     tangent = 0.5 * (motion.equilibrium.stiffness_rows_held + motion.equilibrium.stiffness_rows_held.T)
     squares, modes = eigh(system.reduced(tangent + system.stiffness), system.reduced(system.mass))
-    jump, slope = (
-        modes.T @ system.reduced(system.mass) @ (signal[-1] - signal[-1 - per_turn])[free]
-        for signal in (record.displacement, record.velocity)
-    )
+    signals = (record.displacement, record.velocity)
+    gaps = ((signal[-1] - signal[-1 - per_turn])[free] for signal in signals)
+    jump, slope = (modes.T @ system.reduced(system.mass) @ gap for gap in gaps)
     turn = slice(-per_turn, None)
     line = synchronous_phasor(record.time[turn], record.displacement[turn], w / (2.0 * np.pi))
     seam = np.exp(-1j * w * record.time[-1])
@@ -126,9 +125,8 @@ def hann_line(time: np.ndarray, signal: np.ndarray, frequency_hz: float) -> np.n
 
     The window's spectrum ends two lines from its middle: mean and harmonics of a periodic signal leak nothing.
     """
-    return synchronous_phasor(
-        time, signal, frequency_hz, 1.0 - np.cos(2.0 * np.pi * (np.arange(len(time)) + 0.5) / len(time))
-    )
+    window = 1.0 - np.cos(2.0 * np.pi * (np.arange(len(time)) + 0.5) / len(time))
+    return synchronous_phasor(time, signal, frequency_hz, window)
 
 
 def _lasting(motion: Simulation, record: Record, value: complex) -> complex:

@@ -75,10 +75,8 @@ def warm(scene: Scene, columns: Mapping[str, np.ndarray], plan: ScenePlan, facto
     assert scene.heat is not None, "callers look"
     # Keys of the temperatures of ``_FELT``, and of the oil in the contacts.
     oil = "lubricant.temperature_c" if scene.lubricant is not None else "contact.temperature_c"
-    n, keys = (
-        len(next(iter(columns.values()))),
-        (("mounting.inner_temperature", "mounting.ball_temperature", "mounting.outer_temperature", oil)),
-    )
+    n = len(next(iter(columns.values())))
+    keys = ("mounting.inner_temperature", "mounting.ball_temperature", "mounting.outer_temperature", oil)
     inlet, ambient = (
         np.broadcast_to(columns.get(f"heat.{key}", getattr(scene.heat, key)), n) for key in ("oil_inlet_c", "ambient_c")
     )

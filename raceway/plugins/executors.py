@@ -244,10 +244,9 @@ class Dask:
             _greet(self.scheduler, self.patience)
             client = Client(self.scheduler, timeout=self.patience)
         except (OSError, ValueError, TypeError) as why:
-            raise PluginError(
-                f"no dask scheduler answers at `{self.scheduler}` within {self.patience:g} s: {str(why) or type(why).__name__}. "
-                "Start one with `dask scheduler`, or correct --scheduler."
-            ) from None
+            reason = f"within {self.patience:g} s: {str(why) or type(why).__name__}"
+            remedy = "Start one with `dask scheduler`, or correct --scheduler."
+            raise PluginError(f"no dask scheduler answers at `{self.scheduler}` {reason}. {remedy}") from None
         with client:
             yield client
 
@@ -344,9 +343,8 @@ class _Flight:
 
     def _submit(self, batch: Batch) -> None:
         bound = frozenset(self.fit) if self.unfit else frozenset()
-        future = self.client.submit(
-            self.work, batch[1], pure=False, workers=sorted(bound) or None, key=f"sweep-{batch[0]}-{time.time_ns()}"
-        )
+        workers, key = sorted(bound) or None, f"sweep-{batch[0]}-{time.time_ns()}"
+        future = self.client.submit(self.work, batch[1], pure=False, workers=workers, key=key)
         self.flying[future] = batch, bound
 
 

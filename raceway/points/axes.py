@@ -165,8 +165,7 @@ def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Ax
 
 def _axis(key: str, values: Sequence[Any]) -> Axis:
     names = [(isinstance(v, bool), v if is_number(v) else repr(v)) for v in values]
-    if len(set(names)) < len(names):
-        repeated = next(value for k, value in enumerate(values) if names[k] in names[:k])
+    for repeated in (value for k, value in enumerate(values) if names[k] in names[:k]):
         raise SceneError.at(key, repeated, "is duplicated in the axis")
     return Axis(key, tuple(values))
 
@@ -357,9 +356,8 @@ def _csv_points(path: Path) -> list[Tables]:
     if not rows:
         return []
     keys = [key.strip() for key in rows[0]]
-    uneven = {k: row for k, row in enumerate(rows) if len(row) != len(keys)}
-    why = f"values for {len(keys)} keys"
-    mistakes = [Mistake(f"{path}, row {k}", ",".join(row), f"has {len(row)} {why}") for k, row in uneven.items()]
+    uneven, of_keys = {k: row for k, row in enumerate(rows) if len(row) != len(keys)}, f"values for {len(keys)} keys"
+    mistakes = [Mistake(f"{path}, row {k}", ",".join(row), f"has {len(row)} {of_keys}") for k, row in uneven.items()]
     if mistakes:
         raise SceneError(mistakes[:10])
     return [{key: parse_value(value) for key, value in zip(keys, row, strict=True)} for row in rows[1:]]
@@ -390,14 +388,13 @@ def _point_list(path: Path | str, points: object) -> Design:
     keys = list(points[0])
     for number, point in enumerate(points, 1):
         if set(point) != set(keys):
-            odd = sorted(set(point) ^ set(keys))
-            why = f"all points need the same keys; not in all: {', '.join(odd)}"
-            raise SceneError.at(f"{path}, point {number}", None, why)
-    bad = [key for key in keys if not key or not all(part.strip() for part in key.split("."))]
-    if bad:
-        raise SceneError.at(str(path), bad[0], "is not a key of a scene, such as load.axial")
+            odd = ", ".join(sorted(set(point) ^ set(keys)))
+            raise SceneError.at(f"{path}, point {number}", None, f"all points need the same keys; not in all: {odd}")
+    for key in keys:
+        if not all(part.strip() for part in key.split(".")):
+            raise SceneError.at(str(path), key, "is not a key of a scene, such as load.axial")
     return Design.of_points(points)
 
 
-def point_words(point: ReadTables, keys: Sequence[str] | None = None) -> str:
-    return ", ".join(f"{key} = {shown(point[key])}" for key in keys or point)
+def point_words(point: ReadTables) -> str:
+    return ", ".join(f"{key} = {shown(value)}" for key, value in point.items())

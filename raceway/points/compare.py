@@ -246,10 +246,8 @@ def _number_of(row: Row) -> tuple[str, str]:
         return f"{about.symbol} {about.text(value, 4)}", f"{_within(row, about)}; {about.words}{doubt}"
     error, within = row.error * z, _within(row, about)
     words = f"numerical +- {about.text(error, 2)}" if row.estimated else "numerical error not known"
-    return (
-        f"{about.symbol} {number_within(about.read(value), about.read(error), about.read_unit)}",
-        f"{within}; {words}{doubt}",
-    )
+    number = number_within(about.read(value), about.read(error), about.read_unit)
+    return f"{about.symbol} {number}", f"{within}; {words}{doubt}"
 
 
 def _within(row: Row, about: Quantity) -> str:

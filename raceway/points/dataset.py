@@ -221,10 +221,8 @@ def dataset(store: SweepStore, registry: Registry | None = None) -> xarray.Datas
         "damaged_rows": faults,
     }
     if faults:
-        warn(
-            f"`{store.path}`: {faults} of {design.size} rows are damaged, read as waiting; --resume computes them again",
-            stacklevel=3,
-        )
+        text = f"{faults} of {design.size} rows are damaged, read as waiting; --resume computes them again"
+        warn(f"`{store.path}`: {text}", stacklevel=3)
     try:
         scene: Scene | None = scene_from_dict(store.scene, registry or default_registry())
     except RacewayError:  # its plug-ins are not installed here: values are there, units of its keys are not

@@ -354,9 +354,8 @@ class Function:
 
                 reason[rows[fine]] = [beyond_oil(float(level)) for level in inputs["lubricant.temperature_c"][fine]]
             for name in self.outputs:
-                part = (
-                    QUANTITIES[name](numbers) if name in QUANTITIES else numbers.of_plugin(self._of_plugins[name][0], name)
-                )
+                known = QUANTITIES.get(name)
+                part = known(numbers) if known else numbers.of_plugin(self._of_plugins[name][0], name)
                 # All points' memory is asked for at once, and taken when a block is written to it.
                 values = answer.setdefault(name, np.empty((len(answer["status"]), *part.shape[1:])))[block]
                 if fine.all() and len(rows) == len(status):

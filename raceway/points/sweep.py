@@ -306,9 +306,8 @@ def _rows(
 
 def _refuse_other(present: SweepStore, facts: ReadTables, store: Path) -> None:
     """A store that holds something else is named and left alone."""
-    reasons = _tree_changes(present.scene, facts["scene"]) or _tree_changes(
-        present.facts.get("tables", {}), facts.get("tables", {})
-    )
+    tables = (present.facts.get("tables", {}), facts.get("tables", {}))
+    reasons = _tree_changes(present.scene, facts["scene"]) or _tree_changes(*tables)
     difference = "another scene"
     if not reasons:
         difference, reasons = "another sweep", _tree_changes(present.facts["design"], facts["design"])

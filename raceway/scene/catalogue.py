@@ -205,10 +205,8 @@ def _with_designation(name: str, entry: Preset, designation: Designation) -> Pre
         facts = {key: fact for key, fact in facts.items() if not key.startswith("balls.")}
         facts["balls.material"] = Fact("balls.material", designation.ceramic, f"{name}: ceramic balls", False)
     title = f"{name}: {entry.title.partition(': ')[2] or entry.title}"
-    words, tolerance = designation.words, designation.tolerance
-    return attrs.evolve(
-        entry, name=name, title=title, facts=tuple(facts.values()), data=data, designation=words, tolerance_class=tolerance
-    )
+    entry = attrs.evolve(entry, name=name, title=title, facts=tuple(facts.values()), data=data)
+    return attrs.evolve(entry, designation=designation.words, tolerance_class=designation.tolerance)
 
 
 def _preset_named(name: str) -> Preset | None:

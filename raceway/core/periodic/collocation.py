@@ -153,10 +153,8 @@ def renew(problem: Problem, path: Path, solved: bool) -> None:
     mesh first, and Newton's iteration takes over: (I - D T) dr = D b - r with T = db/dr of each ball, by differences.
     """
     columns = np.array(problem.system.rated_columns)
-    closure, rate = (
-        newton.Closure(problem.closing, problem.symmetry.order, columns),
-        path.rate.copy() if solved else path.rate,
-    )
+    closure = newton.Closure(problem.closing, problem.symmetry.order, columns)
+    rate = path.rate.copy() if solved else path.rate
     newton.renew_rates(problem.mesh(path.nodes), closure, problem.speed, path.ball, rate)
     if solved:
         path.rate[:, :, columns] += _solve_places(problem, path, (rate - path.rate)[:, :, columns])

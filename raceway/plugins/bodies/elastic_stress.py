@@ -95,10 +95,8 @@ def below_contacts(bodies: "ElasticPoints", model: Model, equilibrium: Equilibri
         load = float(loads[ball])
         major, minor = (float(x) for x in ellipse.semi_axes(load))
         peak = float(ellipse.peak_pressure(load))
-        for body, index, axis, material in (
-            ("ball", ball + 2, lines[0], setup.balls),
-            ("ring", race, lines[1], setup.rings),
-        ):
+        sides = (("ball", ball + 2, lines[0], setup.balls), ("ring", race, lines[1], setup.rings))
+        for body, index, axis, material in sides:
             depth = largest_shear((major, minor), peak, material[1])[1]
             u = moved[assembly.part(index)].reshape(-1, 3)
             deep = _DEEP * max(depth, 0.1 * minor)

@@ -154,9 +154,8 @@ def roller_parts(problem: Problem, plan: ScenePlan, basis: Basis, radii: tuple[N
     table[..., lines.DROP :] = np.multiply.outer(kind.crown * per_ball(geometry.ball_diameter), profile)
     if plan.centrifugal:
         mass = problem.bearing.balls.density * 0.25 * pi * geometry.ball_diameter**2 * length
-        table[..., ring.CENTRIFUGAL] = per_ball(
-            mass * 0.5 * geometry.pitch_diameter * geometry.cage_speed(problem.spin_speed) ** 2
-        )
+        force = mass * 0.5 * geometry.pitch_diameter * geometry.cage_speed(problem.spin_speed) ** 2
+        table[..., ring.CENTRIFUGAL] = per_ball(force)
     return {
         "kernel": lines.rollers,
         "base_kernel": lines.rollers,

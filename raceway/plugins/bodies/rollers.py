@@ -98,9 +98,8 @@ class CylindricalRollers:
     def stable_step(self, problem: Problem) -> float:
         """Of the ring on half its rollers under Stribeck's load [s]."""
         count, length = problem.bearing.ball_count, self.roller_length
-        load = float(abs(complex(*problem.load.radial))) + (
-            0.0 if problem.excitation is None else problem.excitation.amplitude_n
-        )
+        amplitude = 0.0 if problem.excitation is None else problem.excitation.amplitude_n
+        load = float(abs(complex(*problem.load.radial))) + amplitude
         coefficient = getattr(problem.contact.law, "coefficient", 0.0) or _COEFFICIENT
         approach = 2.0 * coefficient * (STRIBECK * load / count) ** 0.9 / length**0.8
         stiffness = 0.5 * count * 10.0 / 9.0 * (STRIBECK * load / count) / approach if load > 0.0 else 1.0

@@ -280,6 +280,5 @@ class HarmonicLoad(Bidirectional):
 def harmonic_load(speed: float, load: np.ndarray) -> HarmonicLoad:
     """The excitation of a load (5,) [N, N m] at a speed [rad/s]."""
     largest = float(np.abs(load[:3]).max())
-    return HarmonicLoad(
-        speed_rpm=speed * 30.0 / pi, amplitude="constant", force=largest, amplitudes=tuple(map(complex, load))
-    )
+    rpm, amplitudes = speed * 30.0 / pi, tuple(map(complex, load))
+    return HarmonicLoad(speed_rpm=rpm, amplitude="constant", force=largest, amplitudes=amplitudes)

@@ -98,10 +98,8 @@ class Friction:
 
         if not isinstance(self.measured_band, str):
             return 1.0 / self.measured_band, self.measured_band
-        lows, highs = zip(
-            *(measured_factors(b.pitch_diameter, points.speed) for b in points.problem.bearing.of_rows), strict=True
-        )
-        return np.minimum.reduce(lows), np.maximum.reduce(highs)
+        factors = [measured_factors(b.pitch_diameter, points.speed) for b in points.problem.bearing.of_rows]
+        return np.minimum.reduce([low for low, _ in factors]), np.maximum.reduce([high for _, high in factors])
 
     def losses(self, points: SolvedPoints) -> Losses:
         """Of every contact and ball."""

@@ -116,10 +116,8 @@ class Life:
         worst = min(table["rows"], key=lambda row: row["life_factor"] or 0.0)
         by_row = {"kappa": worst["viscosity_ratio"], "a_ISO": worst["life_factor"], "e_C": table["contamination"]}
         modified = "; " + ", ".join(f"{symbol} {value:.3g}" for symbol, value in by_row.items() if value is not None)
-        for name, words, share, by in (
-            ("l10mr", "modified life Lnmr", table["reliability"], modified),
-            ("l10r", "reference life L10r", 0.9, ""),
-        ):
+        modified_life = ("l10mr", "modified life Lnmr", table["reliability"], modified)
+        for name, words, share, by in (modified_life, ("l10r", "reference life L10r", 0.9, "")):
             turns, hours = table[f"{name}_million_revolutions"], table[f"{name}_hours"]
             if turns is not None:
                 at_speed = f"{hours:.4g} h; " if hours is not None else ""

@@ -151,9 +151,8 @@ class ElasticSystem:
         frame = np.zeros(m)
         if free.any():
             remaining = outer[:m] - inner[:m] + c * (assembly.frame_damping @ a[:m])
-            frame[free] = np.linalg.solve(
-                (assembly.frame_mass + c * assembly.frame_damping)[np.ix_(free, free)], remaining[free]
-            )
+            matrix = assembly.frame_mass + c * assembly.frame_damping
+            frame[free] = np.linalg.solve(matrix[np.ix_(free, free)], remaining[free])
         masses, outside, inside = assembly.free_mass, outer[m:], inner[m:]
         self.threads.do_shares(len(masses), lambda first, last: divide(first, last, outside, inside, masses))
         inner[:m] = frame
@@ -436,9 +435,8 @@ class ElasticBearing:
         u = a.carried @ q
         for k in range(self.ball_count):
             shift = ball[k, :2] + centre - [0.0, 0.5 * self.setup.geometry.pitch_diameter]
-            u[a.part(k + 2)] = np.tile(
-                shift[0] * np.array([1.0, 0.0, 0.0]) + shift[1] * self.setup.radial(k), len(self._mass[k])
-            )
+            moved = shift[0] * np.array([1.0, 0.0, 0.0]) + shift[1] * self.setup.radial(k)
+            u[a.part(k + 2)] = np.tile(moved, len(self._mass[k]))
         return np.concatenate([q, u[a.free]])
 
     @contextmanager

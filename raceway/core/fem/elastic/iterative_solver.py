@@ -266,11 +266,9 @@ class LinearSolver:
         aged = isinstance(self._multigrid, _Factorised) and self._whole is None
         stale = stale or aged and self._extra > _WORTH_FACTORS
         length = float(np.cbrt(a.free_mass.max() / a.bodies[0].operator.density))
-        heavier = (
-            abs(np.log((ratio + 1e-300) / (self._built + 1e-300))) > np.log(_OTHER_MASS)
-            and max(ratio, self._built) * a.free_mass.max() > 1e-3 * self.modulus * length
-        )
-        if stale or heavier:
+        other = abs(np.log((ratio + 1e-300) / (self._built + 1e-300))) > np.log(_OTHER_MASS)
+        matters = max(ratio, self._built) * a.free_mass.max() > 1e-3 * self.modulus * length
+        if stale or (other and matters):
             self._make(c_k, c_m)
         free_right = np.where(a.unknown, right, 0.0)
         apply = self.image(c_k, c_c, c_m)

@@ -220,9 +220,8 @@ def stable_step(matrices: Callable[[slice], Floats], masses: Floats) -> float:
         if bounds[order[begin]] <= largest:
             break
         elements = order[begin:end]
-        frequencies_squared = np.concatenate(
-            [_mass_scaling(matrices(slice(e, e + 1)), masses[e : e + 1]) for e in elements.tolist()]
-        )
+        each = [_mass_scaling(matrices(slice(e, e + 1)), masses[e : e + 1]) for e in elements.tolist()]
+        frequencies_squared = np.concatenate(each)
         try:  # positive definite where all eigenvalues are below the bound
             np.linalg.cholesky(largest * (1.0 + _SAME) * np.eye(frequencies_squared.shape[-1]) - frequencies_squared)
         except np.linalg.LinAlgError:

@@ -282,10 +282,7 @@ def graded(
 Floats = NDArray[np.float64]
 
 #: (8, 4) Nodal values of eta zeta, xi zeta, xi eta and xi eta zeta: what a constant gradient does not see.
-HOURGLASS: Floats = np.stack(
-    [CORNERS[:, 1] * CORNERS[:, 2], CORNERS[:, 0] * CORNERS[:, 2], CORNERS[:, 0] * CORNERS[:, 1], CORNERS.prod(axis=1)],
-    axis=1,
-)
+HOURGLASS: Floats = np.column_stack([CORNERS[:, [1, 0, 0]] * CORNERS[:, [2, 2, 1]], CORNERS.prod(axis=1)])
 
 
 def shape_values(at: Floats) -> Floats:
