@@ -4,8 +4,11 @@ import time
 from typing import Any
 
 import numpy as np
+from numba import boolean, float64, int64
 
+from raceway.core.jit import jit
 from raceway.core.record import Observation, OnChunk, Record, Schedule, State, SteppedSystem, ramp, work
+from raceway.core.signatures import VECTOR
 from raceway.errors import ConvergenceError, RacewayError, StabilityError
 
 #: Largest displacement [m] or rotation [rad] that is still a motion of a bearing.
@@ -103,7 +106,8 @@ class Recorder:
         z = self.system.ball_count
 
         def stack(name: str, shape: tuple[int, ...]) -> np.ndarray:
-            return np.array([getattr(each, name) for each in observations], dtype=float).reshape(len(observations), *shape)
+            rows = [getattr(each, name) for each in observations]
+            return np.array(rows) if rows else np.zeros((0, *shape))
 
         first: Observation | None = observations[0] if observations else None
         return Record(
@@ -139,7 +143,7 @@ class Recorder:
 
         def block_work(number: int) -> None:
             part = _BLOCK * number, min(_BLOCK * (number + 1), size)
-            fine[number] = (np.abs(arrays[-1][slice(*part)]) < BOUND).all()
+            fine[number] = _within_bound(*part, BOUND, arrays[-1])
             works[number] = work(*part, *arrays)
 
         self.system.threads.do(count, block_work)
@@ -167,3 +171,12 @@ class Recorder:
         motion = self.system.motion(self.state)
         state = {"t": np.array(self.time_of(self.done)), "q": motion.q, "v": motion.v, "a": motion.a, "ball": motion.ball}
         return state | dict(motion.full_state or {})
+
+
+@jit(boolean(int64, int64, float64, VECTOR), releases=True)
+def _within_bound(first, last, bound, u):  # type: ignore[no-untyped-def]
+    """Whether the entries ``first`` to ``last - 1`` are numbers below the bound in size."""
+    beyond = 0
+    for i in range(first, last):
+        beyond += 0 if abs(u[i]) < bound else 1
+    return beyond == 0
