@@ -141,6 +141,7 @@ print(json.dumps([done.exit_code, weight, ratio, listed.stdout, wrong.exit_code,
 
 
 def test_an_ability_comes_from_a_package_alone(tmp_path):
+    """Its command, public name, table of the scene, quantity and picture, by ``raceway_commands``, ``raceway_names``, ``raceway_tables``."""
     install(tmp_path, "weighing", (ROOT / "examples" / "plugins" / "weighing.py").read_text(encoding="utf-8"))
     scene = tmp_path / "scene.toml"
     scene.write_text(

@@ -144,7 +144,7 @@ class Shapeless(Loads):
     ("plugin", "words"),
     [
         (Broken, "'broken': compute.. must return exactly its `numbers`.*turn_load"),
-        (Shapeless, r"turn_load. has shape \(1,\); it must be \(1, instant, race, ball\)"),
+        (Shapeless, r"turn_load. has shape \(1,\), not \(1, instant, race, ball\)"),
     ],
 )
 def test_a_broken_duty_is_named(use, plugin, words):

@@ -56,8 +56,11 @@ def _statements(path: Path) -> list[tuple[range, set[str], set[str]]]:
         elif isinstance(top, (ast.Import, ast.ImportFrom)):
             made = {alias.asname or alias.name for alias in top.names}
             mentioned |= {origin[name] for name in made if name in origin}
-        else:
-            made = {node.id for node in names if isinstance(node.ctx, ast.Store)} or {node.id for node in names}
+        elif isinstance(top, (ast.Assign, ast.AnnAssign)):
+            made = {node.id for node in names if isinstance(node.ctx, ast.Store)}
+        else:  # a loop or a call, which registers what every function of the file may use
+            made = {part.name for part in tree.body if isinstance(part, (ast.FunctionDef, ast.ClassDef))}
+            made |= {node.id for node in nodes if isinstance(node, ast.Name)}
         first = min([top.lineno, *(node.lineno for node in getattr(top, "decorator_list", ()))])
         found.append((range(first, (top.end_lineno or first) + 1), {f"{module}.{name}" for name in made}, mentioned))
     return found

@@ -254,7 +254,9 @@ class Bearing:
         """Refuse rows, arrangement and preload that contradict each other."""
         signs = signs_of(self.arrangement)
         if self.row and self.arrangement != "single" and len(self.row) != len(signs):
-            raise ValueError(f"`row` has {len(self.row)} tables; '{self.arrangement}' is {len(signs)} rows")
+            raise ValueError(
+                f"`row` has {len(self.row)} tables, but arrangement = '{self.arrangement}' is {len(signs)} rows"
+            )
         without = [k for k, row in enumerate(self.row) if self.arrangement == "single" and row.direction is None]
         if without:
             raise ValueError(f"`row[{without[0]}]` has no `direction`: give each row '+' or '-', or an `arrangement`")
