@@ -82,6 +82,18 @@ def test_a_motion_that_only_another_speed_or_load_leads_to(axial, speed, amplitu
     assert multiplier == pytest.approx(result.simulation.orbits[0]["multiplier"], abs=1e-4)
 
 
+def test_a_heavier_load_leads_to_the_motion_that_a_lower_speed_leads_to(monkeypatch):
+    """That of the test above, which integrates it over time."""
+    tables = article(400.0, kind="periodic", tolerance=1e-9)
+    tables["excitation"] |= {"speed_rpm": 13492.5, "amplitude": "unbalance"}
+    tables["kinematics"] = {"ball_inertia": False, "gyroscopic": "none", "ring_growth": False}
+    for speeds in ("_NEAR", "_RATIOS"):
+        monkeypatch.setattr(f"raceway.core.periodic.branches.{speeds}", ())
+    result = run(tables)
+    assert result.simulation.orbits[0]["found"] == "from a heavier axial load"
+    assert abs(result.identification.dynamic_stiffness - 24.4011554e6) < 1e-7 * 24.4e6
+
+
 def test_a_motion_is_continued_where_it_is_unstable():
     """400 N, one direction, tilt free: unstable at 12 990 r/min, where a search leads to it without damping only, and not at the speeds beside."""
     motions, near = [], None
