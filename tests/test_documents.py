@@ -37,7 +37,7 @@ NOT_RUN = {
     "python -m venv .venv-ross && .venv-ross/bin/pip install -e '.[sweep]' -e './packages/raceway-rotor[ross]'": _ENVIRONMENT,
     "RACEWAY_ROSS_PYTHON=.venv-ross/bin/python .venv/bin/python -m pytest --evidence packages/raceway-rotor/tests/evidence/test_ross.py": "writes a report of this checkout",
     ".venv/bin/python -m checks.documents": "writes documents of this checkout; checks/tests compare them",
-    ".venv/bin/python -m pytest --evidence tests/evidence/test_NAME.py": "writes a report of this checkout",
+    ".venv/bin/python -m pytest --evidence FOLDER/evidence/test_NAME.py": "writes a report of this checkout",
     "raceway stability --all": "ten minutes; packages/raceway-checks/tests/evidence/test_stability.py does it",
     "raceway study article": "a quarter of an hour; its report does it",
     "raceway study article --bodies rigid --friction 0": "minutes; the same report",

@@ -118,7 +118,8 @@ def save_figure(figure: Figure, path: Path, dots_per_inch: int = 300) -> Path:
     RacewayError: Another ending, or a folder or disk that cannot be written.
     """
     if path.suffix.lower() not in FORMATS:
-        raise RacewayError(f"`{path}`: pictures are written as {', '.join(FORMATS[:-1])} or {FORMATS[-1]}")
+        words = f"`{path}`: pictures are written as {', '.join(FORMATS[:-1])} or {FORMATS[-1]}: choose such a name"
+        raise RacewayError(words)
     if path.suffix.lower() == ".svg":
         return write_whole(svg(readable(figure)), path)
     if path.suffix.lower() == ".png":

@@ -236,7 +236,7 @@ class _Listener:
         from raceway.core.jit import clock
 
         cached = clock["loaded"] - clock["of_wheel"]
-        LOGGER.info("kernels: %d came compiled, %d from the cache, %d now", clock["of_wheel"], cached, clock["compiled"])
+        LOGGER.info("kernels: %d came compiled, %d cached, %d compiled now", clock["of_wheel"], cached, clock["compiled"])
         if result.identification is not None:
             from raceway.answers.quantities import K
 

@@ -319,7 +319,8 @@ def new_plugin(kind: str, name: str, folder: str | Path = ".", registry: Registr
     if keyword.iskeyword(name) or keyword.issoftkeyword(name):
         raise PluginError(f"'{name}' cannot be a plug-in's name: it is a word of Python")
     for entry in (registry or default_registry()).entries.get((kind, name), []):
-        raise PluginError(f"there is a {kind.replace('_', ' ')} '{name}' already, of {entry.distribution}")
+        reason = f"there is a {kind.replace('_', ' ')} '{name}' already, of {entry.distribution}: choose another name"
+        raise PluginError(reason)
     words = {
         "kind": kind,
         "name": name,

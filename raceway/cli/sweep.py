@@ -241,7 +241,8 @@ def sweep(
     if is_store:
         return _Drawn(choice.draw(scene))
     if not (axes or points or design or scene.is_file()):
-        raise SceneError.at("STORE", source, f"holds no sweep: raceway sweep SCENE --grid … --out {source} makes it")
+        rule = f"holds no sweep: raceway sweep SCENE --grid key=start:stop:count --out {source} makes it"
+        raise SceneError.at("STORE", source, rule)
     registry, points_swept = registry_with(plugins), _design(tuple(axes), points, design, tuple(ranges), seed)
     pool = executor_of(executor, {"workers": workers, "scheduler": scheduler}, registry)
     tables = plain_tables(scene, *settings, registry=registry)

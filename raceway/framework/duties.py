@@ -187,7 +187,8 @@ def reach_of(law: ContactLaw, pairs: ContactPairs) -> np.ndarray:
         return np.zeros(n)
     reach = _of_contacts(law, pairs, "reach")
     if reach.shape != (n,) or not (reach >= 0.0).all() or not np.isfinite(reach).all():
-        raise PluginError(f"contact law '{law.name}': reach() must return {n} finite lengths of 0 or more")
+        words = f"contact law '{law.name}': reach() must return {n} finite lengths of 0 or more, one for each contact"
+        raise PluginError(words)
     return reach
 
 

@@ -165,7 +165,8 @@ def parse_axis(text: str, option: str = "--vary", most: int = MOST_POINTS) -> Ax
 
 def _axis(key: str, values: Sequence[Any]) -> Axis:
     names = [(isinstance(v, bool), v if is_number(v) else repr(v)) for v in values]
-    for repeated in (value for k, value in enumerate(values) if names[k] in names[:k]):
+    if len(set(names)) < len(names):
+        repeated = next(value for k, value in enumerate(values) if names[k] in names[:k])
         raise SceneError.at(key, repeated, "is duplicated in the axis")
     return Axis(key, tuple(values))
 

@@ -62,12 +62,7 @@ def _strange_options(tables: ReadTables, name: str, kind: str, registry: Registr
 
 @attrs.frozen
 class Base:
-    """A scene at whose keys points give other values.
-
-    Attributes
-    ----------
-    tables : of the scene;  registry : of the plug-ins that it and points name
-    """
+    """A scene's tables, at whose keys points give other values; ``registry`` has the plug-ins that it and they name."""
 
     tables: ReadTables
     registry: Registry
@@ -77,7 +72,6 @@ class Base:
         return cls(plain_tables(scene, registry=registry), registry)
 
     def tables_at(self, point: ReadTables, notes: list[str] | None = None) -> Tables:
-        """As the function of this name."""
         return tables_at(self.tables, point, self.registry, notes)
 
     def scene_at(self, point: ReadTables, notes: list[str] | None = None) -> Scene:

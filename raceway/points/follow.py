@@ -184,7 +184,8 @@ def _follow_branch(
         if doubled:
             _follow_doubled(branch, curve, parameter, mass, points, on_progress)
         for each in (curve, *curve.doubled) if turns else ():
-            each.attractors += [attractor_beside(p.solved, p.transfer, p.parameter, turns, on_progress) for p in each.worst]
+            at = ((p.solved, p.transfer, float(p.parameter)) for p in each.worst)
+            each.attractors += [attractor_beside(*point, turns, on_progress) for point in at]
     except KeyboardInterrupt as stop:
         curve.doubled = [twice for twice in curve.doubled if twice.rows]
         for part in (curve, *curve.doubled):

@@ -124,7 +124,7 @@ class Bearing:
     )
     row: tuple[SetRow, ...] = option((), help="one row: position, direction, preload and keys that differ from [bearing]")
     preload: float = option(
-        0.0, unit="N", help="axial preload between opposite rows, before mounting, at standstill", rule=at_least(0.0)
+        0.0, unit="N", help="axial preload between opposed rows, before mounting, at standstill", rule=at_least(0.0)
     )
     second_preload: float | None = option(
         None,
@@ -143,7 +143,7 @@ class Bearing:
         rule=one_of("rigid", "spring"),
     )
     spring_travel: float | None = option(
-        None, unit="m", help="their travel either way from the unmounted position; default: unlimited", rule=travel()
+        None, unit="m", help="travel either way from the rings' unmounted position; default: unlimited", rule=travel()
     )
     row_distance: float | None = option(
         None, unit="m", help="axial distance of neighbouring inner groove centres; default: a bearing's width", rule=length()
@@ -276,10 +276,11 @@ class Bearing:
         if ground is not None and self.preload_of != "row":
             raise ValueError(f"`row[{ground}].preload` says what that row was ground for: set preload_of = 'row'")
         if self.second_preload is not None and self.preload_of == "row":
-            raise ValueError("`second_preload` is between rows: set preload_of = 'set', or give each row its `preload`")
+            raise ValueError("`second_preload` acts between rows: set preload_of = 'set', or give each row its `preload`")
         if not self.preloaded:
             if self.second_preload is not None:
-                raise ValueError(f"`second_preload` = {self.second_preload:g} N needs a `preload`, the first direction's")
+                words = f"`second_preload` = {self.second_preload:g} N needs a `preload`, that of the first row's direction"
+                raise ValueError(words)
             return
         if len(set(self.signs)) < 2:
             word = self.signs if self.row else self.arrangement
@@ -319,7 +320,7 @@ class SetRow:
         None, unit="m", help="axial position of its inner groove centres; default: rows `row_distance` apart", rule=finite()
     )
     preload: float | None = option(
-        None, unit="N", help="preload it is ground for (preload_of = 'row'); default: bearing.preload", rule=at_least(0.0)
+        None, unit="N", help="preload of the ground row (preload_of = 'row'); default: bearing.preload", rule=at_least(0.0)
     )
     preset: str | None = option(None, help="name in the catalogue; other keys override it")
 

@@ -30,7 +30,7 @@ def tidy(value: object, depth: int = 0) -> Any:
     SceneError: A tree deeper than any scene, or what no file could hold.
     """
     if depth > _DEEPEST:
-        raise SceneError.at("scene", None, f"has lists or tables nested more than {_DEEPEST} deep")
+        raise SceneError.at("scene", None, f"has lists or tables nested more than {_DEEPEST} deep: no key of a scene is")
     try:
         if isinstance(value, Mapping):
             return {str(key): tidy(inner, depth + 1) for key, inner in value.items()}

@@ -61,7 +61,8 @@ def check_requirements(table: Mapping[str, object], registry: Registry, mistakes
         try:
             versions = SpecifierSet(specifier)
         except InvalidSpecifier:
-            mistakes.append(Mistake(path, specifier, 'is not a version specifier; write ">=1.2" or ">=1.2, <2"'))
+            rule = 'is not a version specifier; write for instance ">=1.2" or ">=1.2, <2"'
+            mistakes.append(Mistake(path, specifier, rule))
             continue
         why = _unmet(name, specifier, versions, distributions, registry)
         if why:

@@ -215,7 +215,7 @@ class Heat:
 
     oil_inlet_c: float = option(unit="°C", help="temperature of the supplied oil", rule=between(-273.15, 1e3))
     oil_flow: float | str = option(
-        unit="m3/s", help="through all rows; 'infinite': constant temperature", rule=word_or(inside(1e-18, 1.0), "infinite")
+        unit="m3/s", help="oil through all rows; 'infinite': one temperature", rule=word_or(inside(1e-18, 1.0), "infinite")
     )
     ambient_c: float = option(20.0, unit="°C", help="temperature around shaft and housing", rule=between(-150.0, 1e3))
     oil_heat_capacity: float = option(2000.0, unit="J/kg/K", help="of the oil; usually 1900 to 2300", rule=between(1.0, 1e5))

@@ -36,7 +36,7 @@ SUITES: dict[str, tuple[str, str]] = {
 }  # fmt: skip
 _PUBLIC = {
     **{name: module for module, name in SUITES.values()},
-    **dict.fromkeys(("Conformity", "Row", "Suite", "duty", "require"), "raceway.testing.suite"),
+    **dict.fromkeys(("Conformity", "DutyResult", "Suite", "duty", "require"), "raceway.testing.suite"),
     # What tests of single steps need beside the public functions.
     **dict.fromkeys(("b7206c", "model_of", "settled"), "raceway.testing.suite"),
     **dict.fromkeys(("Registry", "default_registry"), "raceway.framework.loading.registry"),

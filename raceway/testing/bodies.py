@@ -231,7 +231,8 @@ class BodiesSuite(Suite):
     def test_build(self, bodies: BodiesKind) -> None:
         scene = _scene_of(bodies)
         bearing = bodies.build(resolve(scene), make_plan(scene))
-        require(isinstance(bearing, BuiltBearing), f"build() returns {type(bearing).__name__}, not a BuiltBearing")
+        kind = type(bearing).__name__
+        require(isinstance(bearing, BuiltBearing), f"build() returns {kind}, not a raceway.extend.BuiltBearing")
         check_shape("`guess`", bearing.guess, (5,))
         z = scene.bearing.balls_in_all
         require(bearing.system.ball_count == z, f"the system has {bearing.system.ball_count} balls, the scene {z}")
@@ -308,7 +309,8 @@ class BodiesSuite(Suite):
             require(matches, f"{word} angles are nan where a contact is open, and only there")
         q, ball, forces = (np.repeat(each[None], 3, axis=0) for each in (equilibrium.displacement, equilibrium.ball, force))
         several = model.bearing.contact_angles(model, q, ball, forces, np.zeros(3))
-        check_shape("the angles of three states", several, (2, 3, z))
+        shapes = [np.shape(angle) for angle in several]
+        require(shapes == [(3, z)] * 2, f"the angles of three states have the shapes {shapes}, not (3, {z})")
         check_shape("over_edges() of three states", model.bearing.over_edges(model, *several, forces), (3,))
         # Sum of the inner races' forces against the loads on the free translations.
         load, inner = np.where(force[:z] > 0.0, force[:z], 0.0), np.nan_to_num(equilibrium.angle_inner)

@@ -273,7 +273,7 @@ def _axial(curves: Curves, measure: str) -> list[_Row]:
     for at, low_effect, high_effect, why in effects["5c"]:
         growth = None if low_effect is None or high_effect is None else high_effect - low_effect
         grows.append(Finding(at, None if growth is None else growth > 0.0, growth, why))
-    finding = f"its change from the low to the high zone, in points of percent: {_by_tilt(grows, 100.0, '', '+.1f')}"
+    finding = f"change of this effect, low to high zone, in points of percent: {_by_tilt(grows, 100.0, '', '+.1f')}"
     rule = f"the effect of 5c is larger in the high zone than in the low one; {BRIDGED}"
     return [*rows, ("5e", f"The influence of axial load on {measure} grows with speed.", rule, finding, grows)]
 

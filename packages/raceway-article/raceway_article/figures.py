@@ -196,7 +196,7 @@ def _excitations(curves: Curves, kind: str, tilt: str, measure: str, star: bool,
     other = {f"{row['speed_rpm']:g}" for curve in run.values() for row in curve.rows if row.get("found") == "from rest"}
     if other:
         at = ", ".join(sorted(other, key=float))
-        caption += f" At {at} r/min stands the motion that a ring reaches from rest: on another branch K jumps."
+        caption += f" At {at} r/min stands the motion that a ring reaches from rest: where its branch is another, K jumps."
     words = f"{label} over w* from 0 to 1, {TILT_WORDS[tilt]}: {_ends({_PAIRS[pair][3]: k(curve) for pair, curve in run.items()})}"
     return _panel(lines, (f"{TILT_WORDS[tilt]}, {load:g} N", _SPEED, label), 2, words, caption)
 

@@ -243,7 +243,7 @@ class Article(Answer):
         if unsure := [verdict.number for verdict in self.verdicts if verdict.failed]:
             yield Words(f"some runs failed or are unstable: {', '.join(unsure)}; which ones: article.json", "dim")
         equal = sum(trend.holds for trend in self.trends)
-        yield Words(f"quasi-static trends equal to a solver's printed digits: {equal} of {len(self.trends)}", "dim")
+        yield Words(f"trends equal to an independent solver's printed digits: {equal} of {len(self.trends)}", "dim")
         cost = f"{self.runs} points, {len(self.failed)} failed; {self.seconds:.0f} s, {self.cpu_s:.0f} s of processor time"
         yield Words(cost + (f"; {self.reused} of {self.tasks} pieces taken from earlier" if self.reused else ""), "dim")
 

@@ -293,7 +293,7 @@ def _contact_of(scene: Scene, race: str = "inner", ball: int | None = None) -> L
     if race not in RACES:
         raise SceneError.at("race", race, f"must be one of {', '.join(RACES)}")
     if not resolve(scene).traits.contacts_alone:
-        rule = "has contacts whose approach bodies share: use bodies.kind = 'rigid' to see a law alone"
+        rule = "has contacts whose approach bodies share by their compliance: use bodies.kind = 'rigid' to see a law alone"
         raise SceneError.at("bodies.kind", scene.bodies.name, rule)
     model = build_model(scene)
     still, ring = solve_equilibrium(model), compiled(model.system)

@@ -145,7 +145,8 @@ class Gmsh:
                 "transfinite": "use method = 'subdivision', or cut the solid into volumes with six four-sided faces",
                 "subdivision": "cut the solid into simpler volumes",
             }[self.method]
-            raise MeshError(f"'{path}' cannot be meshed with hexahedra by method = '{self.method}': {solids}; {remedy}")
+            words = f"'{path}' cannot be meshed with hexahedra by method = '{self.method}': {solids} came out; {remedy}"
+            raise MeshError(words)
         cells = np.asarray(nodes[0].reshape(-1, 8).astype(np.int64))
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
         number = np.full(int(tags.max()) + 1, -1)

@@ -207,7 +207,8 @@ def _probe_alone(kernel: Kernel, params: np.ndarray, state: np.ndarray, who: str
             force, d_gap, d_rate, _ = _call_law(kernel, alone, state[:1].copy(), gap, 0.0, who, where)
             finite.append(bool(np.isfinite([force[0], d_gap[0], d_rate[0]]).all()))
         if finite == [False, True]:
-            raise PluginError(f"{who}: not finite {where}: the kernel reads beyond the {columns} columns of build()")
+            words = f"{who}: not finite {where}: the kernel reads beyond the {columns} columns of parameters that build() returned"
+            raise PluginError(words)
 
 
 def _call_law(
@@ -238,7 +239,8 @@ def _guarded(kernel: Kernel, who: str, where: str, inputs: Mapping[str, np.ndarr
 def _check_outputs(outputs: Tables, who: str, where: str) -> None:
     for word, values in outputs.items():
         if (values == _MARK).any():
-            raise PluginError(f"{who}: the kernel leaves `{word}` as it was {where}; the contract says overwritten whole")
+            rule = "the contract says that outputs are overwritten whole"
+            raise PluginError(f"{who}: the kernel leaves `{word}` as it was {where}; {rule}")
         if not np.isfinite(values).all():
             bad = values[~np.isfinite(values)][0]
             raise PluginError(f"{who}: the kernel gives `{word}` = {bad:g} {where}; the contract says finite")

@@ -37,7 +37,8 @@ def chosen_entry_points(third_party: bool = True) -> tuple[list[EntryPoint], lis
     labels = sorted(every)
     for name in sorted(blocked - set(labels)):
         installed = f"installed: {', '.join(labels)}" if labels else "no plug-in is installed"
-        warnings.warn(f"RACEWAY_DISABLE names '{name}', an unknown name{nearest(name, labels)}; {installed}", stacklevel=2)
+        words = f"RACEWAY_DISABLE names '{name}', which nothing is called{nearest(name, labels)}; {installed}"
+        warnings.warn(words, stacklevel=2)
     return [p for p in points if not blocked & _called(p)], missing
 
 

@@ -11,7 +11,6 @@ models            what changes the physics, one at a time: law, discretisation, 
 """
 
 import json
-import textwrap
 from collections.abc import Callable, Mapping
 from itertools import product
 from typing import NotRequired
@@ -111,7 +110,8 @@ def setting_at(
         scene = scene_from_dict(scene_tables, registry)
         plan = make_plan(scene)
     except RacewayError as error:
-        reason = textwrap.shorten(str(error).splitlines()[0], _REASON, placeholder="...")
+        reason = str(error).splitlines()[0]
+        reason = reason if len(reason) <= _REASON else f"{reason[: _REASON - 3]}..."
         return Setting(family, values, model, scene_tables, None, reason=reason)
     if needs_motion(scene) and not scene.integrator.method.inertial:
         model["inertia"] = False

@@ -101,13 +101,16 @@ def columns_of(
     for header, meaning in mapping.items():
         name, scale = unscaled(meaning)
         if header not in texts:
-            raise ValueError(f"{where}no column '{_short_text(header)}' for --map: {', '.join(map(repr, texts.values()))}")
+            words = f"{where}no column '{_short_text(header)}' for --map; there are {', '.join(map(repr, texts.values()))}"
+            raise ValueError(words)
         if name != IGNORE and _with_y(name) not in COLUMNS:
-            raise ValueError(f'{where}--map "{texts[header]}={name}": unknown name{nearest(name, COLUMNS)}: {_names()}')
+            rule = f"unknown name{nearest(name, COLUMNS)}; known: {_names()}"
+            raise ValueError(f'{where}--map "{texts[header]}={name}": {rule}')
         unit, quantity = _header_parts(header)[1], COLUMNS.get(_with_y(name), ("key", 0.0))[0]
         if unit in _VOLTS and quantity != "key":
             if scale is None:
-                raise ValueError(f"{where}'{texts[header]}' is a voltage: {name} needs the sensitivity, {_SENSITIVITY}")
+                words = f"{where}'{texts[header]}' is a voltage: {name} needs the sensor's sensitivity, {_SENSITIVITY}"
+                raise ValueError(words)
             continue
         if quantity != "key" and unit in _ALL_UNITS and f"{quantity}_{unit}" != _with_y(name):
             remedy = f"{quantity}_{unit} is" if unit in UNITS[quantity] else "values in that unit are"

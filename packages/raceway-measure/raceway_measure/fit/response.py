@@ -122,7 +122,8 @@ def response_of(path: str | Path, columns: Mapping[str, str] | None = None) -> F
                 "histories (type 1) of force and response, are needed. Export one of them"
             )
         if unknown := next((k for k in columns_map if k not in words), None):
-            raise ValueError(f"no function {unknown} for --map: {'; '.join(f'{k}: {text}' for k, text in words.items())}")
+            reason = f"no function {unknown} for --map; there are {'; '.join(f'{k}: {text}' for k, text in words.items())}"
+            raise ValueError(reason)
         tables = {k: table for k, table in zip(words, functions, strict=True) if columns_map.get(k) != IGNORE}
         factors = next((units for units in sets if units["type"] == 164), None)
         if kind == 1:

@@ -345,7 +345,8 @@ def _write_page(study: _RigStudy, folder: Path) -> list[Path]:
         f"{1e3 * rig.span:g} mm apart, {1e3 * rig.unbalance_mass:g} g at {1e3 * rig.unbalance_radius:g} mm; sensor "
         f"{1e3 * rig.sensor_distance:g} mm {rig.sensor_side} the tested bearing"
     )
-    out = Page(f"Identification of a bearing from a sensor beside it: {study.title}", words, f"Raceway {__version__}")
+    footer = f"Raceway {__version__}, study rig"
+    out = Page(f"Identification of a bearing from a sensor beside it: {study.title}", words, footer)
     out.section("Result")
     out.text(
         f"Inversion of the beam identifies K within {100 * worst['clean']:.2g} % from clean signals, and within "
