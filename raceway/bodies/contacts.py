@@ -1,4 +1,4 @@
-"""Contacts of balls in grooves: their angles, ellipses that run over the edge, loads that no ball carries."""
+"""Contacts of balls in grooves: their angles, and ellipses that run over the edge."""
 
 import numpy as np
 

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from xarray import DataArray, Dataset
 
 _NO_RESULT = "#c3cad1"
-#: Panels of a comparison at most.
-MOST_PANELS = 4
 
 
 def draw(layout: _Layout) -> Figure:
@@ -123,6 +121,7 @@ def axis_of(data: DataArray, key: str) -> Axis:
 #: First that is there: what a sweep is made for, then what a static scene has.
 _DEFAULTS = (K.name, Z_REAL.name, f"{STIFFNESS.name}:y,y", AXIAL_DISPLACEMENT.name)
 _MOST_COLOURS = 8
+#: Panels of a sweep or a comparison at most.
 MOST_PANELS = 6
 
 
