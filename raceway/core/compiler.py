@@ -221,6 +221,8 @@ def _without_place(code: CodeType) -> CodeType:
 class _Cached(JITCodeLibrary):
     """Machine code that was read, with the bytes of what callers link until one is compiled."""
 
+    _shared_module: Numba
+
     @staticmethod
     def read(codegen: Numba, state: Numba) -> Numba:
         name, _, (code, linked) = state
