@@ -1,4 +1,4 @@
-"""Scenes of ``unchanged``: the examples, and changes of them so that every kind of every table stands in one at least.
+"""Scenes of ``unchanged`` and of the records: the examples, and changes of them so that every kind of every table and most keys stand in one at least.
 
 Large elastic meshes are left out: their equilibria are found by conjugate gradients, whose last three digits differ from run to run.
 """
@@ -43,6 +43,34 @@ SCENES = {
     "points, hertz": f"b7206_patches {_SMALL} {_STRUCTURED} contact.kind=hertz kinematics.orbiting=false integrator.kind=quasi_static",
     "points, penalty, newmark": f"b7206_patches {_SMALL} {_STRUCTURED} contact.kind=penalty integrator.kind=newmark",
     "points, static": f"b7206_article_mesh {_STRUCTURED} bodies.kind=condensed load.radial=[300,0] {_NEWMARK}",
+    "rollers": f"cylindrical_rollers {_QUICK} bodies.crown=5e-4 bodies.laminae=12 load.moment=[2,1] supports.tilt=2e4",
+    "rollers, oil": f"cylindrical_rollers {_NEWMARK} bodies.roller_length=8e-3 lubricant.oil='VG 68' lubricant.temperature_c=50",
+    "every size": "b7206 integrator.kind=periodic bearing.ball_count=13 bearing.ball_diameter=9e-3 bearing.conformity_inner=0.52 "
+        "bearing.conformity_outer=0.53 bearing.contact_angle_deg=18 bearing.first_ball_azimuth_deg=7 bearing.tilt_arm=pitch "
+        "bearing.pitch_diameter=45e-3 bearing.rings.material=440C bearing.balls.density=7000 bearing.balls.young=2.5e11 "
+        "bearing.balls.poisson=0.25 load.radial=[100,200] load.moment=[1,0.5] supports.tilt=free rotor.transverse_inertia=2e-3 rotor.polar_inertia=1e-3",
+    "clearance, shoulders": "b7206 integrator.kind=quasi_static excitation.kind=unidirectional bearing.radial_clearance=2e-5 bearing.shoulder_height=1e-3 load.radial=[900,0] "
+        "excitation.direction_deg=30 excitation.phase_lag_deg=80 kinematics.radial_expansion=2e-6 kinematics.spin_speed_rpm=8000",
+    "one direction, harmonics": f"b7206 {_QUICK} excitation.kind=unidirectional excitation.direction_deg=30 identifier.kind=sine_fit identifier.harmonics=3 "
+        "integrator.beta=0.3 integrator.gamma=0.6 integrator.tolerance=1e-11 excitation.ramp_turns=1",
+    "time constant, rho": f"b7206 {_QUICK} integrator.kind=generalized_alpha integrator.rho_infinity=0.6 contact.damping=0 "
+        "contact.time_constant=1e-7 rotor.damping=50",
+    "penalty, calibrated": f"b7206 {_QUICK} contact.kind=penalty contact.calibrate_at=150 contact.friction=0.08 contact.stick_stiffness=5e7",
+    "own oil": f"b7206 {_QUICK} contact.kind=film contact.viscosity_40=32e-6 contact.viscosity_100=5.4e-6 contact.temperature_c=45 contact.density=850 "
+        "contact.pressure_viscosity=2e-8 contact.starvation=0.7 contact.inlet_heating=none quantities.film_parameter.roughness=1e-7",
+    "losses, life": f"b7206 {_QUICK} lubricant.viscosity_40=32e-6 lubricant.viscosity_100=5.4e-6 lubricant.temperature_c=55 lubricant.oil_fraction=0.1 "
+        "lubricant.drag_coefficient=0.4 lubricant.eyring_stress=4e6 lubricant.traction_limit=0.04 quantities.friction.seal_torque=0.01 "
+        "quantities.friction.cage_torque=0.002 quantities.life.contamination=0.8 quantities.life.reliability=0.95 load.radial=[600,0]",
+    "orbiting, life, gyroscopic": f"gyroscopic {_NEWMARK} lubricant.oil='VG 46' lubricant.temperature_c=50 quantities.life.viscosity_ratio=2 kinematics.orbiting=true "
+        "load.radial=[500,0] integrator.turns=4",
+    "mounted": "b7206 integrator.kind=periodic mounting.shaft_interference=8e-6 mounting.shaft_bore=12e-3 mounting.shaft_material.material=Si3N4 "
+        "mounting.housing_interference=4e-6 mounting.housing_diameter=90e-3 mounting.housing_material.material=AlMgSi mounting.outer_temperature=-4 "
+        "mounting.inner_temperature=6 mounting.ball_temperature=9 kinematics.ring_growth=true supports.axial=displacement",
+    "warm pair": f"duplex_db {_NEWMARK} bearing.preload_kind=rigid lubricant.oil='VG 32' heat.oil_inlet_c=25 heat.oil_flow='300 cm3/min' "
+        "heat.ambient_c=25 heat.inner_wetting=0.6 heat.shaft_ambient=2 heat.housing_ambient=6 mounting.shaft_interference=5e-6 kinematics.ring_growth=true",
+    "warm, sprung": f"duplex_db {_NEWMARK} bearing.preload_kind=spring bearing.spring_travel=2e-5 lubricant.oil='VG 32' heat.oil_inlet_c=30 heat.oil_flow=4e-6 excitation.speed_rpm=5000",
+    "unequal preloads": "duplex_db bearing.second_preload=400 integrator.kind=periodic rotor.mass=3 load.axial=80 load.moment=[1,2]",
+    "seats": f"b7206_condensed {_QUICK} {_STRUCTURED} supports.inner_seat=2e13 supports.outer_seat=1e13 load.radial=[300,100]",
     "elastic, full": f"b7206_elastic_coarse bodies.formulation=full {_NEWMARK}",
     "elastic, one point, penalty": f"b7206_elastic_coarse bodies.formulation=one_point contact.kind=penalty {_NEWMARK}",
     "elastic, points": f"b7206_article_mesh {_STRUCTURED} mesh.nodes_per_semi_axis=1 {_NEWMARK}",

@@ -1,0 +1,24 @@
+"""Results of scenes of all kinds beside their records: a change that moves a number says so."""
+
+import os
+import shlex
+
+import attrs
+import pytest
+
+import raceway as rw
+from checks.recorded import differences
+from checks.robustness._unchanged_scenes import SCENES
+from checks.validation.command_line import EXAMPLES
+
+#: Seconds each; the same code runs in smaller scenes.
+SLOW = {name for name in SCENES if name == "run_up" or name.startswith(("points, ", "elastic, "))} - {"points, static"}
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.slow] * (name in SLOW)) for name in SCENES])
+def test_a_result_is_as_recorded(name):
+    scene, *changes = shlex.split(SCENES[name])
+    base = rw.load_scene(EXAMPLES / f"{scene}.toml", changes)
+    load = attrs.evolve(base.load, axial=base.load.axial * (1.0 + float(os.environ.get("RACEWAY_RECORD", 0))))
+    result = rw.run(attrs.evolve(base, load=load))
+    assert not differences(name, result.to_dict())
