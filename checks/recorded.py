@@ -53,7 +53,7 @@ def _bare(value: Any) -> Any:
             _bare(item) for item in value[:: len(value) // (_LINES if value and isinstance(value[0], str) else _ITEMS) + 1]
         ]
     if isinstance(value, str):
-        return _MEASURED.sub(UNSTABLE, value.rstrip())
+        return " ".join(_MEASURED.sub(UNSTABLE, value).split())
     return float(f"{value:.8g}") if isinstance(value, float) else value
 
 
