@@ -105,14 +105,10 @@ TOLD = {
     "run": ("tangent kxx, kyy", "numerical error of K", "|Z|", "equivalent stiffness K", "equivalent damping C", "orbit"),
     "run, static": ("Answer at rest", "kyy tilts follow"),
     "plan": ("Included", "Left out", "degrees of freedom", "time step", "wall time"),
-    "compare": ("bidirectional",),
-    "verify": ("within their tolerance",),
-    "export": ("moments by translation", "r/min"),
-    "export --fmu": ("error at most", "400 to 2000"),
-    "view --mesh": ("scaled Jacobian", "balls (12)", "contact patch"),
-    "dev plugins": ("newmark", "hertz"),
-    "dev new-scene": ("raceway run",),
-}
+    "compare": ("bidirectional",), "verify": ("within their tolerance",), "export": ("moments by translation", "r/min"),
+    "export --fmu": ("error at most", "400 to 2000"), "view --mesh": ("scaled Jacobian", "balls (12)", "contact patch"),
+    "dev plugins": ("newmark", "hertz"), "dev new-scene": ("raceway run",),
+}  # fmt: skip
 #: Studies that go on where they were stopped.
 GOES_ON = ("compare", "stability", "band", "study rig", "study article", "sweep", "precision")
 

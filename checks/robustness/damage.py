@@ -57,15 +57,10 @@ def _left_journal(path: Path, other: Path, chance: random.Random) -> None:
 
 _BOTH = "state, reason, content, cost, digest"
 HARMS: dict[str, Callable[[Path, Path, random.Random], None]] = {
-    "cut": harm.cut,
-    "one bit": harm.flipped,
-    "page of zeros": harm.zeroed_page,
-    "zeros to the end": harm.zeroed_tail,
-    "two pages swapped": harm.swapped_pages,
-    "page of another store": harm.page_of_another,
-    "another store": harm.another,
-    "another program's file": harm.no_such_file,
-    "another file's journal": _left_journal,
+    "cut": harm.cut, "one bit": harm.flipped, "page of zeros": harm.zeroed_page,
+    "zeros to the end": harm.zeroed_tail, "two pages swapped": harm.swapped_pages,
+    "page of another store": harm.page_of_another, "another store": harm.another,
+    "another program's file": harm.no_such_file, "another file's journal": _left_journal,
     "two rows swapped": _sql(
         "UPDATE points SET key = -1 WHERE key = {N}",
         "UPDATE points SET key = {N} WHERE key = {M}",
@@ -79,7 +74,7 @@ HARMS: dict[str, Callable[[Path, Path, random.Random], None]] = {
         "UPDATE facts SET value = (SELECT value FROM foreign_store.facts WHERE name = 'design') WHERE name = 'design'"
     ),
     "older schema": _sql("UPDATE facts SET value = '{older}' WHERE name = 'schema'"),
-}
+}  # fmt: skip
 
 
 def resumed(store: Path, wanted: list[Any], foreign: list[Any]) -> str:

@@ -28,14 +28,11 @@ _COUNT, _SEED = 100, 17
 _SWEEP = ("sweep", str(SCENE), "--set", "integrator.kind=periodic", "--grid", "excitation.speed_rpm=10980:15000:160")
 _AXES = ("--vary", "excitation.kind=unidirectional,bidirectional", "--vary", "load.axial=400:1200:4")
 COMMANDS = {
-    "run": ("run", str(SCENE), "--pictures"),
-    "sweep, serial": _SWEEP,
-    "sweep, processes": (*_SWEEP, "--executor", "processes"),
-    "sweep, dask": (*_SWEEP, "--executor", "dask"),
-    "view": ("view", str(SCENE), "--html"),
-    "compare": ("compare", str(SCENE), *_AXES),
+    "run": ("run", str(SCENE), "--pictures"), "sweep, serial": _SWEEP,
+    "sweep, processes": (*_SWEEP, "--executor", "processes"), "sweep, dask": (*_SWEEP, "--executor", "dask"),
+    "view": ("view", str(SCENE), "--html"), "compare": ("compare", str(SCENE), *_AXES),
     "study": ("study", "article", *SMALL_ARTICLE, "--processes", "2"),
-}
+}  # fmt: skip
 
 
 @attrs.frozen

@@ -15,7 +15,9 @@ from checks.validation.command_line import EXAMPLES, PATIENCE_S
 pytestmark = pytest.mark.needs("browser")
 SCENE = str(EXAMPLES / "b7206.toml")
 #: Title of the scene that the tests share.
-SCRIPT = "<img src=x onerror='window.hacked=1'><script>window.hacked=1</script>{{constructor.constructor('window.hacked=1')()}}"
+SCRIPT = (
+    "<img src=x onerror='window.hacked=1'><script>window.hacked=1</script>{{constructor.constructor('window.hacked=1')()}}"
+)
 
 
 @pytest.fixture(scope="module")
