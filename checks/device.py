@@ -18,14 +18,10 @@ ROOT = Path(__file__).resolve().parents[1]
 #: Rows of the table: what is measured, and what is asked of it.
 ROWS = {
     "kernels against the processor, a ball between two sectors, 20 steps": "1e-12 of their size",
-    "step of 1.06 M elements with contact and friction": "200 us",
-    "a turn at the natural step": "900 s",
-    "a turn at 3 ns": "300 s",
-    "two runs": "equal bits",
-    "energy drift over a turn at 3 ns": "1e-3",
-    "K against implicit steps": "0.5 %",
-    "memory of the device": "4 GB",
-}
+    "step of 1.06 M elements with contact and friction": "200 us", "a turn at the natural step": "900 s",
+    "a turn at 3 ns": "300 s", "two runs": "equal bits", "energy drift over a turn at 3 ns": "1e-3",
+    "K against implicit steps": "0.5 %", "memory of the device": "4 GB",
+}  # fmt: skip
 #: Steps that are timed after those that compile, of the length [s] that changes the state a little.
 _TIMED, _WARM, _STEP = 2000, 20, 1e-10
 _TURN_S, _NATURAL = 4e-3, 0.971e-9

@@ -25,35 +25,27 @@ def said_kind(tables, kind="auto"):
     return {**tables, "integrator": {**tables["integrator"], "kind": kind}}
 
 
-@pytest.mark.parametrize(
-    "tables",
-    [
-        {},
-        {"integrator": {"kind": "auto"}},
-        {"supports": {"tilt": "free"}, "excitation": {**FORCE, "kind": "unidirectional"}},
-        {"identifier": {"kind": "impedance_fit", "speeds_rpm": [9000.0, 12000.0]}},
-        {"contact": {"kind": "film", "oil": "VG 46", "temperature_c": 60.0, "roughness": 2e-7}},
-        {"bodies": {"kind": "condensed"}},
-        {"kinematics": {"orbiting": True}},
-    ],
-)
+@pytest.mark.parametrize("tables", [
+    {}, {"integrator": {"kind": "auto"}},
+    {"supports": {"tilt": "free"}, "excitation": {**FORCE, "kind": "unidirectional"}},
+    {"identifier": {"kind": "impedance_fit", "speeds_rpm": [9000.0, 12000.0]}},
+    {"contact": {"kind": "film", "oil": "VG 46", "temperature_c": 60.0, "roughness": 2e-7}},
+    {"bodies": {"kind": "condensed"}}, {"kinematics": {"orbiting": True}},
+])  # fmt: skip
 def test_what_repeats_and_forgets_is_solved_for(tables):
     assert chosen(**tables)["kind"] == "periodic"
 
 
-@pytest.mark.parametrize(
-    ("tables", "word"),
-    [
-        ({"integrator": {"turns": 12}}, "`integrator.turns`"),
-        ({"integrator": {"steps_per_turn": 90}}, "`integrator.steps_per_turn`"),
-        ({"integrator": {"kind": "auto", "start": "ramp"}}, "`integrator.start`"),
-        ({"excitation": {**FORCE, "ramp_turns": 3.0}}, "grows from zero"),
-        ({"excitation": RUN_UP, "identifier": {"kind": "order_tracking"}}, "does not repeat"),
-        ({"contact": {"friction": 0.05}}, "friction"),
-        ({"kinematics": {"orbiting": True}, "load": {"axial": 1000.0, "radial": [100.0, 0.0]}}, "orbiting"),
-        ({"bodies": {"kind": "condensed"}, "contact": {"kind": "penalty", "discretisation": "nodal"}}, "not compiled"),
-    ],
-)
+@pytest.mark.parametrize(("tables", "word"), [
+    ({"integrator": {"turns": 12}}, "`integrator.turns`"),
+    ({"integrator": {"steps_per_turn": 90}}, "`integrator.steps_per_turn`"),
+    ({"integrator": {"kind": "auto", "start": "ramp"}}, "`integrator.start`"),
+    ({"excitation": {**FORCE, "ramp_turns": 3.0}}, "grows from zero"),
+    ({"excitation": RUN_UP, "identifier": {"kind": "order_tracking"}}, "does not repeat"),
+    ({"contact": {"friction": 0.05}}, "friction"),
+    ({"kinematics": {"orbiting": True}, "load": {"axial": 1000.0, "radial": [100.0, 0.0]}}, "orbiting"),
+    ({"bodies": {"kind": "condensed"}, "contact": {"kind": "penalty", "discretisation": "nodal"}}, "not compiled"),
+])  # fmt: skip
 def test_else_the_motion_is_integrated_and_the_plan_says_why(tables, word):
     assert (found := chosen(**tables))["kind"] == "newmark" and word in found["why"]
 

@@ -102,19 +102,13 @@ def test_balls_of_a_grade_differ_by_the_variation_of_their_lot():
 
 
 BAD = [
-    ({"class": "P4"}, "changes nothing here"),
-    ({"class": "P3"}, "must be one of Normal"),
-    ({"balls": "5"}, "must be one of G3"),
-    (["class=P4", "class=P5"], "changes nothing here"),
-    ({}, "none is given"),
-    (["load.axial"], "KEY=TEXT"),
-    ({"load.axial": "10"}, "must be text such as"),
-    ({"load.axial": "±0 N"}, "empty"),
-    ({"load.axial": "±1 m"}, "must be text such as"),
-    ({"bearing.ball_count": "±1"}, "no continuous key"),
-    ({"bearing.conformity_inner": "±0.1"}, "reaches 0.422"),
+    ({"class": "P4"}, "changes nothing here"), ({"class": "P3"}, "must be one of Normal"),
+    ({"balls": "5"}, "must be one of G3"), (["class=P4", "class=P5"], "changes nothing here"),
+    ({}, "none is given"), (["load.axial"], "KEY=TEXT"), ({"load.axial": "10"}, "must be text such as"),
+    ({"load.axial": "±0 N"}, "empty"), ({"load.axial": "±1 m"}, "must be text such as"),
+    ({"bearing.ball_count": "±1"}, "no continuous key"), ({"bearing.conformity_inner": "±0.1"}, "reaches 0.422"),
     (["load.axial=±1 N", "load.axial=±2 N"], "two tolerances"),
-]
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("given", "words"), BAD)

@@ -61,23 +61,19 @@ def small(monkeypatch: pytest.MonkeyPatch) -> None:
 TURNING = {"load.axial": [300.0, 2000.0], "kinematics.spin_speed_rpm": [0.0, 1000.0, 24000.0], "load.radial[1]": [0.0, 30.0]}
 
 
-@pytest.mark.parametrize(
-    "changes, axes",
-    [
-        ({}, TURNING),
-        ({"supports": {"tilt": "locked"}, "contact": {"kind": "hertz", "damping": 0.01}}, {"load.axial": [300.0, 800.0]}),
-        (
-            {"bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distance": 0.016}},
-            {"bearing.preload": [200.0, 600.0], "bearing.contact_angle_deg": [14.0, 16.0]},
-        ),
-        (ROTATING, {"excitation.speed_rpm": [10_980.0, 15_000.0], "load.axial": [600.0, 2000.0]}),
-        (
-            {**ROTATING, "excitation": {"kind": "unidirectional", "speed_rpm": 9000.0, "unbalance": 1e-4}},
-            {"load.axial": [1500.0, 2000.0]},
-        ),
-    ],
-    ids=["speeds", "damped", "pair", "rotating", "to and fro"],
-)
+@pytest.mark.parametrize("changes, axes", [
+    ({}, TURNING),
+    ({"supports": {"tilt": "locked"}, "contact": {"kind": "hertz", "damping": 0.01}}, {"load.axial": [300.0, 800.0]}),
+    (
+        {"bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distance": 0.016}},
+        {"bearing.preload": [200.0, 600.0], "bearing.contact_angle_deg": [14.0, 16.0]},
+    ),
+    (ROTATING, {"excitation.speed_rpm": [10_980.0, 15_000.0], "load.axial": [600.0, 2000.0]}),
+    (
+        {**ROTATING, "excitation": {"kind": "unidirectional", "speed_rpm": 9000.0, "unbalance": 1e-4}},
+        {"load.axial": [1500.0, 2000.0]},
+    ),
+], ids=["speeds", "damped", "pair", "rotating", "to and fro"])  # fmt: skip
 def test_computed_points_are_what_runs_give(changes: dict[str, Any], axes: dict[str, Any]) -> None:
     """1e-9 of every number that a run has, and no number more."""
     tables = {**STATIC, **changes}
@@ -218,18 +214,14 @@ def test_designs_fill_their_ranges() -> None:
         rw.sweep(STATIC, [{"load.axial": 300.0}], design="sobol:8")
 
 
-@pytest.mark.parametrize(
-    "words, message",
-    [
-        (["--design", "sobol:9", "--range", "load.axial=1:2"], "N a power of 2 such as 1024"),
-        (["--design", "halton:8", "--range", "load.axial=1:2"], "must be sobol:N"),
-        (["--range", "load.axial=1:2"], "must be sobol:N"),
-        (["--design", "lhs:8"], "are missing: lhs:8 fills ranges"),
-        (["--design", "lhs:8", "--range", "load.axial=2:1"], "must be a range low:high of numbers"),
-        (["--grid", "load.axial=1:2:2", "--plot", "kyy", "--kind", "map"], "takes two axes with numbers"),
-        (["--grid", "load.axial=1:2:2", "--plot", "kxz"], "is not a quantity of this sweep"),
-    ],
-)
+@pytest.mark.parametrize("words, message", [
+    (["--design", "sobol:9", "--range", "load.axial=1:2"], "N a power of 2 such as 1024"),
+    (["--design", "halton:8", "--range", "load.axial=1:2"], "must be sobol:N"),
+    (["--range", "load.axial=1:2"], "must be sobol:N"), (["--design", "lhs:8"], "are missing: lhs:8 fills ranges"),
+    (["--design", "lhs:8", "--range", "load.axial=2:1"], "must be a range low:high of numbers"),
+    (["--grid", "load.axial=1:2:2", "--plot", "kyy", "--kind", "map"], "takes two axes with numbers"),
+    (["--grid", "load.axial=1:2:2", "--plot", "kxz"], "is not a quantity of this sweep"),
+])  # fmt: skip
 def test_what_cannot_be_given_is_refused_before_anything_is_computed(words: list[str], message: str, tmp_path: Path) -> None:
     (tmp_path / "s.toml").write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1.0\n')
     refused = invoke("sweep", tmp_path / "s.toml", *words, "--out", tmp_path / "s")

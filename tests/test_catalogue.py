@@ -167,17 +167,14 @@ def test_a_result_says_what_is_inferred_unless_the_user_gave_it():
     assert run({**static, "bearing": {"preset": "B7206C"}}).geometry["stiffness_error"] == 0.045
 
 
-@pytest.mark.parametrize(
-    ("bearing", "maker", "parts"),
-    [
-        ({"preset": "7008C"}, None, "inferred geometry, other makers"),
-        ({"preset": "HC7008-C", "maker": "NTN"}, "NTN", "inferred geometry"),
-        ({"preset": "7008UADG/GNP42"}, "NTN", "inferred geometry"),
-        ({"preset": "6205"}, None, "inferred geometry, clearance class, other makers"),
-        ({"preset": "6205/C3", "conformity_inner": 0.52, "conformity_outer": 0.52}, None, "clearance class, other makers"),
-        ({"preset": "6205", "maker": "NSK", "radial_clearance": 1e-5}, "NSK", "inferred geometry"),
-    ],
-)
+@pytest.mark.parametrize(("bearing", "maker", "parts"), [
+    ({"preset": "7008C"}, None, "inferred geometry, other makers"),
+    ({"preset": "HC7008-C", "maker": "NTN"}, "NTN", "inferred geometry"),
+    ({"preset": "7008UADG/GNP42"}, "NTN", "inferred geometry"),
+    ({"preset": "6205"}, None, "inferred geometry, clearance class, other makers"),
+    ({"preset": "6205/C3", "conformity_inner": 0.52, "conformity_outer": 0.52}, None, "clearance class, other makers"),
+    ({"preset": "6205", "maker": "NSK", "radial_clearance": 1e-5}, "NSK", "inferred geometry"),
+])  # fmt: skip
 def test_a_result_says_whose_geometry_it_is_and_which_key_would_make_it_sure(bearing, maker, parts):
     geometry = run({"bearing": bearing, "load": {"axial": 400.0}}).geometry
     assert (geometry["maker"], ", ".join(part["part"] for part in geometry["data"])) == (maker, parts)

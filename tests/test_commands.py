@@ -105,19 +105,6 @@ QUICK = {"plan", "dev plugins", "dev new-plugin", "dev new-scene", "dev schema",
 
 #: Commands with a scene of their own, those that write more than their answer, and what a quicker one does, too: no run of theirs is repeated in quick tests.
 SLOW = {"study article", "fit, signals", "catalogue --infer, table"}
-#: What a screen must name, whatever its words.
-TOLD = {
-    "run": ("tangent kxx, kyy", "numerical error of K", "|Z|", "equivalent stiffness K", "equivalent damping C", "orbit"),
-    "run, static": ("Answer at rest", "kyy tilts follow"),
-    "plan": ("Included", "Left out", "degrees of freedom", "time step", "wall time"),
-    "compare": ("bidirectional",),
-    "verify": ("within their tolerance",),
-    "export": ("moments by translation", "r/min"),
-    "export --fmu": ("error at most", "400 to 2000"),
-    "view --mesh": ("scaled Jacobian", "balls (12)", "contact patch"),
-    "dev plugins": ("newmark", "hertz"),
-    "dev new-scene": ("raceway run",),
-}
 #: Commands about this installation, and those whose answer is run time.
 UNRECORDED = {"dev cache", "dev plugins", "dev schema", "precision"}
 #: Studies that go on where they were stopped.
@@ -304,8 +291,6 @@ def test_a_screen_fits_80_columns_and_breaks_no_number(name, seen, folder):
         assert not OLD_UNITS.findall("\n".join(told).replace("_rpm", ""))
     if shown:
         assert all(line in found.stdout.replace("\u00a0", " ") for line in narrow if line.strip())
-    text = " ".join(found.stdout.split())
-    assert not [words for words in TOLD.get(name, ()) if words not in text]
     assert name != "view" or {"bearing.png", "contacts.png", "ball-loads.png"} <= {*whole_files(place(name, folder))}
     assert whole_files(place(name, folder)) or "--out" not in COMMANDS[name]
     assert name in UNRECORDED or not differences(f"command {name}", {"printed": wide, **files_of(name, folder)})

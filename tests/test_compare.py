@@ -45,41 +45,26 @@ def test_lists_and_ranges():
     assert [list(p.values()) for p in points(parse_axes(["a.b=1,2", "a.c=3,4"]))] == [[1, 3], [1, 4], [2, 3], [2, 4]]
 
 
-@pytest.mark.parametrize(
-    ("vary", "word"),
-    [
-        (["load.axial="], "no values"),
-        (["load.axial"], "form"),
-        (["=1,2"], "form"),
-        (["load.axial=1,,2"], "empty entry"),
-        (["load.axial=1,1.0"], "duplicated"),
-        (["load.axial=1:2:0"], "at least 1"),
-        (["load.axial=1:2:2.5"], "whole number"),
-        (["load.axial=1:x:3"], "finite number"),
-        (["load.axial=1:nan:3"], "finite number"),
-        (["load.axial=1:2"], "not a range"),
-        (["load.axial=1:2:3,4"], "mixes"),
-        (["load.axial=1,2", "load.axial=3,4"], "varied twice"),
-        (["bearing.preset=a,b", "bearing=c,d"], "overlaps"),
-        ([f"load.axial=1:2:{MOST_POINTS}", "rotor.mass=1,2"], "fewer values"),
-        ([], "nothing is varied"),
-    ],
-)
+@pytest.mark.parametrize(("vary", "word"), [
+    (["load.axial="], "no values"), (["load.axial"], "form"), (["=1,2"], "form"),
+    (["load.axial=1,,2"], "empty entry"), (["load.axial=1,1.0"], "duplicated"),
+    (["load.axial=1:2:0"], "at least 1"), (["load.axial=1:2:2.5"], "whole number"),
+    (["load.axial=1:x:3"], "finite number"), (["load.axial=1:nan:3"], "finite number"),
+    (["load.axial=1:2"], "not a range"), (["load.axial=1:2:3,4"], "mixes"),
+    (["load.axial=1,2", "load.axial=3,4"], "varied twice"), (["bearing.preset=a,b", "bearing=c,d"], "overlaps"),
+    ([f"load.axial=1:2:{MOST_POINTS}", "rotor.mass=1,2"], "fewer values"), ([], "nothing is varied"),
+])  # fmt: skip
 def test_bad_axes_name_the_axis_and_the_rule(vary, word):
     with pytest.raises(SceneError, match=word) as caught:
         parse_axes(vary)
     assert all(m.path for m in caught.value.mistakes)
 
 
-@pytest.mark.parametrize(
-    ("vary", "word"),
-    [
-        ("load.axail=1,2", "did you mean 'axial'"),
-        ("supports.tilt=locked,fre", "did you mean 'free'"),
-        ("excitation.kind=bidirectional,unidirectionel", "did you mean 'unidirectional'"),
-        ("kinematics.ball_inertia=false,no", "true or false"),
-    ],
-)
+@pytest.mark.parametrize(("vary", "word"), [
+    ("load.axail=1,2", "did you mean 'axial'"), ("supports.tilt=locked,fre", "did you mean 'free'"),
+    ("excitation.kind=bidirectional,unidirectionel", "did you mean 'unidirectional'"),
+    ("kinematics.ball_inertia=false,no", "true or false"),
+])  # fmt: skip
 def test_mistakes_in_the_scene_are_found_before_anything_runs(vary, word, monkeypatch):
     monkeypatch.setattr(study, "run", lambda *_: pytest.fail("it ran"))
     with pytest.raises(SceneError, match=word):
@@ -324,14 +309,11 @@ def _with_intervals(made, parts_of):
     return attrs.evolve(made, rows=tuple(rows))
 
 
-@pytest.mark.parametrize(
-    ("data", "numerical", "said"),
-    [
-        ((-0.1, 0.2), 1e-6, "both (K within -10 to +20 %); difference within +- 0.00014 %"),
-        ((0.0, 0.0), 1e-4, "neither (K within +- 0.01 %); difference within +- 0.014 %"),
-        ((-0.008, 0.006), 1e-6, "both at 2 of 3 points (K within -0.8 to +0.6 %); difference within +- 0.00014 %"),
-    ],
-)
+@pytest.mark.parametrize(("data", "numerical", "said"), [
+    ((-0.1, 0.2), 1e-6, "both (K within -10 to +20 %); difference within +- 0.00014 %"),
+    ((0.0, 0.0), 1e-4, "neither (K within +- 0.01 %); difference within +- 0.014 %"),
+    ((-0.008, 0.006), 1e-6, "both at 2 of 3 points (K within -0.8 to +0.6 %); difference within +- 0.00014 %"),
+])  # fmt: skip
 def test_the_first_sentence_sets_the_difference_of_two_models_against_their_intervals(data, numerical, said):
     """By 0.25, 0.5 and 1 %, where an interval of both is wide, narrow, or between these; on the picture stands the same."""
     axes = ["excitation.kind=unidirectional,bidirectional", "excitation.speed_rpm=9000:15000:3"]

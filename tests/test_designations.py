@@ -7,25 +7,15 @@ from raceway import SceneError
 
 #: Designation: name in the catalogue, contact angle [deg], clearance class, class of ISO 492, ceramic balls.
 KNOWN = {
-    "7206 CD/P4A": ("7206C", 15, "", "P4", ""),
-    "B7206-C-T-P4S": ("B7206C", 15, "", "P4", ""),
-    "HCB7014-E-2RSD-T-P4S-UL": ("7014A5", 25, "", "P4", "Si3N4"),
-    "7014 CE/HCP4A": ("7014C", 15, "", "P4", "Si3N4"),
-    "71914 ACD/P4A": ("7914A5", 25, "", "P4", ""),
-    "7014CTYNSULP4": ("7014C", 15, "", "P4", ""),
-    "7008UCG/GNP42": ("7008UC", 14.522, "", "P4", ""),
-    "7008UADG/GLP42": ("7008UAD", 24.834, "", "P4", ""),
-    "6205-2RS": ("6205", 0, "", "", ""),
-    "6201-2Z": ("6201", 0, "", "", ""),
-    "6205-2RS/C3": ("6205", 0, "C3", "", ""),
-    "6205DDUC3": ("6205", 0, "C3", "", ""),
-    "6205 c2": ("6205", 0, "C2", "", ""),
-    "6805ZZ": ("61805", 0, "", "", ""),
-    "6905": ("61905", 0, "", "", ""),
-    "685": ("618/5", 0, "", "", ""),
-    "62/22-2RS": ("62/22", 0, "", "", ""),
-    "W 6204-2RS1/C4": ("6204", 0, "C4", "", ""),
-}
+    "7206 CD/P4A": ("7206C", 15, "", "P4", ""), "B7206-C-T-P4S": ("B7206C", 15, "", "P4", ""),
+    "HCB7014-E-2RSD-T-P4S-UL": ("7014A5", 25, "", "P4", "Si3N4"), "7014 CE/HCP4A": ("7014C", 15, "", "P4", "Si3N4"),
+    "71914 ACD/P4A": ("7914A5", 25, "", "P4", ""), "7014CTYNSULP4": ("7014C", 15, "", "P4", ""),
+    "7008UCG/GNP42": ("7008UC", 14.522, "", "P4", ""), "7008UADG/GLP42": ("7008UAD", 24.834, "", "P4", ""),
+    "6205-2RS": ("6205", 0, "", "", ""), "6201-2Z": ("6201", 0, "", "", ""), "6205-2RS/C3": ("6205", 0, "C3", "", ""),
+    "6205DDUC3": ("6205", 0, "C3", "", ""), "6205 c2": ("6205", 0, "C2", "", ""),
+    "6805ZZ": ("61805", 0, "", "", ""), "6905": ("61905", 0, "", "", ""), "685": ("618/5", 0, "", "", ""),
+    "62/22-2RS": ("62/22", 0, "", "", ""), "W 6204-2RS1/C4": ("6204", 0, "C4", "", ""),
+}  # fmt: skip
 WITH_FITS = {
     "mounting": {"shaft_interference": 5e-6}, "tolerances": {"load.axial": "±10 %"}, "load": {"axial": 1000.0}
 }  # fmt: skip
@@ -88,19 +78,13 @@ def test_the_class_acts_in_tolerances_with_fits():
     assert "class" not in rw.scene_from_dict(loose).source["tolerances"]
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("30206", "is a tapered roller bearing, which Raceway does not compute"),
-        ("32006-X", "is a tapered roller bearing"),
-        ("22210 E", "is a spherical roller bearing"),
-        ("51105", "is a thrust bearing"),
-        ("7014", "C is 15, AC or A5 25, A 30 deg: say which); the nearest: 7014C, 7014A, "),
-        ("7206 BEP", "40 deg is not in the catalogue); the nearest: "),
-        ("6205XQ", "no such preset; the nearest: 6205, "),
-        ("6399", "no such preset; the nearest: "),
-    ],
-)
+@pytest.mark.parametrize(("text", "words"), [
+    ("30206", "is a tapered roller bearing, which Raceway does not compute"), ("32006-X", "is a tapered roller bearing"),
+    ("22210 E", "is a spherical roller bearing"), ("51105", "is a thrust bearing"),
+    ("7014", "C is 15, AC or A5 25, A 30 deg: say which); the nearest: 7014C, 7014A, "),
+    ("7206 BEP", "40 deg is not in the catalogue); the nearest: "), ("6205XQ", "no such preset; the nearest: 6205, "),
+    ("6399", "no such preset; the nearest: "),
+])  # fmt: skip
 def test_what_is_not_known_is_refused_with_the_nearest(text, words):
     with pytest.raises(SceneError) as caught:
         rw.scene_from_dict({"bearing": {"preset": text}})

@@ -197,16 +197,12 @@ def test_completion_knows_commands():
     assert "plain,plan\n" in completion("bash_complete", COMP_WORDS="raceway pl", COMP_CWORD="1")
 
 
-@pytest.mark.parametrize(
-    ("begun", "completed"),
-    [
-        ("bearing.pres", {"bearing.preset"}),
-        ("bearing.preset=B7206", {"bearing.preset=B7206C", "bearing.preset=B7206E"}),
-        ("contact.kind=h", {"contact.kind=hertz"}),
-        ("supports.tilt=", {"supports.tilt=locked", "supports.tilt=free"}),
-        ("load.axail", set()),
-    ],
-)
+@pytest.mark.parametrize(("begun", "completed"), [
+    ("bearing.pres", {"bearing.preset"}),
+    ("bearing.preset=B7206", {"bearing.preset=B7206C", "bearing.preset=B7206E"}),
+    ("contact.kind=h", {"contact.kind=hertz"}), ("supports.tilt=", {"supports.tilt=locked", "supports.tilt=free"}),
+    ("load.axail", set()),
+])  # fmt: skip
 def test_keys_and_their_words_are_completed(begun, completed):
     lines = completion("zsh_complete", COMP_WORDS=f"raceway run --set {begun}", COMP_CWORD="3").splitlines()
     assert completed <= set(lines) and all(line.startswith(begun) for line in lines[1::3])

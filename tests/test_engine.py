@@ -9,24 +9,14 @@ import pytest
 from checks.validation.scenes import built_in
 from raceway import RacewayError
 from raceway.extend import Item, work_through, written
-from raceway.testing import Registry, default_registry
+from raceway.testing import default_registry
+from tests.deadly_work import deadly, squared
 
 Processes = built_in("executor", "processes")
 Serial = built_in("executor", "serial")
 
 REGISTRY = default_registry()
 ITEMS = [Item(f"key {number}", f"number {number}", number) for number in range(6)]
-
-
-def squared(number, registry):
-    assert isinstance(registry, Registry)
-    return {"square": number**2, "process": os.getpid()}
-
-
-def deadly(number, registry):
-    if number == 3:
-        os._exit(11)
-    return squared(number, registry)
 
 
 @pytest.mark.parametrize("executor", [Serial(), pytest.param(Processes(workers=2), marks=pytest.mark.slow)])

@@ -158,17 +158,14 @@ def fails(fault):
     return duty
 
 
-@pytest.mark.parametrize(
-    ("duty", "answer", "words"),
-    [
-        ("faults", lambda *_: None, "faults() returned NoneType; it must be list"),
-        ("traits", fails(SystemExit(3)), "traits() raises SystemExit: 3"),
-        ("stable_step", lambda *_: "short", "stable_step() returned str; it must be float or None"),
-        ("cost", fails(ValueError("no idea")), "cost() raises ValueError: no idea"),
-        ("build", lambda *_: 7, "build() returned int; it must be a raceway.extend.BuiltBearing"),
-        ("build", fails(KeyError("x")), "build() raises KeyError: 'x'"),
-    ],
-)
+@pytest.mark.parametrize(("duty", "answer", "words"), [
+    ("faults", lambda *_: None, "faults() returned NoneType; it must be list"),
+    ("traits", fails(SystemExit(3)), "traits() raises SystemExit: 3"),
+    ("stable_step", lambda *_: "short", "stable_step() returned str; it must be float or None"),
+    ("cost", fails(ValueError("no idea")), "cost() raises ValueError: no idea"),
+    ("build", lambda *_: 7, "build() returned int; it must be a raceway.extend.BuiltBearing"),
+    ("build", fails(KeyError("x")), "build() raises KeyError: 'x'"),
+])  # fmt: skip
 def test_a_broken_duty_of_bodies_names_the_kind(duty, answer, words):
     own = attrs.frozen(type("Own", (built_in("bodies", "rigid"),), {"name": "own", duty: answer}))
     scene = load_scene(MINIMAL, ["integrator.kind=central_difference"])

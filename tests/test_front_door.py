@@ -190,15 +190,11 @@ class Page(HTMLParser):
 
 def shown(moving, static):
     return {
-        "result": moving,
-        "static result": static,
-        "scene": moving.model.scene,
+        "result": moving, "static result": static, "scene": moving.model.scene,
         "scene with everything": rw.Scene.from_dict(rw.load_scene(SCENE).to_dict()),
-        "plan": rw.plan(SCENE),
-        "static plan": rw.plan(STATIC),
-        "check": rw.check(SCENE),
+        "plan": rw.plan(SCENE), "static plan": rw.plan(STATIC), "check": rw.check(SCENE),
         "mistakes": rw.check(b7206c(load={f"key_{k}": "x" * 300 for k in range(30)})),
-    }
+    }  # fmt: skip
 
 
 def test_every_object_shows_itself_in_15_lines_and_one_table(moving, static):

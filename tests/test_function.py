@@ -278,35 +278,24 @@ def test_tilts_follow_on_a_shaft_that_resists_about_both_axes() -> None:
     assert answer["kyy_tilts_follow"] == pytest.approx(k[1, 1] - k[1, 3:] @ np.linalg.solve(k[3:, 3:], k[3:, 1]), rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("tables", "key", "words"),
-    [
-        ({}, "bearing.conformity_inner", "changes the finite elements"),
-        ({"contact": {"discretisation": "nodal"}}, "load.axial", "surface points"),
-        ({"supports": {"inner_seat": 1e12}}, "load.axial", "interact through elastic rings"),
-    ],
-)
+@pytest.mark.parametrize(("tables", "key", "words"), [
+    ({}, "bearing.conformity_inner", "changes the finite elements"),
+    ({"contact": {"discretisation": "nodal"}}, "load.axial", "surface points"),
+    ({"supports": {"inner_seat": 1e12}}, "load.axial", "interact through elastic rings"),
+])  # fmt: skip
 def test_condensed_bodies_that_points_do_not_share(tables: Tables, key: str, words: str) -> None:
     f = rw.function({**STATIC, "bodies": {"kind": "condensed"}, **tables}, [key], ["kyy"])
     assert words in f.why_slow
 
 
-@pytest.mark.parametrize(
-    ("inputs", "outputs", "words"),
-    [
-        (["load.axail"], ["kyy"], r"did you mean 'load\.axial'"),
-        (["bearing.ball_count"], ["kyy"], "whole numbers only"),
-        (["supports.tilt"], ["kyy"], "takes a word or a switch"),
-        (["integrator.turns"], ["kyy"], "setting of a method"),
-        (["load.axial", "load.axial"], ["kyy"], "is an input twice"),
-        ([], ["kyy"], "are empty"),
-        (["load.axial"], ["kyyy"], "did you mean 'kyy'"),
-        (["load.axial"], ["K"], "is of a motion"),
-        (None, ["kyy"], "`inputs`: must be text"),
-        (5, ["kyy"], "`inputs` = 5: must be text"),
-        (["load.axial"], [["kyy"]], "`outputs` = .*must be text"),
-    ],
-)
+@pytest.mark.parametrize(("inputs", "outputs", "words"), [
+    (["load.axail"], ["kyy"], r"did you mean 'load\.axial'"), (["bearing.ball_count"], ["kyy"], "whole numbers only"),
+    (["supports.tilt"], ["kyy"], "takes a word or a switch"), (["integrator.turns"], ["kyy"], "setting of a method"),
+    (["load.axial", "load.axial"], ["kyy"], "is an input twice"), ([], ["kyy"], "are empty"),
+    (["load.axial"], ["kyyy"], "did you mean 'kyy'"), (["load.axial"], ["K"], "is of a motion"),
+    (None, ["kyy"], "`inputs`: must be text"), (5, ["kyy"], "`inputs` = 5: must be text"),
+    (["load.axial"], [["kyy"]], "`outputs` = .*must be text"),
+])  # fmt: skip
 def test_functions_that_are_refused(inputs: list[str], outputs: list[str], words: str) -> None:
     with pytest.raises(rw.SceneError, match=words):
         rw.function(STATIC, inputs, outputs)

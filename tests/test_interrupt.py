@@ -13,14 +13,13 @@ from pathlib import Path
 import click
 import pytest
 
-from checks.validation.command_line import ARTICLE, MINIMAL, PATIENCE_S, python, raceway
+from checks.validation.command_line import MINIMAL, PATIENCE_S, python
 from checks.validation.scenes import built_in
-from checks.validation.sessions import left, members
-from raceway import Answer, Command, RacewayError
+from checks.validation.sessions import left
+from raceway import Answer, Command
 from raceway.cli.interrupt import Interrupts, farewell
-from raceway.extend import Interrupted, Store, open_store
+from raceway.extend import Interrupted
 from raceway.plugins.executors import WATCH, deaf_to_terminals
-from raceway.points.store import connected, exists
 
 Processes = built_in("executor", "processes")
 
@@ -170,58 +169,6 @@ def test_nohup_is_respected():
             signal.raise_signal(signal.SIGHUP)
     finally:
         signal.signal(signal.SIGHUP, before)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGTERM])
-def test_a_sweep_that_is_asked_to_end_keeps_its_points_and_goes_on(number, tmp_path):
-    words = ["sweep", str(ARTICLE), "--set", "integrator.kind=newmark", "--grid", "load.axial=400:2000:30", "--out"]
-    command = [sys.executable, "-m", "raceway", *words, str(tmp_path / "s")]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
-    end = time.monotonic() + PATIENCE_S
-    done = 0
-    while not done and time.monotonic() < end:
-        time.sleep(0.05)
-        try:
-            with open_store(tmp_path / "s") as store:
-                done = store.status()["done"]
-        except RacewayError:
-            continue  # it is being made
-    process.send_signal(number)
-    error = process.communicate(timeout=PATIENCE_S)[1].decode()
-    assert process.returncode == CODES[number], error
-    assert error.count(f"stopped by {number.name}; no file is left half-written") == 1
-    assert "Traceback" not in error and len(error.strip().splitlines()) == 2, error  # and what is done of how many
-    assert not members(process.pid)
-    # In processes of their own, like the first points: with more threads a matrix product rounds otherwise.
-    found = raceway(*words, tmp_path / "s", "--resume", "--json")
-    whole = raceway(*words, tmp_path / "whole", "--json")
-    assert json.loads(found.stdout)["rows"] == json.loads(whole.stdout)["rows"]
-
-
-def stored(folder):
-    """Rows of a study that runs."""
-    if not exists(folder):
-        return 0
-    with Store(folder, connected(folder)) as store:
-        return store.counts()["done"]
-
-
-@pytest.mark.slow
-def test_a_study_in_processes_that_is_stopped_by_ctrl_c_tells_where_it_goes_on_and_leaves_none(tmp_path):
-    options = "--bodies rigid --friction 0 --processes 2 --no-pictures --json --out"
-    words = ["study", "article", *options.split(), tmp_path]
-    command = [sys.executable, "-m", "raceway", *map(str, words)]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
-    end = time.monotonic() + PATIENCE_S
-    while not stored(tmp_path) and time.monotonic() < end:
-        time.sleep(0.05)
-    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes of the command
-    error = process.communicate(timeout=PATIENCE_S)[1].decode()
-    assert process.returncode == 130, error
-    assert f"are in {tmp_path / 'points.sqlite'}; the same command continues" in error and "Traceback" not in error
-    assert not left(process.pid)  # the tracker of the executor's processes ends a moment after them
-    assert stored(tmp_path)
 
 
 WORKER = """

@@ -208,16 +208,11 @@ def test_balls_that_orbit_pass_the_same_pattern():
     assert rw.run(orbiting).quantities["l10r_million_revolutions"] == pytest.approx(fixed, rel=0.03)
 
 
-@pytest.mark.parametrize(
-    ("key", "value", "words"),
-    [
-        ("contamination", 1.2, "from 0 to 1"),
-        ("contamination", -0.1, "from 0 to 1"),
-        ("reliability", 0.89, "from 0.9 to 0.9995"),
-        ("reliability", 0.9999, "from 0.9 to 0.9995"),
-        ("viscosity_ratio", 0.0, "greater than 0"),
-    ],
-)
+@pytest.mark.parametrize(("key", "value", "words"), [
+    ("contamination", 1.2, "from 0 to 1"), ("contamination", -0.1, "from 0 to 1"),
+    ("reliability", 0.89, "from 0.9 to 0.9995"), ("reliability", 0.9999, "from 0.9 to 0.9995"),
+    ("viscosity_ratio", 0.0, "greater than 0"),
+])  # fmt: skip
 def test_options_out_of_range_are_refused(key, value, words):
     with pytest.raises(SceneError, match=words) as caught:
         rw.scene_from_dict({**B7206, "quantities": {"life": {key: value}}})

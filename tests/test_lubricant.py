@@ -27,18 +27,12 @@ def test_a_film_takes_the_oil_of_the_lubricant():
     assert dry.to_dict()["lubricant"]["oil"] == "VG 32" and "lubricant" not in scene().to_dict()
 
 
-@pytest.mark.parametrize(
-    ("tables", "words"),
-    [
-        (
-            {"contact": {"kind": "film", **OIL}, "lubricant": OIL},
-            "delete [lubricant], or contact.oil, contact.temperature_c",
-        ),
-        ({"contact": {"kind": "film"}}, "`contact`: no viscosity is given"),
-        ({"lubricant": {"density": 900.0}}, "`lubricant`: no viscosity is given"),
-        ({"lubricant": {"oil": "VG 33", "temperature_c": 40.0}}, "did you mean 'VG 32'?"),
-    ],
-)
+@pytest.mark.parametrize(("tables", "words"), [
+    ({"contact": {"kind": "film", **OIL}, "lubricant": OIL}, "delete [lubricant], or contact.oil, contact.temperature_c"),
+    ({"contact": {"kind": "film"}}, "`contact`: no viscosity is given"),
+    ({"lubricant": {"density": 900.0}}, "`lubricant`: no viscosity is given"),
+    ({"lubricant": {"oil": "VG 33", "temperature_c": 40.0}}, "did you mean 'VG 32'?"),
+])  # fmt: skip
 def test_mistakes_name_the_keys(tables, words):
     with pytest.raises(rw.SceneError) as caught:
         scene(**tables)

@@ -9,21 +9,18 @@ from raceway.storage import files as memory
 _MIB = 2**20
 
 
-@pytest.mark.parametrize(
-    ("line", "files", "left"),
-    [
-        ("0::/", {}, 3000.0),
-        ("0::/job", {"job/memory.max": "max", "job/memory.current": "7"}, 3000.0),
-        ("0::/job/task", {"job/memory.max": 1000, "job/memory.current": 800, "job/memory.stat": "inactive_file"}, 500.0),
-        (
-            "4:cpu,memory:/job",
-            {f"memory/job/memory.{name}": mib for name, mib in (("limit_in_bytes", 1000), ("usage_in_bytes", 800))}
-            | {"memory/job/memory.stat": "total_inactive_file"},
-            500.0,
-        ),
-        ("4:cpu:/job", {"memory/job/memory.limit_in_bytes": 1}, 3000.0),
-    ],
-)
+@pytest.mark.parametrize(("line", "files", "left"), [
+    ("0::/", {}, 3000.0),
+    ("0::/job", {"job/memory.max": "max", "job/memory.current": "7"}, 3000.0),
+    ("0::/job/task", {"job/memory.max": 1000, "job/memory.current": 800, "job/memory.stat": "inactive_file"}, 500.0),
+    (
+        "4:cpu,memory:/job",
+        {f"memory/job/memory.{name}": mib for name, mib in (("limit_in_bytes", 1000), ("usage_in_bytes", 800))}
+        | {"memory/job/memory.stat": "total_inactive_file"},
+        500.0,
+    ),
+    ("4:cpu:/job", {"memory/job/memory.limit_in_bytes": 1}, 3000.0),
+])  # fmt: skip
 def test_pages_of_the_file_cache_are_available_and_a_limit_of_a_group_holds(line, files, left, tmp_path: Path, monkeypatch):
     """Of 4000 MiB 200 are free and 3000 available; of a group's 1000 MiB 800 are in use, 300 of them files that are given back."""
     monkeypatch.setattr(memory, "_PROC", tmp_path)

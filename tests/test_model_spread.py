@@ -86,14 +86,11 @@ def test_what_is_stated_is_no_spread():
     assert rw.run(said).stiffness.tobytes() == rw.run({**STATIC, "kinematics": {}}).stiffness.tobytes()
 
 
-@pytest.mark.parametrize(
-    ("changes", "why"),
-    [
-        ({"kinematics": {"spin_speed_rpm": 0.0}}, "nothing turns"),
-        ({"kinematics": {"spin_speed_rpm": 100.0}}, "closed bound"),
-        ({"kinematics": {"spin_speed_rpm": 5000.0, "ball_inertia": False}}, "without kinematics.gyroscopic"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "why"), [
+    ({"kinematics": {"spin_speed_rpm": 0.0}}, "nothing turns"),
+    ({"kinematics": {"spin_speed_rpm": 100.0}}, "closed bound"),
+    ({"kinematics": {"spin_speed_rpm": 5000.0, "ball_inertia": False}}, "without kinematics.gyroscopic"),
+])  # fmt: skip
 def test_what_is_not_solved_says_why(changes, why):
     error = _of({**STATIC, **changes})
     assert why in error["how"]["model"]
@@ -132,20 +129,16 @@ def test_planning_decides_once_what_auto_stands_for_and_why():
 ROWS = {"row": [{"preset": "7014A", "direction": "-"}, {"preset": "7014C", "direction": "+"}]}
 
 
-@pytest.mark.parametrize(
-    ("tables", "why"),
-    [
-        ({"kinematics": {}}, "nothing turns"),
-        ({"kinematics": {"ball_inertia": False, "spin_speed_rpm": 5000.0}}, "centrifugal force"),
-        ({"contact": {"friction": 0.1}}, "contacts that stick"),
-        ({"bearing": ROWS}, "different bearings"),
-        (
-            {"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured", "element_size": 4e-3, "nodes_per_semi_axis": 1}},
-            "do not rotate",
-        ),
-        (EXAMPLES / "cylindrical_rollers.toml", "no gyroscopic moment"),
-    ],
-)
+@pytest.mark.parametrize(("tables", "why"), [
+    ({"kinematics": {}}, "nothing turns"),
+    ({"kinematics": {"ball_inertia": False, "spin_speed_rpm": 5000.0}}, "centrifugal force"),
+    ({"contact": {"friction": 0.1}}, "contacts that stick"), ({"bearing": ROWS}, "different bearings"),
+    (
+        {"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured", "element_size": 4e-3, "nodes_per_semi_axis": 1}},
+        "do not rotate",
+    ),
+    (EXAMPLES / "cylindrical_rollers.toml", "no gyroscopic moment"),
+])  # fmt: skip
 def test_where_moments_cannot_be_computed_auto_leaves_them_out_and_says_why(tables, why):
     scene = {**STATIC, **tables} if isinstance(tables, dict) else tables
     problem = rw.make_plan(rw.evolve(scene, {"kinematics.gyroscopic": "auto"})).problem

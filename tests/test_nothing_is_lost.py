@@ -78,13 +78,10 @@ def recorded(folder, y):
 WAVE = 1e-5 * np.cos(2.0 * np.pi * 200.003 * np.arange(4000) / 20_000.0)
 
 
-@pytest.mark.parametrize(
-    ("signal", "words"),
-    [
-        (np.minimum(WAVE, 0.8e-5), "of all samples of y lie at the top of its range, 8 µm: the signal is clipped"),
-        (np.maximum(WAVE, -0.95e-5), "of all samples of y lie at the bottom"),
-    ],
-)
+@pytest.mark.parametrize(("signal", "words"), [
+    (np.minimum(WAVE, 0.8e-5), "of all samples of y lie at the top of its range, 8 µm: the signal is clipped"),
+    (np.maximum(WAVE, -0.95e-5), "of all samples of y lie at the bottom"),
+])  # fmt: skip
 def test_a_signal_that_is_cut_off_is_refused(tmp_path, signal, words):
     with pytest.raises(SceneError, match=words):
         recording_of(signals_of(recorded(tmp_path, signal)))

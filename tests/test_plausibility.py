@@ -180,14 +180,11 @@ def test_a_contact_pressure_beyond_static_ratings_is_told():
     assert not any(w.startswith("the contact pr") for w in moving)
 
 
-@pytest.mark.parametrize(
-    ("tables", "words"),
-    [
-        ({"contact": {"friction": 1.5}}, "`contact.friction` = 1.5 is more than 1: "),
-        ({"rotor": {"mass": 1e6}}, "`rotor.mass` = 1e+06 kg is more than 10000 kg"),
-        ({"mounting": {"shaft_interference": 2.0}}, None),
-    ],
-)
+@pytest.mark.parametrize(("tables", "words"), [
+    ({"contact": {"friction": 1.5}}, "`contact.friction` = 1.5 is more than 1: "),
+    ({"rotor": {"mass": 1e6}}, "`rotor.mass` = 1e+06 kg is more than 10000 kg"),
+    ({"mounting": {"shaft_interference": 2.0}}, None),
+])  # fmt: skip
 def test_implausible_numbers_are_told(tables, words):
     if words is None:  # so large a fit is refused before
         with pytest.raises(SceneError, match="close the bearing"):
@@ -262,17 +259,14 @@ def test_a_full_standard_output_ends_with_one_line_and_no_traceback(tmp_path):
     assert "Traceback" not in done.stderr and done.stderr.count("No space left") == 1
 
 
-@pytest.mark.parametrize(
-    ("changes", "told"),
-    [
-        ({"identifier": {"kind": "tangent"}, "integrator": {"turns": 5}}, "`integrator.turns` has no effect"),
-        ({"integrator": {"kind": "quasi_static"}, "rotor": {"mass": 2.0}}, "`rotor.mass` has no effect"),
-        ({"integrator": {"kind": "quasi_static"}, "contact": {"damping": 5.0}}, "`contact.damping` has no effect"),
-        ({"contact": {"stick_stiffness": 1e7}}, "`contact.stick_stiffness` has no effect"),
-        ({"rotor": {"polar_inertia": 1e-3}}, "`rotor.polar_inertia` has no effect"),
-        ({"bearing": {"row_distance": 0.02}}, "`bearing.row_distance` has no effect"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "told"), [
+    ({"identifier": {"kind": "tangent"}, "integrator": {"turns": 5}}, "`integrator.turns` has no effect"),
+    ({"integrator": {"kind": "quasi_static"}, "rotor": {"mass": 2.0}}, "`rotor.mass` has no effect"),
+    ({"integrator": {"kind": "quasi_static"}, "contact": {"damping": 5.0}}, "`contact.damping` has no effect"),
+    ({"contact": {"stick_stiffness": 1e7}}, "`contact.stick_stiffness` has no effect"),
+    ({"rotor": {"polar_inertia": 1e-3}}, "`rotor.polar_inertia` has no effect"),
+    ({"bearing": {"row_distance": 0.02}}, "`bearing.row_distance` has no effect"),
+])  # fmt: skip
 def test_keys_that_change_nothing_are_told(changes, told):
     assert any(told in text for text in computed(**changes).warnings)
     assert not any("has no effect" in text for text in computed().warnings)

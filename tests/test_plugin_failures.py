@@ -235,18 +235,13 @@ def test_one_off_file(tmp_path):
         registry.find("contact_law", "one_off")
 
 
-@pytest.mark.parametrize(
-    ("name", "source", "reason"),
-    [
-        ("missing.py", None, "No such file"),
-        ("law.txt", "", r"must be a Python file"),
-        ("syntax.py", "def broken(:", "SyntaxError"),
-        ("raises.py", "\n\nraise KeyError('gone')", r"raises\.py`, line 3: KeyError: 'gone'"),
-        ("empty.py", "x = 1", "has no hook: write for instance @hookimpl"),
-        ("bad.py", BROKEN["duties"][0], "has no `discretisations`"),
-        ("hook.py", BROKEN["hook-unknown"][0], "unknown hook"),
-    ],
-)
+@pytest.mark.parametrize(("name", "source", "reason"), [
+    ("missing.py", None, "No such file"), ("law.txt", "", r"must be a Python file"),
+    ("syntax.py", "def broken(:", "SyntaxError"),
+    ("raises.py", "\n\nraise KeyError('gone')", r"raises\.py`, line 3: KeyError: 'gone'"),
+    ("empty.py", "x = 1", "has no hook: write for instance @hookimpl"),
+    ("bad.py", BROKEN["duties"][0], "has no `discretisations`"), ("hook.py", BROKEN["hook-unknown"][0], "unknown hook"),
+])  # fmt: skip
 def test_one_off_file_that_cannot_be_used(tmp_path, name, source, reason):
     if source is not None:
         (tmp_path / name).write_text(source)
@@ -292,21 +287,16 @@ def test_a_name_that_two_kinds_have_is_ambiguous(tmp_path):
     assert registry.find_any("integrator:newmark").distribution == "raceway"
 
 
-@pytest.mark.parametrize(
-    ("table", "message"),
-    [
-        ({"thing": ">=1.2"}, "is required by this scene and not installed. Install it: pip install 'thing>=1.2'"),
-        ({"thing": ""}, "Install it: pip install thing"),
-        ({"goood": ""}, "not installed (did you mean 'good'?)"),
-        ({"good": ">=2"}, "requires >=2, installed is good 1.4. Install a fitting one: pip install --upgrade 'good>=2'"),
-        ({"good_law": "<1"}, "installed is good 1.4"),
-        ({"good": "newest"}, "is not a version specifier"),
-        ({"good": 1.2}, 'must be a string such as ">=1.2"'),
-        ({"broken": ""}, "is installed, but could not be loaded: fails to import"),
-        ({"blocked": ""}, "the environment variable RACEWAY_DISABLE leaves it out"),
-        (">=1", "must be a table: write [requires] and keys below it"),
-    ],
-)
+@pytest.mark.parametrize(("table", "message"), [
+    ({"thing": ">=1.2"}, "is required by this scene and not installed. Install it: pip install 'thing>=1.2'"),
+    ({"thing": ""}, "Install it: pip install thing"), ({"goood": ""}, "not installed (did you mean 'good'?)"),
+    ({"good": ">=2"}, "requires >=2, installed is good 1.4. Install a fitting one: pip install --upgrade 'good>=2'"),
+    ({"good_law": "<1"}, "installed is good 1.4"), ({"good": "newest"}, "is not a version specifier"),
+    ({"good": 1.2}, 'must be a string such as ">=1.2"'),
+    ({"broken": ""}, "is installed, but could not be loaded: fails to import"),
+    ({"blocked": ""}, "the environment variable RACEWAY_DISABLE leaves it out"),
+    (">=1", "must be a table: write [requires] and keys below it"),
+])  # fmt: skip
 def test_requires_refuses(site, monkeypatch, table, message):
     _three(site, monkeypatch)
     with pytest.raises(SceneError) as caught:

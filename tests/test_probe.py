@@ -22,21 +22,18 @@ def refused(kernel, *found):
         build_model(with_law(kernel, 1000.0, lambda pairs: np.full((N, 1), 1e10)))
 
 
-@pytest.mark.parametrize(
-    ("kernel", "found"),
-    [
-        ("negative", "force -2000 at gap -1e-09 m, rate 0.02 m/s; the contract says never negative"),
-        ("sticky", "force 0.999 at gap 1e-09 m, rate 0 m/s, outside contact; the contract says zero for gap >= 0"),
-        ("not_a_number", "the kernel gives `force` = nan at gap 0.001 m"),
-        ("incomplete", "the kernel leaves `force` as it was at gap 0.001 m"),
-        ("raising", "the kernel raises ValueError: too deep at gap -1e-05 m"),
-        ("other_signature", "its kernel has .* the rule is .*: decorate it with @jit"),
-        ("plain_python", "which is not compiled: decorate it with @jit"),
-        ("double_slope", "`d_gap` = .* at gap -.* m, rate -0.02 m/s, where differences of the force give"),
-        ("wrong_slope", "`d_gap` = .*where differences of the force give"),
-        ("half_a_damper", "`d_rate` = .*where differences of the force give"),
-    ],
-)
+@pytest.mark.parametrize(("kernel", "found"), [
+    ("negative", "force -2000 at gap -1e-09 m, rate 0.02 m/s; the contract says never negative"),
+    ("sticky", "force 0.999 at gap 1e-09 m, rate 0 m/s, outside contact; the contract says zero for gap >= 0"),
+    ("not_a_number", "the kernel gives `force` = nan at gap 0.001 m"),
+    ("incomplete", "the kernel leaves `force` as it was at gap 0.001 m"),
+    ("raising", "the kernel raises ValueError: too deep at gap -1e-05 m"),
+    ("other_signature", "its kernel has .* the rule is .*: decorate it with @jit"),
+    ("plain_python", "which is not compiled: decorate it with @jit"),
+    ("double_slope", "`d_gap` = .* at gap -.* m, rate -0.02 m/s, where differences of the force give"),
+    ("wrong_slope", "`d_gap` = .*where differences of the force give"),
+    ("half_a_damper", "`d_rate` = .*where differences of the force give"),
+])  # fmt: skip
 def test_broken_kernels_are_refused(kernel, found):
     refused(getattr(broken_laws, kernel), found)
 
@@ -63,14 +60,10 @@ def wearing(gap, gap_rate, params, state_old, state_new, dt, force, d_gap, d_rat
         params[i, 0] *= 0.999 if params[i, 0] > 9.9e9 and deep > 5e-6 else 1.0
 
 
-@pytest.mark.parametrize(
-    ("kernel", "found"),
-    [
-        (broken_laws.writing, "state_old at gap -1e-09"),
-        (clamped, "gap at gap 0.001"),
-        (wearing, "params at gap -1e-05 m, one contact alone"),
-    ],
-)
+@pytest.mark.parametrize(("kernel", "found"), [
+    (broken_laws.writing, "state_old at gap -1e-09"), (clamped, "gap at gap 0.001"),
+    (wearing, "params at gap -1e-05 m, one contact alone"),
+])  # fmt: skip
 def test_a_kernel_that_writes_into_its_inputs_is_refused(kernel, found):
     refused(kernel, f"changes {found}", "inputs are read only")
 
@@ -86,18 +79,13 @@ def counting(t, params, out):
     out[:] = params[0]
 
 
-@pytest.mark.parametrize(
-    ("params", "found"),
-    [
-        (
-            np.full(N, 1e10),
-            r"build\(\) returned parameters of shape \(24,\); it must be \(24, k\): a row for each ball-race pair",
-        ),
-        (np.full((3, 1), 1.0), r"of shape \(3, 1\)"),
-        ([1.0], r"of shape \(1,\)"),
-        (np.full((N, 1), np.nan), "not finite"),
-    ],
-)
+@pytest.mark.parametrize(("params", "found"), [
+    (
+        np.full(N, 1e10),
+        r"build\(\) returned parameters of shape \(24,\); it must be \(24, k\): a row for each ball-race pair",
+    ),
+    (np.full((3, 1), 1.0), r"of shape \(3, 1\)"), ([1.0], r"of shape \(1,\)"), (np.full((N, 1), np.nan), "not finite"),
+])  # fmt: skip
 def test_wrong_parameters_are_refused(params, found):
     with pytest.raises(PluginError, match=f"contact law 'broken'.*: .*{found}"):
         build_model(with_law(Hertz().kernel(), 1000.0, lambda pairs: params))
@@ -121,16 +109,12 @@ def undefined(t, params, out):
         out[i] = np.sqrt(-t)
 
 
-@pytest.mark.parametrize(
-    ("kernel", "found"),
-    [
-        (half, "leaves `out` as it was at t = 0 s"),
-        (diverging, "gives `out` = inf"),
-        (undefined, "gives `out` = nan"),
-        (counting, "changes params at t = 0 s; the contract says inputs are read only"),
-        (broken_laws.sticky, "its kernel has .* the rule is .*: decorate it with @jit.FORCE"),
-    ],
-)
+@pytest.mark.parametrize(("kernel", "found"), [
+    (half, "leaves `out` as it was at t = 0 s"), (diverging, "gives `out` = inf"),
+    (undefined, "gives `out` = nan"),
+    (counting, "changes params at t = 0 s; the contract says inputs are read only"),
+    (broken_laws.sticky, "its kernel has .* the rule is .*: decorate it with @jit.FORCE"),
+])  # fmt: skip
 def test_broken_excitations_are_refused(kernel, found):
     with pytest.raises(PluginError, match=f"excitation 'broken' .*{found}"):
         build_model(with_force(kernel=lambda _: kernel))

@@ -140,13 +140,10 @@ class Shapeless(Loads):
         return {"mean_load": 1.0, "turn_load": 1.0}
 
 
-@pytest.mark.parametrize(
-    ("plugin", "words"),
-    [
-        (Broken, "'broken': compute.. must return exactly its `numbers`.*turn_load"),
-        (Shapeless, r"turn_load. has shape \(1,\), not \(1, instant, race, ball\)"),
-    ],
-)
+@pytest.mark.parametrize(("plugin", "words"), [
+    (Broken, "'broken': compute.. must return exactly its `numbers`.*turn_load"),
+    (Shapeless, r"turn_load. has shape \(1,\), not \(1, instant, race, ball\)"),
+])  # fmt: skip
 def test_a_broken_duty_is_named(use, plugin, words):
     use(plugin)
     with pytest.raises(PluginError, match=words):

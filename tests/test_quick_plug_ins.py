@@ -79,15 +79,10 @@ def test_what_declares_it_takes_the_compiled_loop_with_the_numbers_of_runs():
     assert rw.function(scene, ["bearing.balls.young"], [K.name]).why_slow == "diamond does not shrink"
 
 
-@pytest.mark.parametrize(
-    ("table", "plugin", "why"),
-    [
-        ("bodies", Own, "in full"),
-        ("bodies", Rebuilt, "in full"),
-        ("integrator", Transient, "over time"),
-        ("identifier", Secants, "not of synchronous"),
-    ],
-)
+@pytest.mark.parametrize(("table", "plugin", "why"), [
+    ("bodies", Own, "in full"), ("bodies", Rebuilt, "in full"), ("integrator", Transient, "over time"),
+    ("identifier", Secants, "not of synchronous"),
+])  # fmt: skip
 def test_what_declares_nothing_is_run(table, plugin, why):
     f = rw.function(SCENE | {table: {"kind": plugin.name}}, ["load.axial"], [K.name])
     assert why in f.why_slow and f(1000.0)["status"] == rw.PointStatus.RUN

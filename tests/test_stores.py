@@ -20,17 +20,14 @@ def chosen(axes, at=None, **wanted):
     return layout(select(made(axes), at or {}), **wanted)
 
 
-@pytest.mark.parametrize(
-    "axes, kind, x, y, panels",
-    [
-        ({SPEED: SPEEDS}, "curves", SPEED, None, None),
-        ({LOAD: [400.0, 1000.0], SPEED: SPEEDS}, "curves", SPEED, LOAD, None),
-        ({LOAD: MANY, SPEED: SPEEDS}, "map", SPEED, LOAD, None),
-        ({LOAD: MANY, "supports.tilt": ["free", "locked"]}, "curves", LOAD, "supports.tilt", None),
-        ({LOAD: MANY[:3], "supports.tilt": ["free", "locked"], SPEED: SPEEDS}, "curves", SPEED, "supports.tilt", LOAD),
-        ({"supports.tilt": ["free", "locked"]}, "curves", "supports.tilt", None, None),
-    ],
-)
+@pytest.mark.parametrize("axes, kind, x, y, panels", [
+    ({SPEED: SPEEDS}, "curves", SPEED, None, None),
+    ({LOAD: [400.0, 1000.0], SPEED: SPEEDS}, "curves", SPEED, LOAD, None),
+    ({LOAD: MANY, SPEED: SPEEDS}, "map", SPEED, LOAD, None),
+    ({LOAD: MANY, "supports.tilt": ["free", "locked"]}, "curves", LOAD, "supports.tilt", None),
+    ({LOAD: MANY[:3], "supports.tilt": ["free", "locked"], SPEED: SPEEDS}, "curves", SPEED, "supports.tilt", LOAD),
+    ({"supports.tilt": ["free", "locked"]}, "curves", "supports.tilt", None, None),
+])  # fmt: skip
 def test_defaults_follow_the_axes(axes, kind, x, y, panels):
     found = chosen(axes)
     assert (found.kind, found.x, found.y, found.panels) == (kind, x, y, panels)
@@ -83,26 +80,21 @@ def test_entries_of_arrays_have_their_own_unit():
     np.testing.assert_array_equal(picture.data, np.full(len(SPEEDS), 2e8))
 
 
-@pytest.mark.parametrize(
-    "axes, wanted, words",
-    [
-        (AXES, {"at": {"load.axail": 400.0}}, "is not an axis of this sweep (did you mean 'load.axial'?)"),
-        (AXES, {"at": {LOAD: 500.0}}, "is not in the sweep, which has 400, 1000, 2000"),
-        (AXES, {"at": {LOAD: 1000.5}}, "is not in the sweep"),
-        (AXES, {"at": {LOAD: "many"}}, "is not in the sweep"),
-        ({SPEED: SPEEDS}, {"value": "p1"}, "is not a quantity of this sweep"),
-        ({SPEED: SPEEDS}, {"value": "stiffness"}, "takes 2 labels after a colon, for instance stiffness:y,y; 0 given"),
-        ({SPEED: SPEEDS}, {"value": "stiffness:y,v"}, "has no 'v'"),
-        ({SPEED: SPEEDS}, {"value": "p0:y"}, "takes 0 labels"),
-        ({SPEED: SPEEDS, LOAD: MANY}, {"x": "load.axail"}, "is not an axis of this sweep (did you mean 'load.axial'?)"),
-        ({SPEED: SPEEDS, LOAD: [400.0]}, {"x": LOAD}, "has the one value 400 here"),
-        ({SPEED: SPEEDS, LOAD: MANY}, {"x": LOAD, "y": LOAD}, "is the axis of --x already"),
-        ({SPEED: SPEEDS}, {"kind": "map"}, "takes two axes with numbers, and only excitation.speed_rpm varies"),
-        ({SPEED: SPEEDS, "supports.tilt": ["free", "locked"]}, {"kind": "map", "y": "supports.tilt"}, "has words as values"),
-        ({SPEED: SPEEDS, LOAD: MANY, "contact.damping": MANY[:7]}, {"kind": "curves"}, "choose one with --at"),
-        ({SPEED: SPEEDS[:1]}, {}, "nothing varies in this part of the sweep"),
-    ],
-)
+@pytest.mark.parametrize("axes, wanted, words", [
+    (AXES, {"at": {"load.axail": 400.0}}, "is not an axis of this sweep (did you mean 'load.axial'?)"),
+    (AXES, {"at": {LOAD: 500.0}}, "is not in the sweep, which has 400, 1000, 2000"),
+    (AXES, {"at": {LOAD: 1000.5}}, "is not in the sweep"), (AXES, {"at": {LOAD: "many"}}, "is not in the sweep"),
+    ({SPEED: SPEEDS}, {"value": "p1"}, "is not a quantity of this sweep"),
+    ({SPEED: SPEEDS}, {"value": "stiffness"}, "takes 2 labels after a colon, for instance stiffness:y,y; 0 given"),
+    ({SPEED: SPEEDS}, {"value": "stiffness:y,v"}, "has no 'v'"), ({SPEED: SPEEDS}, {"value": "p0:y"}, "takes 0 labels"),
+    ({SPEED: SPEEDS, LOAD: MANY}, {"x": "load.axail"}, "is not an axis of this sweep (did you mean 'load.axial'?)"),
+    ({SPEED: SPEEDS, LOAD: [400.0]}, {"x": LOAD}, "has the one value 400 here"),
+    ({SPEED: SPEEDS, LOAD: MANY}, {"x": LOAD, "y": LOAD}, "is the axis of --x already"),
+    ({SPEED: SPEEDS}, {"kind": "map"}, "takes two axes with numbers, and only excitation.speed_rpm varies"),
+    ({SPEED: SPEEDS, "supports.tilt": ["free", "locked"]}, {"kind": "map", "y": "supports.tilt"}, "has words as values"),
+    ({SPEED: SPEEDS, LOAD: MANY, "contact.damping": MANY[:7]}, {"kind": "curves"}, "choose one with --at"),
+    ({SPEED: SPEEDS[:1]}, {}, "nothing varies in this part of the sweep"),
+])  # fmt: skip
 def test_what_cannot_be_drawn_is_refused_with_the_way_out(axes, wanted, words):
     with pytest.raises(RacewayError) as told:
         chosen(axes, **wanted)

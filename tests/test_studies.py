@@ -37,13 +37,10 @@ def test_a_study_of_ones_own_is_listed_and_run(tmp_path):
     assert invoke("study", "--plugin", file, "mine", "seen").stdout == "seen\n"
 
 
-@pytest.mark.parametrize(
-    ("body", "told"),
-    [
-        ("import no_such_package", "study 'mine' of mine.py: command() raises ModuleNotFoundError"),
-        ("return 3", "study 'mine' of mine.py: command() gives int"),
-    ],
-)
+@pytest.mark.parametrize(("body", "told"), [
+    ("import no_such_package", "study 'mine' of mine.py: command() raises ModuleNotFoundError"),
+    ("return 3", "study 'mine' of mine.py: command() gives int"),
+])  # fmt: skip
 def test_a_broken_study_is_told_in_one_line_and_takes_no_other_with_it(tmp_path, body, told):
     file = tmp_path / "mine.py"
     file.write_text(STUDY.format(body=body), encoding="utf-8")

@@ -91,21 +91,14 @@ def test_lists_and_design_files(tmp_path):
     assert design_file(tmp_path / "grid.toml") == grid(["load.axial=400:1200:3", 'supports.tilt="locked","free"'])
 
 
-@pytest.mark.parametrize(
-    ("name", "text", "word"),
-    [
-        ("a.txt", "", "must end in one of .csv, .json, .toml"),
-        ("a.csv", "", "has no points"),
-        ("a.csv", "load.axial\n", "has no points"),
-        ("a.csv", "load.axial,b.c\n1\n", "has 1 values for 2 keys"),
-        ("a.json", "{", "is not valid JSON"),
-        ("a.json", "[1]", "must hold a list of points"),
-        ("a.json", '[{"load.axial": 1}, {"load.radial": 1}]', "not in all: load.axial, load.radial"),
-        ("a.json", '[{"a..b": 1}]', "is not a key of a scene"),
-        ("a.toml", "x = 1", "must be a TOML file with a table"),
-        ("missing.csv", None, "cannot be read"),
-    ],
-)
+@pytest.mark.parametrize(("name", "text", "word"), [
+    ("a.txt", "", "must end in one of .csv, .json, .toml"), ("a.csv", "", "has no points"),
+    ("a.csv", "load.axial\n", "has no points"), ("a.csv", "load.axial,b.c\n1\n", "has 1 values for 2 keys"),
+    ("a.json", "{", "is not valid JSON"), ("a.json", "[1]", "must hold a list of points"),
+    ("a.json", '[{"load.axial": 1}, {"load.radial": 1}]', "not in all: load.axial, load.radial"),
+    ("a.json", '[{"a..b": 1}]', "is not a key of a scene"), ("a.toml", "x = 1", "must be a TOML file with a table"),
+    ("missing.csv", None, "cannot be read"),
+])  # fmt: skip
 def test_bad_lists_are_refused(tmp_path, name, text, word):
     if text is not None:
         (tmp_path / name).write_text(text, encoding="utf-8")

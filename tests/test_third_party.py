@@ -140,20 +140,14 @@ def test_new_packages_pass_their_own_tests(tmp_path):
         assert f"raceway-fresh-{kind.replace('_', '-')}/tests/test_plugin.py" in done.stdout
 
 
-@pytest.mark.parametrize(
-    ("kind", "name", "reason"),
-    [
-        ("law", "good", r"no kind of plug-in named 'law'.*contact_law, excitation"),
-        ("contact_law", "Hertz 2", "a letter first; for instance 'hertz'"),
-        ("contact_law", "2nd", "a letter first; for instance 'nd'"),
-        ("contact_law", "", "a letter first$"),
-        ("contact_law", "../evil", "for instance 'evil'"),
-        ("contact_law", "a__b", "for instance 'a_b'"),
-        ("contact_law", "x" * 41, "2 to 40"),
-        ("contact_law", "class", "a word of Python"),
-        ("contact_law", "hertz", "there is a contact law 'hertz' already, of raceway"),
-    ],
-)
+@pytest.mark.parametrize(("kind", "name", "reason"), [
+    ("law", "good", r"no kind of plug-in named 'law'.*contact_law, excitation"),
+    ("contact_law", "Hertz 2", "a letter first; for instance 'hertz'"),
+    ("contact_law", "2nd", "a letter first; for instance 'nd'"), ("contact_law", "", "a letter first$"),
+    ("contact_law", "../evil", "for instance 'evil'"), ("contact_law", "a__b", "for instance 'a_b'"),
+    ("contact_law", "x" * 41, "2 to 40"), ("contact_law", "class", "a word of Python"),
+    ("contact_law", "hertz", "there is a contact law 'hertz' already, of raceway"),
+])  # fmt: skip
 def test_what_cannot_be_used_is_refused(tmp_path, kind, name, reason):
     assert re.search(reason, new_plugin(kind, name, tmp_path), re.MULTILINE)
     assert not list(tmp_path.iterdir())

@@ -19,22 +19,17 @@ def idle(excitation):
     return {text.partition("`excitation.")[2].partition("`")[0] for text in told if "has no effect: " in text}
 
 
-@pytest.mark.parametrize(
-    ("options", "unused"),
-    [
-        ({"unbalance": 1e-4}, set()),
-        ({"unbalance": 1e-4, "load_share": 0.5}, set()),
-        ({"unbalance": 1e-4, "force": 300.0}, {"force"}),
-        ({"unbalance": 1e-4, "reference_speed_rpm": 9000.0}, set()),
-        ({"amplitude": "constant", "force": 300.0}, set()),
-        ({"amplitude": "constant", "unbalance": 1e-4, "reference_speed_rpm": 9000.0, "load_share": 0.5}, set()),
-        ({"amplitude": "constant", "force": 300.0, "load_share": 0.5}, {"load_share"}),
-        (
-            {"amplitude": "constant", "force": 300.0, "unbalance": 1e-4, "reference_speed_rpm": 9000.0},
-            {"unbalance", "reference_speed_rpm"},
-        ),
-    ],
-)
+@pytest.mark.parametrize(("options", "unused"), [
+    ({"unbalance": 1e-4}, set()), ({"unbalance": 1e-4, "load_share": 0.5}, set()),
+    ({"unbalance": 1e-4, "force": 300.0}, {"force"}), ({"unbalance": 1e-4, "reference_speed_rpm": 9000.0}, set()),
+    ({"amplitude": "constant", "force": 300.0}, set()),
+    ({"amplitude": "constant", "unbalance": 1e-4, "reference_speed_rpm": 9000.0, "load_share": 0.5}, set()),
+    ({"amplitude": "constant", "force": 300.0, "load_share": 0.5}, {"load_share"}),
+    (
+        {"amplitude": "constant", "force": 300.0, "unbalance": 1e-4, "reference_speed_rpm": 9000.0},
+        {"unbalance", "reference_speed_rpm"},
+    ),
+])  # fmt: skip
 @pytest.mark.parametrize("kind", ["bidirectional", "unidirectional"])
 def test_amplitude(kind, options, unused):
     excitation = {"kind": kind, "speed_rpm": 12000.0, **options}

@@ -31,15 +31,11 @@ def measured(path):
 
 
 READERS = {
-    "measured force": (".csv", measured),
-    "record": (".csv", signals_of),
-    "vtu": (".vtu", Vtu().read),
-    "inp": (".inp", Abaqus().read),
-    "msh": (".msh", built_in("format", "msh")().read),
-    "points of a sweep": (".csv", design_file),
-    "plug-in": (".py", default_registry().load_file),
+    "measured force": (".csv", measured), "record": (".csv", signals_of), "vtu": (".vtu", Vtu().read),
+    "inp": (".inp", Abaqus().read), "msh": (".msh", built_in("format", "msh")().read),
+    "points of a sweep": (".csv", design_file), "plug-in": (".py", default_registry().load_file),
     "step": (".step", lambda path: Gmsh(ball=str(path)).mesh(BEARING)),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(

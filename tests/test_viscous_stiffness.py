@@ -15,15 +15,12 @@ SMALL = 2.5e-4
 
 def tables(identifier, contact, **changes):
     found = {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 400.0},
-        "supports": {"tilt": "locked"},
+        "bearing": {"preset": "B7206C"}, "load": {"axial": 400.0}, "supports": {"tilt": "locked"},
         "contact": contact,
         "kinematics": {"spin_speed_rpm": SPEED, "gyroscopic": "none", "ring_growth": False},
         "excitation": {"kind": "bidirectional", "amplitude": "constant", "force": 400.0 * SMALL, "speed_rpm": SPEED},
-        "integrator": {"kind": "periodic"},
-        "identifier": {"kind": identifier},
-    }
+        "integrator": {"kind": "periodic"}, "identifier": {"kind": identifier},
+    }  # fmt: skip
     for name, table in changes.items():
         found[name] = {**found.get(name, {}), **table}
     return found
@@ -50,15 +47,10 @@ def complex_condensation(system, equilibrium, w):
     return out
 
 
-@pytest.mark.parametrize(
-    ("contact", "limit"),
-    [
-        ({"time_constant": 1e-6}, 1e-12),
-        ({"time_constant": 2e-4}, 1e-11),
-        ({"damping": 3e3}, 1e-10),
-        ({"damping": 1e5}, 1e-8),
-    ],
-)
+@pytest.mark.parametrize(("contact", "limit"), [
+    ({"time_constant": 1e-6}, 1e-12), ({"time_constant": 2e-4}, 1e-11), ({"damping": 3e3}, 1e-10),
+    ({"damping": 1e5}, 1e-8),
+])  # fmt: skip
 @pytest.mark.parametrize("load", [{"axial": 400.0}, {"axial": 400.0, "radial": [900.0, 200.0]}])
 def test_stiffness_at_a_frequency_equals_complex_arithmetic(contact, load, limit):
     """Continued from real rates, against every ball condensed at j w; rounding grows with w c / k: 3 at 1e5 N s/m."""

@@ -116,17 +116,14 @@ def test_the_band_holds_the_answer():
     assert_allclose(narrow["heat"]["band"]["running_preload_n"], narrow["equilibrium"]["preload"]["running_n"], rtol=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("heat", "lubricant", "words"),
-    [
-        ({"oil_inlet_c": 25.0}, {"viscosity": 0.02}, "does not fall with temperature"),
-        (
-            {"oil_inlet_c": 5.0, "ambient_c": -40.0},
-            {"oil": "VG 32"},
-            "surroundings are too cold (heat.oil_inlet_c, heat.ambient_c)",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("heat", "lubricant", "words"), [
+    ({"oil_inlet_c": 25.0}, {"viscosity": 0.02}, "does not fall with temperature"),
+    (
+        {"oil_inlet_c": 5.0, "ambient_c": -40.0},
+        {"oil": "VG 32"},
+        "surroundings are too cold (heat.oil_inlet_c, heat.ambient_c)",
+    ),
+])  # fmt: skip
 def test_oil_beyond_its_data_is_told_with_the_cause(heat, lubricant, words):
     scene = published.warm_pair(heat, kinematics={"spin_speed_rpm": 100.0}) | {"lubricant": lubricant}
     assert any(words in warning for warning in rw.run(scene).warnings)
@@ -232,18 +229,15 @@ def test_a_spring_keeps_its_preload_and_is_colder():
     assert sprung["heat"]["temperatures_k"]["inner"] < rigid["heat"]["temperatures_k"]["inner"]
 
 
-@pytest.mark.parametrize(
-    ("heat", "key", "words"),
-    [
-        ({"oil_flow": 0.0}, "heat.oil_flow", "greater than 1e-18"),
-        ({"oil_flow": "-1 m3/s"}, "heat.oil_flow", "greater than 1e-18"),
-        ({"inner_oil": 0.0}, "heat.inner_oil", "greater than 1e-12"),
-        ({"inner_oil": 1e300}, "heat.inner_oil", "less than 100000, or 'auto', 'infinite'"),
-        ({"inner_wetting": 0.0}, "heat.inner_wetting", "from 0.001 to 1"),
-        ({"housing_ambient": -1.0}, "heat.housing_ambient", "greater than 1e-12"),
-        ({"inner_oil": "endless"}, "heat.inner_oil", "'infinite'"),
-    ],
-)
+@pytest.mark.parametrize(("heat", "key", "words"), [
+    ({"oil_flow": 0.0}, "heat.oil_flow", "greater than 1e-18"),
+    ({"oil_flow": "-1 m3/s"}, "heat.oil_flow", "greater than 1e-18"),
+    ({"inner_oil": 0.0}, "heat.inner_oil", "greater than 1e-12"),
+    ({"inner_oil": 1e300}, "heat.inner_oil", "less than 100000, or 'auto', 'infinite'"),
+    ({"inner_wetting": 0.0}, "heat.inner_wetting", "from 0.001 to 1"),
+    ({"housing_ambient": -1.0}, "heat.housing_ambient", "greater than 1e-12"),
+    ({"inner_oil": "endless"}, "heat.inner_oil", "'infinite'"),
+])  # fmt: skip
 def test_impossible_numbers_are_refused(heat, key, words):
     with pytest.raises(rw.SceneError, match=words) as fault:
         rw.run(published.warm_pair(heat))

@@ -140,13 +140,10 @@ def _tables(cls: type, path: str, title: str, shown: dict[str, tuple[str, str]])
 
 #: Words of a rule and their signs, in this order.
 _SIGNS = (
-    (r"^a finite number$|^one of ", ""),
-    (r"\bor a number (greater|from|at least)", r"or \1"),
-    (r" and less than (?=[\d.-])", ", <\u2009"),
-    (r"\bgreater than (?=[\d.-])", ">\u2009"),
-    (r"\bat least (?=[\d.-])", "\u2265\u2009"),
-    (r"\bfrom ([\d.e-]+) to ([\d.e+-]+)", "\\1\u2026\\2"),
-)
+    (r"^a finite number$|^one of ", ""), (r"\bor a number (greater|from|at least)", r"or \1"),
+    (r" and less than (?=[\d.-])", ", <\u2009"), (r"\bgreater than (?=[\d.-])", ">\u2009"),
+    (r"\bat least (?=[\d.-])", "\u2265\u2009"), (r"\bfrom ([\d.e-]+) to ([\d.e+-]+)", "\\1\u2026\\2"),
+)  # fmt: skip
 
 
 def _range(rule: str) -> str:

@@ -16,12 +16,9 @@ STEPS = (
     ("pipeline/run_screen.py", "Screen"),
 )  # fmt: skip
 _COLOURS = {
-    "core": "#1b6ca8",
-    "pipeline": "#b3261e",
-    "plugins": "#2e7d32",
-    "contact_laws": "#2e7d32",
+    "core": "#1b6ca8", "pipeline": "#b3261e", "plugins": "#2e7d32", "contact_laws": "#2e7d32",
     "integrators": "#2e7d32",
-}
+}  # fmt: skip
 _INK, _ROWS = "#1f2933", 34
 _TRACE = """
 import contextlib, inspect, io, json, sys

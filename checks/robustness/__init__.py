@@ -1,17 +1,14 @@
 """Checks of robustness that take minutes: ``python -m checks [NAME...]`` prints their rows; CONTRIBUTING keeps a number of each.
 
 fuzz                  scenes that nobody would write, made from the schema, and calls with wrong arguments
-damage                stores and caches that were damaged
+damage                stores that were damaged
 signals               commands that are asked to end
-types                 what editors and type checkers see of the package
 words                 length of the documents, terms that the field does not know
 unchanged             numbers of results, compared with another commit: --base COMMIT
 fmu                   map of an exported FMU against runs, time of a step
-points                time of a point of ``raceway.function``, and equality with runs
-speed                 processor time of what is done most, against the times asked for
+points                time of a point of ``raceway.function`` and of a run, and equality of both
 app                   time from a change to its picture in the application, memory, numbers beside those of runs
 uncertainty           elastic bodies without a mesh against condensed ones; default hypotheses inside the range of the others
-extremes              what runs at the edges say of errors that are not estimated, or larger than Z
 """
 
 import sys

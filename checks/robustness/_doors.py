@@ -42,30 +42,21 @@ _RATINGS = {15: ("47 kN", "43 kN"), 25: ("44.5 kN", "41 kN")}
 #: Arguments of each function that reads its own by name: what it takes, a tuple is a choice; beside its scene.
 GOOD: dict[str, Tables] = {
     "band": {"tolerances": {"bearing.contact_angle_deg": "±10 %"}, "count": 2},
-    "catalogue": {"pattern": "70*C"},
-    "check": {},
-    "compare": {"vary": {_AXIAL: [400.0, 1000.0]}},
-    "build_model": {"scene": None},
-    "evolve": {},
+    "catalogue": {"pattern": "70*C"}, "check": {}, "compare": {"vary": {_AXIAL: [400.0, 1000.0]}},
+    "build_model": {"scene": None}, "evolve": {},
     "export_coefficients": {"data": None, "kind": ("csv", "json", "nastran", "ansys")},
     "export_fmu": {"ranges": {_AXIAL: (400.0, 500.0)}, "outputs": ["kyy"], "tolerance": 1e-3},
-    "export_ross": {"data": None},
-    "fit": {"data": _TABLE, "free": "bearing.contact_angle_deg"},
-    "follow": {"over": f"{_SPEED}=9000:9500", "points": 3},
-    "function": {"inputs": [_AXIAL], "outputs": ["kyy"]},
+    "export_ross": {"data": None}, "fit": {"data": _TABLE, "free": "bearing.contact_angle_deg"},
+    "follow": {"over": f"{_SPEED}=9000:9500", "points": 3}, "function": {"inputs": [_AXIAL], "outputs": ["kyy"]},
     "identify": {"signals": _SIGNALS},
     "infer": {"bore": "70 mm", "outer_diameter": "110 mm", "ratings": _RATINGS, "width": "20 mm"},
     "law": {"name": "hertz"},
     "load_scene": {"path": Path(__file__).parents[2] / "examples" / "minimal.toml", "changes": [f"{_AXIAL}=400"]},
-    "make_plan": {"scene": None},
-    "plan": {},
+    "make_plan": {"scene": None}, "plan": {},
     "precision": {"vary": {"integrator.steps_per_turn": [24, 48]}, "repeats": 1},
-    "run": {},
-    "scene_from_dict": {},
-    "sensitivities": {"keys": ["bearing.contact_angle_deg"]},
-    "sweep": {"axes": {_AXIAL: [400.0, 1000.0]}},
-    "view": {},
-}
+    "run": {}, "scene_from_dict": {}, "sensitivities": {"keys": ["bearing.contact_angle_deg"]},
+    "sweep": {"axes": {_AXIAL: [400.0, 1000.0]}}, "view": {},
+}  # fmt: skip
 #: Scenes whose answer takes milliseconds.
 _SCENES = ("steady_orbit", "set_tbt", "test_rig", "test_rig")
 

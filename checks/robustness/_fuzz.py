@@ -6,6 +6,7 @@ A line of JSON is written before each scene and after it; a line without its sec
 import json
 import math
 import os
+import re
 import signal
 import sys
 import tempfile
@@ -165,7 +166,21 @@ def ran(scene: Scene) -> tuple[str, list[list[str]]]:
         refuse_nan(result)
     except (AssertionError, ValueError) as why:
         return "finished", [["nan", "run", str(why)]]
-    return "finished", []
+    return "finished", [["untold", "run", why] for why in untold(result)]
+
+
+def untold(result: Result) -> list[str]:
+    """Errors of Z that are unknown, with their parts, and larger than Z, of which no warning says so."""
+    if result.identification is None:
+        return []
+    error, told = result.error, " ".join(result.warnings)
+    parts = ("time_step", "transient", "identification", "mesh", "contact")
+    found = [f"{part}: null without reason" for part in parts if error[part] is None and not error["how"].get(part)]
+    if error["total"] is None and not re.search("rror (of Z )?is not estimated[:,] .{30}", told):
+        found.append("total: null without warning")
+    if max(error[part] or 0.0 for part in ("total", *parts)) >= 1.0 and "Z is not resolved" not in told:
+        found.append("an error larger than Z without warning")
+    return found
 
 
 def refuse_nan(result: Result) -> None:

@@ -1,21 +1,16 @@
-"""Damaged stores of sweeps, gone on with; damaged kernels and compliances, used: the same numbers or one message."""
+"""Damaged stores of sweeps, gone on with: the same numbers or one message."""
 
-import json
 import random
 import shutil
 import sqlite3
-import subprocess
-import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 from checks.children import in_child
-from checks.faulty_caches import SAME, TOLD
 from checks.robustness import Row, below
 from checks.validation import harm
 from checks.validation.sweeps import SCENE, rows_of
@@ -23,7 +18,7 @@ from raceway import RacewayError
 from raceway.extend import open_store
 from raceway.points.store import POINTS, SCHEMA
 
-_STORES, _KERNELS, _ARRAYS = 150, 150, 50
+_STORES = 150
 #: Damages after which a store goes on: what is not as it was written is computed again.
 _MENDED = ("two rows swapped", "row of another store", "digit of a value", "another file's journal")
 
@@ -62,15 +57,10 @@ def _left_journal(path: Path, other: Path, chance: random.Random) -> None:
 
 _BOTH = "state, reason, content, cost, digest"
 HARMS: dict[str, Callable[[Path, Path, random.Random], None]] = {
-    "cut": harm.cut,
-    "one bit": harm.flipped,
-    "page of zeros": harm.zeroed_page,
-    "zeros to the end": harm.zeroed_tail,
-    "two pages swapped": harm.swapped_pages,
-    "page of another store": harm.page_of_another,
-    "another store": harm.another,
-    "another program's file": harm.no_such_file,
-    "another file's journal": _left_journal,
+    "cut": harm.cut, "one bit": harm.flipped, "page of zeros": harm.zeroed_page,
+    "zeros to the end": harm.zeroed_tail, "two pages swapped": harm.swapped_pages,
+    "page of another store": harm.page_of_another, "another store": harm.another,
+    "another program's file": harm.no_such_file, "another file's journal": _left_journal,
     "two rows swapped": _sql(
         "UPDATE points SET key = -1 WHERE key = {N}",
         "UPDATE points SET key = {N} WHERE key = {M}",
@@ -84,7 +74,7 @@ HARMS: dict[str, Callable[[Path, Path, random.Random], None]] = {
         "UPDATE facts SET value = (SELECT value FROM foreign_store.facts WHERE name = 'design') WHERE name = 'design'"
     ),
     "older schema": _sql("UPDATE facts SET value = '{older}' WHERE name = 'schema'"),
-}
+}  # fmt: skip
 
 
 def resumed(store: Path, wanted: list[Any], foreign: list[Any]) -> str:
@@ -110,7 +100,7 @@ def resumed(store: Path, wanted: list[Any], foreign: list[Any]) -> str:
     return EQUAL if rows_of(store) == wanted else "other values"
 
 
-def tried(count: int = 150, seed: int = 17) -> dict[str, Counter[str]]:
+def tried(count: int, seed: int = 17) -> dict[str, Counter[str]]:
     """Outcomes by harm, each as often as the others."""
     from click.testing import CliRunner
 
@@ -136,14 +126,6 @@ def tried(count: int = 150, seed: int = 17) -> dict[str, Counter[str]]:
 
 
 def rows() -> list[Row]:
-    with ThreadPoolExecutor(2) as pool:
-        caches = [pool.submit(_caches, "kernels", _KERNELS), pool.submit(_caches, "arrays", _ARRAYS)]
-        kernels, arrays = (one.result() for one in caches)
-    return [*_stores(), *_of_caches("files of compiled kernels", "kernels", kernels, _KERNELS),
-            *_of_caches("kept compliances", "arrays", arrays, _ARRAYS)]  # fmt: skip
-
-
-def _stores() -> list[Row]:
     found = tried(_STORES)
     every = sum(found.values(), Counter[str]())
     equal, told = every[EQUAL], every[ANSWERED]
@@ -157,21 +139,4 @@ def _stores() -> list[Row]:
               every.total() - equal - told - other, 0, f"{equal} the same rows bit for bit, {told} one message"),
         Row("of these, rows that were swapped, foreign or edited, and a foreign journal: the same rows again",
             f"{mended[EQUAL]} of {tries}", "all", mended[EQUAL] == tries),
-    ]  # fmt: skip
-
-
-def _caches(part: str, count: int) -> Counter[str]:
-    """In a process that has loaded no kernel."""
-    words = [sys.executable, "-m", "checks.faulty_caches", part, str(count)]
-    return Counter(json.loads(subprocess.run(words, capture_output=True, text=True, check=True).stdout))
-
-
-def _of_caches(words: str, part: str, found: Counter[str], count: int) -> list[Row]:
-    bad = {outcome: times for outcome, times in found.items() if outcome not in (SAME, TOLD)}
-    signals = sum(times for outcome, times in bad.items() if "ended by" in outcome)
-    note = "; ".join(bad) or f"{found[SAME]} in silence, {found[TOLD]} with a message of one line a file"
-    return [
-        below(f"{words}, {found.total()} tries: other ends than the same numbers, in silence or with a message",
-              found.total() - found[SAME] - found[TOLD], 0, note),
-        below(f"{words}: ended by a signal", signals, 0),
     ]  # fmt: skip

@@ -26,6 +26,7 @@ _FAULTS = {
     "hang": f"hangs: beyond {CHECK_S:g} s of processor time in check and plan, {RUN_S:g} s in run, or {ASLEEP_S:g} s in all",
     "died": "processes that ended by a signal",
     "nan": "NaN or infinity in a result, or a failure that tells them",
+    "untold": "errors of Z, unknown or larger than it, without a warning",
     "memory": "memory above twice the plan's: what was there, the record, the meshes",
     "left": "files written and processes started by check and plan",
 }

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 import raceway as rw
+from checks.kernel import least
 from checks.robustness import Row, below
 from checks.validation.columns import compare
 
@@ -64,6 +65,10 @@ def seconds(scene: dict[str, Any], outputs: list[str], ranges: dict[str, tuple[f
     return spent
 
 
+def _milliseconds(call: Callable[[], object]) -> float:
+    return 1e3 * least(call, 7, time.process_time)
+
+
 def _by_dask(point: float) -> list[Row]:
     """1e7 points in blocks on a local cluster of two processes, against ``point`` seconds each in one process."""
     import dask
@@ -99,15 +104,21 @@ def rows() -> list[Row]:
     note = f"{compared.status['COMPUTED']} of {compared.status.total()} points in the loop; displacements {compared.moved:.1e}; {compared.seconds:.0f} CPU-s"
     equality = "largest difference from runs, bearings, sets, laws, tilts, growth, moments"
     out = [below(equality, float(f"{compared.worst:.1e}"), 1e-9, note)]
+    f, hundred = rw.function(STATIC, ["load.axial"], ["kyy"], threads=1), np.linspace(300.0, 2000.0, 100)
+    single, orbit = (scene | {"load": {"axial": 1000.0}} for scene in (STATIC, turning("bidirectional")))
     cases: list[tuple[str, Callable[[], float], float]] = [
-        ("1e6 equilibria with 5 x 5 over load and speed [CPU-s]", lambda: seconds(STATIC, ["displacement", "stiffness"], loads, 10**6), 25.0),
+        ("1e6 equilibria with 5 x 5 over load and speed [CPU-s]", lambda: seconds(STATIC, ["displacement", "stiffness"], loads, 10**6), 4.0),
         ("1e5 equilibria of a DB pair over its geometry and preload [CPU-s]", lambda: seconds(_SET, ["stiffness"], geometry, 10**5), 10.0),
-        ("1e5 steady orbits, rotating force [CPU-s]", lambda: seconds(turning("bidirectional"), ["K", "C"], motion, 10**5), 25.0),
+        ("1e5 steady orbits, rotating force [CPU-s]", lambda: seconds(turning("bidirectional"), ["K", "C"], motion, 10**5), 2.5),
         ("the same with dashpots at the contacts [CPU-s]", lambda: seconds(turning("bidirectional", 1e-3), ["K", "C"], motion, 10**5), 25.0),
         ("an orbit under a one-directional force, tilt free [CPU-ms]", lambda: seconds(turning("unidirectional"), ["K"], motion, 10**4) / 10, 1.0),
         ("life of 1e5 points on top of their equilibria [%]", lambda: _on_top("l10r_hours"), 20.0),
         ("friction torque of 1e5 points on top of their equilibria [%]", lambda: _on_top("torque_nm"), 20.0),
         ("a warm point over a cold one in a batch", _warm_over_cold, 8.0),
+        ("rw.function of one point [CPU-ms]", lambda: _milliseconds(lambda: f(1000.0)), 0.3),
+        ("rw.function of 100 points [CPU-ms]", lambda: _milliseconds(lambda: f(hundred)), 1.0),
+        ("rw.run, static [CPU-ms]", lambda: _milliseconds(lambda: rw.run(single)), 2.0),
+        ("rw.run, steady orbit [CPU-ms]", lambda: _milliseconds(lambda: rw.run(orbit)), 5.0),
     ]  # fmt: skip
     out += [below(quantity, round(measure(), 3), bound) for quantity, measure, bound in cases]
     two_columns = {key: loads[key] for key in ("load.axial", "kinematics.spin_speed_rpm")}

@@ -18,6 +18,7 @@ from typing import Any
 import attrs
 
 from checks.robustness import Row, below
+from checks.validation.command_line import SMALL_ARTICLE
 from checks.validation.sessions import left
 from checks.validation.sweeps import SCENE, rows_of
 
@@ -27,13 +28,11 @@ _COUNT, _SEED = 100, 17
 _SWEEP = ("sweep", str(SCENE), "--set", "integrator.kind=periodic", "--grid", "excitation.speed_rpm=10980:15000:160")
 _AXES = ("--vary", "excitation.kind=unidirectional,bidirectional", "--vary", "load.axial=400:1200:4")
 COMMANDS = {
-    "run": ("run", str(SCENE), "--pictures"),
-    "sweep, serial": _SWEEP,
-    "sweep, processes": (*_SWEEP, "--executor", "processes"),
-    "sweep, dask": (*_SWEEP, "--executor", "dask"),
-    "view": ("view", str(SCENE), "--html"),
-    "compare": ("compare", str(SCENE), *_AXES),
-}
+    "run": ("run", str(SCENE), "--pictures"), "sweep, serial": _SWEEP,
+    "sweep, processes": (*_SWEEP, "--executor", "processes"), "sweep, dask": (*_SWEEP, "--executor", "dask"),
+    "view": ("view", str(SCENE), "--html"), "compare": ("compare", str(SCENE), *_AXES),
+    "study": ("study", "article", *SMALL_ARTICLE, "--processes", "2"),
+}  # fmt: skip
 
 
 @attrs.frozen
@@ -55,13 +54,13 @@ class Ended:
 
     @property
     def told(self) -> bool:
-        """One line that says what stopped it; a second one says how much is done, or where a comparison goes on."""
+        """One line that says what stopped it; a second one says how much is done, or where a comparison or a study goes on."""
         word = "Ctrl-C" if self.number == signal.SIGINT else signal.Signals(self.number).name
         stopped = [line for line in self.lines if line.startswith(f"stopped by {word}")]
         rest = [line for line in self.lines if line not in stopped]
         return (
             len(stopped) == 1
-            and len(rest) <= self.command.startswith(("sweep", "compare"))
+            and len(rest) <= self.command.startswith(("sweep", "compare", "study"))
             and "Traceback" not in str(self.lines)
         )
 

@@ -14,15 +14,6 @@ def cut(path: Path, other: Path, chance: random.Random) -> None:
     path.write_bytes(content[: chance.randrange(1, len(content))])
 
 
-def emptied(path: Path, other: Path, chance: random.Random) -> None:
-    path.write_bytes(b"")
-
-
-def zeroed(path: Path, other: Path, chance: random.Random) -> None:
-    """What a machine that lost its power leaves."""
-    path.write_bytes(bytes(path.stat().st_size))
-
-
 def zeroed_tail(path: Path, other: Path, chance: random.Random) -> None:
     content = path.read_bytes()
     begin = chance.randrange(1, len(content))

@@ -13,15 +13,11 @@ _TRUE_STEPS = 4999
 
 #: Axial load [N], amplitude of the force [N], its kind, tilt, radial load [N].
 SERIES: tuple[tuple[float, float, str, str, tuple[float, float]], ...] = (
-    (100.0, 2000.0, "unidirectional", "locked", (0.0, 0.0)),
-    (100.0, 2000.0, "unidirectional", "free", (0.0, 0.0)),
-    (400.0, 700.0, "bidirectional", "locked", (0.0, 0.0)),
-    (200.0, 1500.0, "bidirectional", "free", (0.0, 0.0)),
-    (1000.0, 1000.0, "unidirectional", "free", (0.0, 0.0)),
-    (50.0, 800.0, "bidirectional", "locked", (0.0, 0.0)),
-    (100.0, 1000.0, "unidirectional", "locked", (50.0, 80.0)),
-    (150.0, 900.0, "bidirectional", "free", (100.0, 30.0)),
-)
+    (100.0, 2000.0, "unidirectional", "locked", (0.0, 0.0)), (100.0, 2000.0, "unidirectional", "free", (0.0, 0.0)),
+    (400.0, 700.0, "bidirectional", "locked", (0.0, 0.0)), (200.0, 1500.0, "bidirectional", "free", (0.0, 0.0)),
+    (1000.0, 1000.0, "unidirectional", "free", (0.0, 0.0)), (50.0, 800.0, "bidirectional", "locked", (0.0, 0.0)),
+    (100.0, 1000.0, "unidirectional", "locked", (50.0, 80.0)), (150.0, 900.0, "bidirectional", "free", (100.0, 30.0)),
+)  # fmt: skip
 
 
 def series(axial: float, force: float, kind: str, tilt: str, radial: tuple[float, float], steps: int) -> dict[str, Any]:

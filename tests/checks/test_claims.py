@@ -23,14 +23,10 @@ def test_a_claim_asserts_and_leaves_a_row(rows):
     assert Claim(**x).holds and Claim(**x).limits == "2.9205 to 2.9795" and Claim(**e).limits == "at most 1e-09"
 
 
-@pytest.mark.parametrize(
-    ("value", "limits", "words"),
-    [
-        (3.0, {"near": 2.95, "within": 0.01}, "x = 3 : 2.9205 to 2.9795"),
-        (math.nan, {"at_most": 1.0}, "x = nan"),
-        (0.5, {"at_most": 1.0, "misses": "for want of a mesh"}, "take `misses` away"),
-    ],
-)
+@pytest.mark.parametrize(("value", "limits", "words"), [
+    (3.0, {"near": 2.95, "within": 0.01}, "x = 3 : 2.9205 to 2.9795"), (math.nan, {"at_most": 1.0}, "x = nan"),
+    (0.5, {"at_most": 1.0, "misses": "for want of a mesh"}, "take `misses` away"),
+])  # fmt: skip
 def test_what_does_not_hold_fails_and_leaves_no_row(rows, value, limits, words):
     with pytest.raises(AssertionError, match=words):
         claims_into(rows)("x", value, basis="regression", **limits)

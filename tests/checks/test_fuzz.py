@@ -88,6 +88,9 @@ def test_a_number_that_is_none_is_seen(monkeypatch):
     wrong = attrs.evolve(good, equilibrium=attrs.evolve(good.equilibrium, displacement=np.full(5, math.nan)))
     monkeypatch.setattr(_fuzz, "run", lambda scene: wrong)
     assert ran(scene)[1][0][0] == "nan"
+    for size, why in ((None, "total: null without warning"), (1.5, "an error larger than Z without warning")):
+        wrong = attrs.evolve(good, errors=attrs.evolve(good.errors, total=attrs.evolve(good.errors.total, size=size)))
+        assert ran(scene)[1] == [["untold", "run", why]]
 
 
 def test_files_and_processes_are_seen_while_the_watch_is_on(tmp_path):

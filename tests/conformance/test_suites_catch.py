@@ -46,37 +46,30 @@ class Dissipating(broken_laws.Broken):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("plugin", "check", "found"),
-    [
-        (law("sticky"), "zero_outside", "force 1 at gap 0 m"),
-        (law("negative"), "never_negative", "force -"),
-        (law("falling"), "monotonic", "the force falls by"),
-        (law("wrong_slope"), "derivatives", "d_gap = .* but differences give"),
-        (law("losing"), "closed_cycle", "say dissipative = True"),
-        (Dissipating(function=broken_laws.gaining), "closed_cycle", "gains .* of the energy"),
-        (law("allocating"), "no_allocation", "a call allocates [1-9]"),
-        (law("infinite"), "extreme_input", "not finite at gap -1 m"),
-        (law("raising"), "extreme_input", "raises ValueError: too deep"),
-        (law("incomplete"), "overwrites", "`force` is not overwritten whole"),
-        (law("writing", state_size=1), "input_untouched", "state_old changed"),
-        (law("neighbours"), "array_lengths", "the order of the contacts"),
-        (law("other_signature"), "signature", "not for LAW alone"),
-        (law("plain_python"), "signature", "is not compiled"),
-        (broken_laws.OwnUnits(), "unit_invariance", "a dimensional number hides"),
-        (broken_laws.OwnUnits(), "hertzian", "the force differs by .* from Hertz's"),
-        (broken_laws.FollowsLoad(), "running", "say renewed = True"),
-        (broken_laws.StandsOff(), "running", "it must vanish"),
-        (broken_laws.FlatParameters(), "parameters", r"returns shape \(7,\), not \(7, k\)"),
-        (
-            broken_laws.NeedsOption,
-            "declaration",
-            r"options without a default \(stiffness\): give the class a classmethod `examples",
-        ),
-        (broken_laws.Thawed(), "declaration", "is not frozen"),
-    ],
-    ids=lambda v: v if isinstance(v, str) else None,
-)
+@pytest.mark.parametrize(("plugin", "check", "found"), [
+    (law("sticky"), "zero_outside", "force 1 at gap 0 m"), (law("negative"), "never_negative", "force -"),
+    (law("falling"), "monotonic", "the force falls by"),
+    (law("wrong_slope"), "derivatives", "d_gap = .* but differences give"),
+    (law("losing"), "closed_cycle", "say dissipative = True"),
+    (Dissipating(function=broken_laws.gaining), "closed_cycle", "gains .* of the energy"),
+    (law("allocating"), "no_allocation", "a call allocates [1-9]"),
+    (law("infinite"), "extreme_input", "not finite at gap -1 m"),
+    (law("raising"), "extreme_input", "raises ValueError: too deep"),
+    (law("incomplete"), "overwrites", "`force` is not overwritten whole"),
+    (law("writing", state_size=1), "input_untouched", "state_old changed"),
+    (law("neighbours"), "array_lengths", "the order of the contacts"),
+    (law("other_signature"), "signature", "not for LAW alone"), (law("plain_python"), "signature", "is not compiled"),
+    (broken_laws.OwnUnits(), "unit_invariance", "a dimensional number hides"),
+    (broken_laws.OwnUnits(), "hertzian", "the force differs by .* from Hertz's"),
+    (broken_laws.FollowsLoad(), "running", "say renewed = True"), (broken_laws.StandsOff(), "running", "it must vanish"),
+    (broken_laws.FlatParameters(), "parameters", r"returns shape \(7,\), not \(7, k\)"),
+    (
+        broken_laws.NeedsOption,
+        "declaration",
+        r"options without a default \(stiffness\): give the class a classmethod `examples",
+    ),
+    (broken_laws.Thawed(), "declaration", "is not frozen"),
+], ids=lambda v: v if isinstance(v, str) else None)  # fmt: skip
 def test_contact_laws(plugin, check, found):
     message = failed(ContactLawSuite, plugin, check).get(check, "it passes")
     assert re.search(found, message), message
@@ -92,15 +85,11 @@ class Deadly(broken_laws.Broken):
         os.abort()
 
 
-@pytest.mark.parametrize(
-    ("plugin", "check", "how"),
-    [
-        (law("far_beyond"), "never_negative", "died: its process ended by SIGSEGV"),
-        (law("endless"), "never_negative", "died: it had not ended after 2 s"),
-        (Deadly(function=broken_laws.losing), "parameters", "died: its process ended by SIGABRT"),
-    ],
-    ids=["SIGSEGV", "endless", "SIGABRT"],
-)
+@pytest.mark.parametrize(("plugin", "check", "how"), [
+    (law("far_beyond"), "never_negative", "died: its process ended by SIGSEGV"),
+    (law("endless"), "never_negative", "died: it had not ended after 2 s"),
+    (Deadly(function=broken_laws.losing), "parameters", "died: its process ended by SIGABRT"),
+], ids=["SIGSEGV", "endless", "SIGABRT"])  # fmt: skip
 def test_a_suite_survives_what_it_tests(plugin, check, how, monkeypatch):
     monkeypatch.setattr(suites, "LIMIT_S", 2.0)
     suite = type("Run", (ContactLawSuite,), {"plugin": plugin})()
@@ -129,17 +118,10 @@ class WrongExcitation(Bidirectional):
         return params
 
 
-@pytest.mark.parametrize(
-    ("options", "check"),
-    [
-        ({"factor": 1.01}, "amplitude"),
-        ({"turning": -1}, "sense"),
-        ({"turning": 0}, "sense"),
-        ({"period": 0.5}, "declaration"),
-        ({"period": 1.3}, "period"),
-        ({"lag": 0.01}, "direction_and_phase"),
-    ],
-)
+@pytest.mark.parametrize(("options", "check"), [
+    ({"factor": 1.01}, "amplitude"), ({"turning": -1}, "sense"), ({"turning": 0}, "sense"),
+    ({"period": 0.5}, "declaration"), ({"period": 1.3}, "period"), ({"lag": 0.01}, "direction_and_phase"),
+])  # fmt: skip
 def test_excitations(options, check):
     plugin = WrongExcitation(speed_rpm=12000.0, unbalance=3e-4, **options)
     assert check in failed(ExcitationSuite, plugin, check)
@@ -217,18 +199,11 @@ class Boasting(built_in("integrator", "periodic")):
         return attrs.evolve(record, displacement=1.0001 * record.displacement)
 
 
-@pytest.mark.parametrize(
-    ("plugin", "checks"),
-    [
-        (Boasting(), {"steady_motion", "orbit"}),
-        (Unstable(), {"stability"}),
-        (Overrated(), {"order_linear", "order_contact"}),
-        (Conservative(rho_infinity=0.2), {"energy"}),
-        (Silent(), {"progress"}),
-        (Late(), {"record"}),
-        (TwoMinds(), {"drivers"}),
-    ],
-)
+@pytest.mark.parametrize(("plugin", "checks"), [
+    (Boasting(), {"steady_motion", "orbit"}), (Unstable(), {"stability"}),
+    (Overrated(), {"order_linear", "order_contact"}), (Conservative(rho_infinity=0.2), {"energy"}),
+    (Silent(), {"progress"}), (Late(), {"record"}), (TwoMinds(), {"drivers"}),
+])  # fmt: skip
 def test_integrators(plugin, checks):
     assert checks == set(failed(IntegratorSuite, plugin, *checks))
 
@@ -316,15 +291,12 @@ def test_an_expected_failure_conforms_and_xfails_under_pytest(expecting):
         type("Case", (ContactLawSuite,), {"plugin": plugin})().test_unit_invariance()
 
 
-@pytest.mark.parametrize(
-    ("listed", "found"),
-    [
-        ('[contact_law.loose]\nmonotonic = "never tried"', "it passes: remove it from"),
-        ('[contact_law.loose]\nno_such_check = "what"', "no check has that name"),
-        ('[contact_law.loose]\nmonotonic = ""', "monotonic need a reason in words"),
-        ("[contact_law.loose\n", "is not valid TOML"),
-    ],
-)
+@pytest.mark.parametrize(("listed", "found"), [
+    ('[contact_law.loose]\nmonotonic = "never tried"', "it passes: remove it from"),
+    ('[contact_law.loose]\nno_such_check = "what"', "no check has that name"),
+    ('[contact_law.loose]\nmonotonic = ""', "monotonic need a reason in words"),
+    ("[contact_law.loose\n", "is not valid TOML"),
+])  # fmt: skip
 def test_the_list_is_honoured_strictly(expecting, listed, found, monkeypatch):
     checks = ContactLawSuite.checks()
     few = {name: checks[name] for name in ("declaration", "monotonic")}  # all of them take a second

@@ -208,36 +208,23 @@ def failed(suite, plugin):
     return {row.name for row in suite.conformity(plugin).rows if not row.good}
 
 
-@pytest.mark.parametrize(
-    ("suite", "plugin"),
-    [
-        (MesherSuite, Box()),
-        (FormatSuite, Json()),
-        (FormatSuite, Text()),
-        (QuantitySuite, Share()),
-        (ExecutorSuite, Serial()),
-        (StudySuite, Loads()),
-    ],
-)
+@pytest.mark.parametrize(("suite", "plugin"), [
+    (MesherSuite, Box()), (FormatSuite, Json()), (FormatSuite, Text()), (QuantitySuite, Share()),
+    (ExecutorSuite, Serial()), (StudySuite, Loads()),
+])  # fmt: skip
 def test_sound_ones_conform(suite, plugin):
     assert suite.conformity(plugin).conforms
 
 
 BROKEN = [
-    (MesherSuite, InsideOut(), {"volumes"}),
-    (MesherSuite, Dangling(), {"meshes"}),
-    (FormatSuite, Careless(), {"declaration", "bad_files"}),
-    (FormatSuite, Forgetful(), {"results"}),
-    (QuantitySuite, OfOnePoint(), {"declaration", "columns"}),
-    (ExecutorSuite, Greedy(), {"answers", "ends"}),
-    (ExecutorSuite, Swallowing(), {"ends"}),
-    (StudySuite, Misnamed(), {"help", "command"}),
-    (MesherSuite, Misplaced(), {"sets"}),
-    (MesherSuite, Restless(), {"repeats"}),
-    (FormatSuite, Rounding(), {"round_trip"}),
-    (QuantitySuite, OfColumns(), {"run"}),
+    (MesherSuite, InsideOut(), {"volumes"}), (MesherSuite, Dangling(), {"meshes"}),
+    (FormatSuite, Careless(), {"declaration", "bad_files"}), (FormatSuite, Forgetful(), {"results"}),
+    (QuantitySuite, OfOnePoint(), {"declaration", "columns"}), (ExecutorSuite, Greedy(), {"answers", "ends"}),
+    (ExecutorSuite, Swallowing(), {"ends"}), (StudySuite, Misnamed(), {"help", "command"}),
+    (MesherSuite, Misplaced(), {"sets"}), (MesherSuite, Restless(), {"repeats"}),
+    (FormatSuite, Rounding(), {"round_trip"}), (QuantitySuite, OfColumns(), {"run"}),
     (ExecutorSuite, Twice(), {"answers"}),
-]
+]  # fmt: skip
 
 
 def test_every_duty_can_fail():

@@ -241,23 +241,19 @@ def test_an_explicit_step_is_shortened_by_the_damping(tau):
     assert found.equivalent_damping == pytest.approx(tau * published.springs(found.model, found.equilibrium), rel=1e-2)
 
 
-@pytest.mark.parametrize(
-    ("contact", "told"),
-    [
-        ({"kind": "film"}, "no viscosity is given"),
-        ({"kind": "film", "oil": "VG 33", "temperature_c": 40.0}, "VG 32"),
-        ({"kind": "film", "oil": "VG 32"}, "`temperature_c` is missing"),
-        ({"kind": "film", "oil": "VG 32", "temperature_c": 200.0}, "outside the oil's data"),
-        ({"kind": "film", "viscosity_40": 5e-6, "viscosity_100": 32e-6, "temperature_c": 40.0}, "thin as they warm"),
-        ({"kind": "film", "viscosity": 0.03, "oil": "VG 32", "temperature_c": 40.0}, "more than once"),
-        ({"kind": "film", "temperature_c": 40.0}, "no viscosity is given"),
-        ({"kind": "film", "viscosity": 0.03, "temperature_c": -274.0}, "must be from -273.15 to 1000"),
-        ({"kind": "film", "viscosity": 0.03, "inlet_heating": "gupta"}, "must be one of 'murch_wilson', 'none'"),
-        ({"kind": "film", "viscosity": 0.03, "pressure_viscosity": 20.0}, "must be from 1e-11 to 1e-06"),
-        ({"kind": "film", "viscosity": 0.03, "conductivity": 0.0}, "must be greater than 0"),
-        ({"kind": "hertz", "damping": 10.0, "time_constant": 1e-5}, "exclude each other"),
-    ],
-)
+@pytest.mark.parametrize(("contact", "told"), [
+    ({"kind": "film"}, "no viscosity is given"), ({"kind": "film", "oil": "VG 33", "temperature_c": 40.0}, "VG 32"),
+    ({"kind": "film", "oil": "VG 32"}, "`temperature_c` is missing"),
+    ({"kind": "film", "oil": "VG 32", "temperature_c": 200.0}, "outside the oil's data"),
+    ({"kind": "film", "viscosity_40": 5e-6, "viscosity_100": 32e-6, "temperature_c": 40.0}, "thin as they warm"),
+    ({"kind": "film", "viscosity": 0.03, "oil": "VG 32", "temperature_c": 40.0}, "more than once"),
+    ({"kind": "film", "temperature_c": 40.0}, "no viscosity is given"),
+    ({"kind": "film", "viscosity": 0.03, "temperature_c": -274.0}, "must be from -273.15 to 1000"),
+    ({"kind": "film", "viscosity": 0.03, "inlet_heating": "gupta"}, "must be one of 'murch_wilson', 'none'"),
+    ({"kind": "film", "viscosity": 0.03, "pressure_viscosity": 20.0}, "must be from 1e-11 to 1e-06"),
+    ({"kind": "film", "viscosity": 0.03, "conductivity": 0.0}, "must be greater than 0"),
+    ({"kind": "hertz", "damping": 10.0, "time_constant": 1e-5}, "exclude each other"),
+])  # fmt: skip
 def test_mistakes_are_told_with_a_remedy(contact, told):
     assert told in refused(contact)
 

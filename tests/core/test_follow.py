@@ -266,25 +266,15 @@ def test_files_hold_every_number(curve, tmp_path):
     assert set(content["columns"]) <= set(rows[0])
 
 
-@pytest.mark.parametrize(
-    ("over", "words"),
-    [
-        ("bearing.ball_count=8:12", "takes whole numbers only"),
-        ("integrator.turns=2:3", "setting of a method"),
-        ("excitation.ramp_turns=1:2", "has no effect on the motion"),
-        ("excitation.speed_rpm=-500:3000", "greater than 0"),
-        ("excitation.speed_rpm=3000:3000", "has equal ends"),
-        ("bearing.conformity_inner=0.52:1.2", "conformity_inner"),
-        ("excitation.speed_rpm=0:3000", "greater than 0"),
-        ("contact.kind=hertz:penalty", "takes a word or a switch"),
-        ("load.axial=400:0", "no load acts"),
-        ("load.axial=nan:400", "finite"),
-        ("excitation.force=40:0", "the force is zero"),
-        ("load.radial[5]=0:100", r"did you mean 'load.radial\[1\]'"),
-        ("excitation.speed_rpm=1:2:3", "must have the form"),
-        ("speed", "must have the form"),
-    ],
-)
+@pytest.mark.parametrize(("over", "words"), [
+    ("bearing.ball_count=8:12", "takes whole numbers only"), ("integrator.turns=2:3", "setting of a method"),
+    ("excitation.ramp_turns=1:2", "has no effect on the motion"), ("excitation.speed_rpm=-500:3000", "greater than 0"),
+    ("excitation.speed_rpm=3000:3000", "has equal ends"), ("bearing.conformity_inner=0.52:1.2", "conformity_inner"),
+    ("excitation.speed_rpm=0:3000", "greater than 0"), ("contact.kind=hertz:penalty", "takes a word or a switch"),
+    ("load.axial=400:0", "no load acts"), ("load.axial=nan:400", "finite"),
+    ("excitation.force=40:0", "the force is zero"), ("load.radial[5]=0:100", r"did you mean 'load.radial\[1\]'"),
+    ("excitation.speed_rpm=1:2:3", "must have the form"), ("speed", "must have the form"),
+])  # fmt: skip
 def test_what_cannot_be_followed_is_refused(over, words):
     with pytest.raises((SceneError, ConvergenceError), match=words):
         rw.follow(SCENE, over)

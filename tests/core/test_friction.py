@@ -161,16 +161,13 @@ def test_without_oil_it_is_left_out_and_asked_for_it_names_the_keys():
     assert "[lubricant] with `oil` and `temperature_c`" in str(caught.value)
 
 
-@pytest.mark.parametrize(
-    ("tables", "words"),
-    [
-        ({"lubricant": {**OIL, "oil_fraction": -0.1}}, "must be from 0 to 1"),
-        ({"lubricant": {**OIL, "traction_limit": 0.4}}, "must be from 0 to 0.3"),
-        ({"lubricant": {**OIL, "temperature_c": 180.0}}, "outside the oil's data"),
-        ({"quantities": {"friction": {"seal_torque": -1.0}}}, "must be at least 0"),
-        ({"quantities": {"friction": {"drag_band": 2.0}}}, "must be from 0 to 1"),
-    ],
-)
+@pytest.mark.parametrize(("tables", "words"), [
+    ({"lubricant": {**OIL, "oil_fraction": -0.1}}, "must be from 0 to 1"),
+    ({"lubricant": {**OIL, "traction_limit": 0.4}}, "must be from 0 to 0.3"),
+    ({"lubricant": {**OIL, "temperature_c": 180.0}}, "outside the oil's data"),
+    ({"quantities": {"friction": {"seal_torque": -1.0}}}, "must be at least 0"),
+    ({"quantities": {"friction": {"drag_band": 2.0}}}, "must be from 0 to 1"),
+])  # fmt: skip
 def test_mistakes_are_told(tables, words):
     with pytest.raises(rw.SceneError) as caught:
         scene(**tables)

@@ -233,19 +233,13 @@ def bearing():
     return model.system, still
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        ({"ball": SIX}, r"`ball` has the shape \(6, 2\); that of this system is \(12, 2\): a row for each ball"),
-        ({"ball": np.zeros((12, 1))}, r"`ball` has the shape \(12, 1\)"),
-        ({"ball_rate": SIX}, r"`ball_rate` has the shape \(6, 2\)"),
-        (
-            {"step": Increment(memory=np.zeros((12, 1)))},
-            r"`memory` has the shape \(12, 1\); that of this system is \(24, 0\)",
-        ),
-        ({"v": np.zeros(3)}, r"`v` has the shape \(3,\)"),
-    ],
-)
+@pytest.mark.parametrize(("arguments", "words"), [
+    ({"ball": SIX}, r"`ball` has the shape \(6, 2\); that of this system is \(12, 2\): a row for each ball"),
+    ({"ball": np.zeros((12, 1))}, r"`ball` has the shape \(12, 1\)"),
+    ({"ball_rate": SIX}, r"`ball_rate` has the shape \(6, 2\)"),
+    ({"step": Increment(memory=np.zeros((12, 1)))}, r"`memory` has the shape \(12, 1\); that of this system is \(24, 0\)"),
+    ({"v": np.zeros(3)}, r"`v` has the shape \(3,\)"),
+])  # fmt: skip
 def test_evaluate_refuses_states_of_another_shape(bearing, arguments, words):
     system, still = bearing
     with pytest.raises(PluginError, match=words):

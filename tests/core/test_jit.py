@@ -83,6 +83,7 @@ DAMAGES = {
     "emptied": (".nbc", lambda content: b""),
     # What a machine that lost its power leaves: numba reads it, and the linker ends the process.
     "zeroed": (".nbc", lambda content: bytes(len(content))),
+    "one bit": (".nbc", lambda content: content[:-9] + bytes([content[-9] ^ 1]) + content[-8:]),
     "half zeroed": (".nbc", lambda content: content[: len(content) // 2] + bytes((len(content) + 1) // 2)),
 }
 

@@ -10,13 +10,10 @@ from raceway.core.periodic.orbits import Orbits, orbits
 from raceway.extend import layout
 
 SCENE = {
-    "bearing": {"preset": "B7206C"},
-    "load": {"axial": 500.0},
-    "supports": {"tilt": "free"},
-    "rotor": {"mass": 1.5},
-    "kinematics": {"gyroscopic": "none"},
+    "bearing": {"preset": "B7206C"}, "load": {"axial": 500.0}, "supports": {"tilt": "free"},
+    "rotor": {"mass": 1.5}, "kinematics": {"gyroscopic": "none"},
     "excitation": {"kind": "bidirectional", "unbalance": 3e-5, "speed_rpm": 9000.0},
-}
+}  # fmt: skip
 CONDENSED = {
     "bodies": {"kind": "condensed"},
     "mesh": {"kind": "structured", "element_size": 2.5e-3, "nodes_per_semi_axis": 1},

@@ -41,18 +41,12 @@ def solved(tables, **options):
 ONE_WAY = {"kind": "unidirectional"}
 
 
-@pytest.mark.parametrize(
-    "tables",
-    [
-        scene(),
-        scene(tilt="free", inertia=True),
-        scene(excitation=ONE_WAY),
-        scene(tilt="free", inertia=True, kinematics={"gyroscopic": "shared"}),
-        scene(contact={"kind": "penalty", "damping": 500.0}, supports={"tilt": 2e4}),
-        scene(inertia=True, supports={"axial": "displacement"}),
-    ],
-    ids=["locked", "free", "one way", "gyroscopic", "damped penalty", "held axially"],
-)
+@pytest.mark.parametrize("tables", [
+    scene(), scene(tilt="free", inertia=True), scene(excitation=ONE_WAY),
+    scene(tilt="free", inertia=True, kinematics={"gyroscopic": "shared"}),
+    scene(contact={"kind": "penalty", "damping": 500.0}, supports={"tilt": 2e4}),
+    scene(inertia=True, supports={"axial": "displacement"}),
+], ids=["locked", "free", "one way", "gyroscopic", "damped penalty", "held axially"])  # fmt: skip
 def test_equals_collocation_in_fourier_series(tables):
     result = solved(tables, tolerance=1e-9)
     model = model_of(tables)
@@ -265,15 +259,12 @@ def test_a_motion_of_which_rounding_is_much_takes_no_finer_mesh(monkeypatch):
     assert len(taken) <= 5 and len(set(taken)) == 1
 
 
-@pytest.mark.parametrize(
-    ("tables", "words"),
-    [
-        (scene(contact={"friction": 0.1}), "contact.friction"),
-        (scene(kinematics={"orbiting": True}, load={"radial": [100.0, 0.0]}), "kinematics.orbiting"),
-        (scene(excitation=ONE_WAY, kinematics={"orbiting": True}), "kinematics.orbiting"),
-        (scene(bodies={"kind": "condensed"}, contact={"discretisation": "nodal", "kind": "penalty"}), "nodal"),
-    ],
-)
+@pytest.mark.parametrize(("tables", "words"), [
+    (scene(contact={"friction": 0.1}), "contact.friction"),
+    (scene(kinematics={"orbiting": True}, load={"radial": [100.0, 0.0]}), "kinematics.orbiting"),
+    (scene(excitation=ONE_WAY, kinematics={"orbiting": True}), "kinematics.orbiting"),
+    (scene(bodies={"kind": "condensed"}, contact={"discretisation": "nodal", "kind": "penalty"}), "nodal"),
+])  # fmt: skip
 def test_refusals_name_reason_and_remedy(tables, words):
     with pytest.raises(SceneError) as caught:
         solved(tables)

@@ -109,16 +109,12 @@ def test_pressures_are_hertz_line_contacts():
     assert pressure * np.pi * across * along == pytest.approx(1000.0, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("table", "keys", "path"),
-    [
-        ("supports", {"axial": "force"}, "supports.axial"),
-        ("contact", {"kind": "hertz"}, "contact.kind"),
-        ("contact", {"kind": "line", "friction": 0.1}, "contact.friction"),
-        ("kinematics", {"gyroscopic": "shared"}, "kinematics.gyroscopic"),
-        ("load", {"axial": 100.0, "radial": [FORCE, 0.0]}, "load.axial"),
-    ],
-)
+@pytest.mark.parametrize(("table", "keys", "path"), [
+    ("supports", {"axial": "force"}, "supports.axial"), ("contact", {"kind": "hertz"}, "contact.kind"),
+    ("contact", {"kind": "line", "friction": 0.1}, "contact.friction"),
+    ("kinematics", {"gyroscopic": "shared"}, "kinematics.gyroscopic"),
+    ("load", {"axial": 100.0, "radial": [FORCE, 0.0]}, "load.axial"),
+])  # fmt: skip
 def test_what_rollers_cannot_do_is_refused_by_its_key(table, keys, path):
     with pytest.raises(SceneError, match=f"`{path}`"):
         make_plan(scene_from_dict({**TABLES, table: keys}))

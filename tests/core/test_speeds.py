@@ -135,16 +135,11 @@ def test_fit_of_a_series_of_equilibria_has_no_mass():
     assert abs(found.mass_used) < 1e-6 * found.equivalent_stiffness / found.speed**2
 
 
-@pytest.mark.parametrize(
-    ("speeds", "words"),
-    [
-        ([9000.0], "at least two speeds"),
-        ([9000.0, 9000.0], "5 % or more above the smallest"),
-        ([9000.0, 9001.0, 9449.0], "5 % or more above the smallest: closer ones make K wrong by 20 times"),
-        ([0.0, 1.0], "greater than 0"),
-        ([], "two"),
-    ],
-)
+@pytest.mark.parametrize(("speeds", "words"), [
+    ([9000.0], "at least two speeds"), ([9000.0, 9000.0], "5 % or more above the smallest"),
+    ([9000.0, 9001.0, 9449.0], "5 % or more above the smallest: closer ones make K wrong by 20 times"),
+    ([0.0, 1.0], "greater than 0"), ([], "two"),
+])  # fmt: skip
 def test_bad_speeds(speeds, words):
     with pytest.raises(SceneError, match=rf"identifier\.speeds_rpm.*{words}"):
         scene_from_dict(steady(excitation=SMALL, identifier={"kind": "impedance_fit", "speeds_rpm": speeds}))

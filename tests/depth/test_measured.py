@@ -79,24 +79,19 @@ def test_file_is_found_beside_the_scene(tmp_path):
 GOOD = "\n".join(f"{k * 1e-4:.6f},{k % 3}.5" for k in range(12))
 
 
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        (None, "No such file"),
-        ("", "is empty: a header line and samples are needed"),
-        ("time,Fy\n" + GOOD, "the first line must name t"),
-        ("t,force\n" + GOOD, "the first line must name t and some of Fx"),
-        ("t,Fy,Fq\n" + GOOD, "no numbers stand under 'Fq' of line 1"),
-        ("t,Fy\n0,1\n1e-4,1\n", "2 samples; at least 8"),
-        ("t,Fy\n" + GOOD.replace("2.5", "two"), "line 4: 2 numbers are needed, found '0.000200,two'"),
-        ("t,Fy\n" + GOOD.replace("2.5", "nan"), "line 4: a sample is missing (0.000200,nan)"),
-        ("t,Fy\n" + GOOD.replace("2.5", "2.5,7"), "line 4: 2 numbers are needed"),
-        ("t,Fy\n" + GOOD.replace("0.000300", "0.000200"), "line 5: time must grow"),
-        ("t,Fy,Fy\n" + "\n".join(f"{k * 1e-4},1,2" for k in range(12)), "duplicated"),
-        (b"t,Fy\n\xff\xfe\n", "line 2: 2 numbers are needed"),
-        ("t,Fy\n" + "\n".join(f"{k * 1e-4},0.0" for k in range(12)), "the force is zero"),
-    ],
-)
+@pytest.mark.parametrize(("text", "words"), [
+    (None, "No such file"), ("", "is empty: a header line and samples are needed"),
+    ("time,Fy\n" + GOOD, "the first line must name t"),
+    ("t,force\n" + GOOD, "the first line must name t and some of Fx"),
+    ("t,Fy,Fq\n" + GOOD, "no numbers stand under 'Fq' of line 1"), ("t,Fy\n0,1\n1e-4,1\n", "2 samples; at least 8"),
+    ("t,Fy\n" + GOOD.replace("2.5", "two"), "line 4: 2 numbers are needed, found '0.000200,two'"),
+    ("t,Fy\n" + GOOD.replace("2.5", "nan"), "line 4: a sample is missing (0.000200,nan)"),
+    ("t,Fy\n" + GOOD.replace("2.5", "2.5,7"), "line 4: 2 numbers are needed"),
+    ("t,Fy\n" + GOOD.replace("0.000300", "0.000200"), "line 5: time must grow"),
+    ("t,Fy,Fy\n" + "\n".join(f"{k * 1e-4},1,2" for k in range(12)), "duplicated"),
+    (b"t,Fy\n\xff\xfe\n", "line 2: 2 numbers are needed"),
+    ("t,Fy\n" + "\n".join(f"{k * 1e-4},0.0" for k in range(12)), "the force is zero"),
+])  # fmt: skip
 def test_bad_file_gives_one_clear_message(tmp_path, text, words):
     path = tmp_path / "force.csv"
     if isinstance(text, bytes):

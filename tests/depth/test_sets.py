@@ -243,44 +243,38 @@ def test_lift_off_of_a_sprung_set():
     assert preload["lift_off_axial_n"] == [None, pytest.approx(-200.0, rel=1e-6)] and preload["lift_off_row"] == [None, 1]
 
 
-@pytest.mark.parametrize(
-    ("bearing", "words"),
-    [
-        ({"arrangement": "DBX"}, r"must be one of 'single', 'DB'.*\+\+-"),
-        ({"arrangement": "DBT"}, "is ambiguous: three rows in NTN's catalogue and four in NSK's: write 'TBT'"),
-        ({"arrangement": ""}, "must be one of"),
-        ({"arrangement": "TT"}, "needs rows that brace each other.*the 3 rows of 'TT' face one way only.*load.axial"),
-        ({"arrangement": "--"}, "needs rows that brace each other"),
-        ({"row": [{}, {}]}, r"`row` has 2 tables, but arrangement = 'TBT' is 3 rows"),
-        ({"arrangement": "single", "row": [{}]}, r"`row\[0\]` has no `direction`"),
-        ({"row": [{}, {}, {"direction": "left"}]}, r"bearing.row\[2\].direction` = 'left'.*must be one of '\+', '-'"),
-        ({"row": [{}, {"angle": 3}, {}]}, r"bearing.row\[1\].angle` = 3: unknown key"),
-        ({"row": [{}, {"preset": "nothing"}, {}]}, r"bearing.row\[1\].preset` = 'nothing': no such preset"),
-        ({"row": [{}, {"ball_count": 99}, {}]}, r"`row\[1\]`: `ball_count` = 99 .* do not fit"),
-        ({"row": [{}, {"preload": 10.0}, {}]}, r"`row\[1\].preload` .* set preload_of = 'row'"),
-        ({"row": [{}, {"position": DISTANCE}, {}]}, "two rows at the same place"),
-        ({"row": "TBT"}, "must be a list of tables, not a string"),
-        ({"second_preload": 10.0, "preload_of": "row"}, "set preload_of = 'set'"),
-        ({"preload": 0.0, "second_preload": 10.0}, "needs a `preload`"),
-        ({"preload_kind": "spring", "preload_of": "row"}, "with preload_kind = 'spring' use 'set'"),
-        ({"preload_kind": "spring", "spring_travel": 0.0}, "a spring without travel is no spring.*preload_kind = 'rigid'"),
-    ],
-)
+@pytest.mark.parametrize(("bearing", "words"), [
+    ({"arrangement": "DBX"}, r"must be one of 'single', 'DB'.*\+\+-"),
+    ({"arrangement": "DBT"}, "is ambiguous: three rows in NTN's catalogue and four in NSK's: write 'TBT'"),
+    ({"arrangement": ""}, "must be one of"),
+    ({"arrangement": "TT"}, "needs rows that brace each other.*the 3 rows of 'TT' face one way only.*load.axial"),
+    ({"arrangement": "--"}, "needs rows that brace each other"),
+    ({"row": [{}, {}]}, r"`row` has 2 tables, but arrangement = 'TBT' is 3 rows"),
+    ({"arrangement": "single", "row": [{}]}, r"`row\[0\]` has no `direction`"),
+    ({"row": [{}, {}, {"direction": "left"}]}, r"bearing.row\[2\].direction` = 'left'.*must be one of '\+', '-'"),
+    ({"row": [{}, {"angle": 3}, {}]}, r"bearing.row\[1\].angle` = 3: unknown key"),
+    ({"row": [{}, {"preset": "nothing"}, {}]}, r"bearing.row\[1\].preset` = 'nothing': no such preset"),
+    ({"row": [{}, {"ball_count": 99}, {}]}, r"`row\[1\]`: `ball_count` = 99 .* do not fit"),
+    ({"row": [{}, {"preload": 10.0}, {}]}, r"`row\[1\].preload` .* set preload_of = 'row'"),
+    ({"row": [{}, {"position": DISTANCE}, {}]}, "two rows at the same place"),
+    ({"row": "TBT"}, "must be a list of tables, not a string"),
+    ({"second_preload": 10.0, "preload_of": "row"}, "set preload_of = 'set'"),
+    ({"preload": 0.0, "second_preload": 10.0}, "needs a `preload`"),
+    ({"preload_kind": "spring", "preload_of": "row"}, "with preload_kind = 'spring' use 'set'"),
+    ({"preload_kind": "spring", "spring_travel": 0.0}, "a spring without travel is no spring.*preload_kind = 'rigid'"),
+])  # fmt: skip
 def test_bad_sets_are_refused(bearing, words):
     with pytest.raises(SceneError, match=words):
         scene("TBT", bearing=bearing)
 
 
-@pytest.mark.parametrize(
-    ("tables", "words"),
-    [
-        ({"kinematics": {"orbiting": True, "spin_speed_rpm": 1e4}}, "balls travel at different speeds"),
-        ({"kinematics": {"ball_inertia": True, "gyroscopic": "shared", "spin_speed_rpm": 1e4}}, "moments are computed"),
-        ({"contact": {"friction": 0.1}}, "friction is computed for balls of one kind"),
-        ({"bodies": {"kind": "condensed"}}, "one ring section for all rows"),
-        ({"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured"}}, "elastic bodies are one row of balls"),
-    ],
-)
+@pytest.mark.parametrize(("tables", "words"), [
+    ({"kinematics": {"orbiting": True, "spin_speed_rpm": 1e4}}, "balls travel at different speeds"),
+    ({"kinematics": {"ball_inertia": True, "gyroscopic": "shared", "spin_speed_rpm": 1e4}}, "moments are computed"),
+    ({"contact": {"friction": 0.1}}, "friction is computed for balls of one kind"),
+    ({"bodies": {"kind": "condensed"}}, "one ring section for all rows"),
+    ({"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured"}}, "elastic bodies are one row of balls"),
+])  # fmt: skip
 def test_what_different_rows_cannot_have_is_refused(tables, words):
     one = scene("DB", 200.0, {"row": [{}, {"contact_angle_deg": 15.0}]}, **tables)
     with pytest.raises(SceneError, match=words):

@@ -116,16 +116,11 @@ def test_a_held_displacement_and_condensed_bodies_warm_up_alike():
 
 
 @pytest.mark.parametrize("hole", [0.0, 12e-3])
-@pytest.mark.parametrize(
-    "seats",
-    [
-        {},
-        {"housing_diameter": 90e-3},
-        {"shaft_material": ALUMINIUM, "housing_material": ALUMINIUM},
-        {"shaft_material": ALUMINIUM, "housing_material": "AlMgSi", "housing_diameter": 90e-3, **TEMPERATURES},
-        {"shaft_material": {"young": "110 GPa", "thermal_expansion": 11e-6}, "inner_temperature": 9.0},
-    ],
-)
+@pytest.mark.parametrize("seats", [
+    {}, {"housing_diameter": 90e-3}, {"shaft_material": ALUMINIUM, "housing_material": ALUMINIUM},
+    {"shaft_material": ALUMINIUM, "housing_material": "AlMgSi", "housing_diameter": 90e-3, **TEMPERATURES},
+    {"shaft_material": {"young": "110 GPa", "thermal_expansion": 11e-6}, "inner_temperature": 9.0},
+])  # fmt: skip
 def test_fits_against_two_annuli(hole, seats):
     """Of one material or two, cold or warm: only the tight part of a warm fit presses."""
     one = scene("single", None, shaft_interference=10e-6, shaft_bore=hole, housing_interference=26e-6, **seats)
@@ -324,13 +319,10 @@ def test_a_set_that_lost_its_preload_says_what_took_it():
         run(scene(outer_temperature=30.0))
 
 
-@pytest.mark.parametrize(
-    ("bodies", "words"),
-    [
-        ({"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured"}}, "give kinematics.radial_expansion instead"),
-        ({"bodies": {"kind": "condensed"}, "contact": {"discretisation": "nodal"}}, "changes the surfaces of the points"),
-    ],
-)
+@pytest.mark.parametrize(("bodies", "words"), [
+    ({"bodies": {"kind": "elastic"}, "mesh": {"kind": "structured"}}, "give kinematics.radial_expansion instead"),
+    ({"bodies": {"kind": "condensed"}, "contact": {"discretisation": "nodal"}}, "changes the surfaces of the points"),
+])  # fmt: skip
 def test_bodies_of_fixed_shape_refuse_temperatures(bodies, words):
     tables = {**scene("single", None, inner_temperature=3.0).to_dict(), "load": {"axial": 100.0}, **bodies}
     with pytest.raises(SceneError, match=words):

@@ -51,21 +51,16 @@ def judged() -> dict[str, tuple[float, float, float]]:
     return {one.name: judge(one) for one in CASES}
 
 
-@pytest.mark.parametrize(
-    ("words", "names", "misses"),
-    [
-        ("three integrators, up to the stable limit", FINE, ""),
-        ("8 to 90 steps per turn, or few turns", COARSE, ""),
-        ("lift-off and light preload", LIFTED, ""),
-        ("sudden load and ramp", BEGUN, ""),
-        ("damping, penalty law, high speed, orbiting balls", OTHERS, ""),
-        (
-            "impedance fit over three speeds",
-            FITTED,
-            "the largest misfit over all speeds is stated; at the speed of the result the fit is closer",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("words", "names", "misses"), [
+    ("three integrators, up to the stable limit", FINE, ""), ("8 to 90 steps per turn, or few turns", COARSE, ""),
+    ("lift-off and light preload", LIFTED, ""), ("sudden load and ramp", BEGUN, ""),
+    ("damping, penalty law, high speed, orbiting balls", OTHERS, ""),
+    (
+        "impedance fit over three speeds",
+        FITTED,
+        "the largest misfit over all speeds is stated; at the speed of the result the fit is closer",
+    ),
+])  # fmt: skip
 def test_of_scenes(claim, words, names, misses):
     ratio = worst([judged()[name][:2] for name in names])
     source = f"Fourier collocation or finer steps, {len(names)} scenes"

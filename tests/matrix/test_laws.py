@@ -20,13 +20,10 @@ PACKAGE = Path(__file__).parents[2] / "examples" / "third_party_law"
 OIL = {"kind": "film", "oil": "VG 32", "temperature_c": 40.0}
 DRY = "dry"
 CONTACTS = {
-    DRY: {"kind": "hertz"},
-    "film": OIL,
-    "c = tau k": {"kind": "hertz", "time_constant": 2.5e-6},
-    "film, c = tau k": {**OIL, "time_constant": 2.5e-6},
-    "hunt_crossley": {"kind": "hunt_crossley", "dissipation": 0.5},
+    DRY: {"kind": "hertz"}, "film": OIL, "c = tau k": {"kind": "hertz", "time_constant": 2.5e-6},
+    "film, c = tau k": {**OIL, "time_constant": 2.5e-6}, "hunt_crossley": {"kind": "hunt_crossley", "dissipation": 0.5},
     "hunt_crossley with memory": {"kind": "hunt_crossley", "restitution": 0.9},
-}
+}  # fmt: skip
 
 
 @cache

@@ -261,20 +261,14 @@ def expected(tables: dict[str, Any]) -> list[tuple[str, str]]:
 
 #: Keys that a person changes, and texts to type; some are refused.
 CHANGES = {
-    "load.axial": ["300", "1 kN", "2500", "-400", "0"],
-    "load.radial": ["[100, 0]", "[0, 0]", ""],
-    "excitation.speed_rpm": ["3000", "12000", "21000", "250 Hz"],
-    "excitation.kind": ["unidirectional", "bidirectional"],
-    "excitation.unbalance": ["1e-4", "6.39e-4", "300 g mm"],
-    "supports.tilt": ["free", "locked", ""],
-    "rotor.mass": ["1.5", "4", "-1", "heavy"],
-    "bearing.preset": ["B7206C", "7206A-NSK", "6206", "B7206X"],
-    "bearing.contact_angle_deg": ["18", "", "95"],
-    "kinematics.gyroscopic": ["outer_race", "shared", ""],
-    "kinematics.ring_growth": ["true", ""],
-    "contact.damping": ["0.001", "50", ""],
+    "load.axial": ["300", "1 kN", "2500", "-400", "0"], "load.radial": ["[100, 0]", "[0, 0]", ""],
+    "excitation.speed_rpm": ["3000", "12000", "21000", "250 Hz"], "excitation.kind": ["unidirectional", "bidirectional"],
+    "excitation.unbalance": ["1e-4", "6.39e-4", "300 g mm"], "supports.tilt": ["free", "locked", ""],
+    "rotor.mass": ["1.5", "4", "-1", "heavy"], "bearing.preset": ["B7206C", "7206A-NSK", "6206", "B7206X"],
+    "bearing.contact_angle_deg": ["18", "", "95"], "kinematics.gyroscopic": ["outer_race", "shared", ""],
+    "kinematics.ring_growth": ["true", ""], "contact.damping": ["0.001", "50", ""],
     "contact.kind": ["penalty", "hertz"],
-}
+}  # fmt: skip
 
 
 def hurry(page: Tab, sequences: int, seed: int) -> list[str]:

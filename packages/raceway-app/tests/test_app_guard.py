@@ -48,15 +48,10 @@ def test_condensed_bodies_have_all_curves_and_the_stiffness_of_their_run():
             assert 1e6 * now == pytest.approx(result.equivalent_stiffness, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        "load.axial=700",
-        pytest.param("excitation.unbalance=3e-4", marks=pytest.mark.slow),
-        "bearing.contact_angle_deg=18",
-        pytest.param("rotor.mass=3", marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.parametrize("change", [
+    "load.axial=700", pytest.param("excitation.unbalance=3e-4", marks=pytest.mark.slow),
+    "bearing.contact_angle_deg=18", pytest.param("rotor.mass=3", marks=pytest.mark.slow),
+])  # fmt: skip
 def test_curves_after_a_change_are_those_of_the_changed_scene(change):
     drawn, changed = Curves(), rw.load_scene(SCENE, [change])
     before = curves(rw.load_scene(SCENE), drawn, few=False)[0]
@@ -93,16 +88,10 @@ def test_only_this_machine_can_connect(application):
     assert addresses == {f"0100007F{port}"}
 
 
-@pytest.mark.parametrize(
-    ("host", "headers"),
-    [
-        ("", {"Cookie": ""}),
-        ("evil.example", {"token": "right"}),
-        ("127.0.0.1.evil.example:80", {"token": "right"}),
-        ("", {"Origin": "http://evil.example", "token": "right"}),
-    ],
-    ids=["no token", "other host", "host with our address in its name", "page of another origin"],
-)
+@pytest.mark.parametrize(("host", "headers"), [
+    ("", {"Cookie": ""}), ("evil.example", {"token": "right"}), ("127.0.0.1.evil.example:80", {"token": "right"}),
+    ("", {"Origin": "http://evil.example", "token": "right"}),
+], ids=["no token", "other host", "host with our address in its name", "page of another origin"])  # fmt: skip
 @pytest.mark.parametrize("path", ["/", "/index.html", "/raceway/app.js", "/ws"])
 def test_others_are_refused(application, host, headers, path):
     token = f"?token={application.token}" if headers.pop("token", "") else ""
@@ -118,15 +107,10 @@ def test_the_token_opens_the_page_and_a_wrong_one_does_not(application):
     assert len(application.token) >= 32
 
 
-@pytest.mark.parametrize(
-    "path",
-    [
-        "/raceway/../../pyproject.toml",
-        "/raceway/%2e%2e/%2e%2e/pyproject.toml",
-        "/raceway//etc/passwd",
-        "/..%2f..%2fetc/passwd",
-    ],
-)
+@pytest.mark.parametrize("path", [
+    "/raceway/../../pyproject.toml", "/raceway/%2e%2e/%2e%2e/pyproject.toml", "/raceway//etc/passwd",
+    "/..%2f..%2fetc/passwd",
+])  # fmt: skip
 def test_no_path_leads_out_of_the_served_files(application, path):
     assert status(application, f"{path}?token={application.token}") in (403, 404)
 

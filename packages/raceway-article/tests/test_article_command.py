@@ -216,22 +216,13 @@ def test_shaft_of_a_known_beam():
     assert shaft_tilt_stiffness(diameter=0.060) == pytest.approx(16.0 * shaft_tilt_stiffness())
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (("--speeds", "15000,10980"), "`--speeds`"),
-        (("--speeds", "10980:15000"), "`--speeds`"),
-        (("--axial", "400,800"), "at least three"),
-        (("--axial", "0,400,800"), "above 0"),
-        (("--axial", "a,b,c"), "above 0"),
-        (("--shaft", "-1"), "`--shaft`"),
-        (("--friction", "-1"), "`--friction`"),
-        (("--set", "bearing.prest=1"), "preset"),
-        (("--plugin", "missing.py"), "missing.py"),
-        (("no-such.toml",), "no such file"),
-        (("--bodies", "soft"), "soft"),
-    ],
-)
+@pytest.mark.parametrize(("words", "told"), [
+    (("--speeds", "15000,10980"), "`--speeds`"), (("--speeds", "10980:15000"), "`--speeds`"),
+    (("--axial", "400,800"), "at least three"), (("--axial", "0,400,800"), "above 0"),
+    (("--axial", "a,b,c"), "above 0"), (("--shaft", "-1"), "`--shaft`"), (("--friction", "-1"), "`--friction`"),
+    (("--set", "bearing.prest=1"), "preset"), (("--plugin", "missing.py"), "missing.py"),
+    (("no-such.toml",), "no such file"), (("--bodies", "soft"), "soft"),
+])  # fmt: skip
 def test_bad_input_is_told_before_anything_is_run(tmp_path, monkeypatch, words, told):
     monkeypatch.setattr(driver, "work_through", lambda *_: pytest.fail("something was run"))
     found = invoke("study", "article", *words, "--out", tmp_path)

@@ -152,16 +152,10 @@ def test_the_picture_of_cost_has_every_way_and_its_difference():
     assert "elastic, explicit 1.5e-02 in 3.6e+03 s" in words
 
 
-@pytest.mark.parametrize(
-    ("bodies", "words"),
-    [
-        ("elastic", ("--speeds", "11000,12000,13000")),
-        ("elastic", ("--axial", "400,1000,2000")),
-        ("elastic", ("--shaft", "1e4")),
-        ("elastic", ("--processes", "2")),
-        ("rigid", ("--turns", "2")),
-    ],
-)
+@pytest.mark.parametrize(("bodies", "words"), [
+    ("elastic", ("--speeds", "11000,12000,13000")), ("elastic", ("--axial", "400,1000,2000")),
+    ("elastic", ("--shaft", "1e4")), ("elastic", ("--processes", "2")), ("rigid", ("--turns", "2")),
+])  # fmt: skip
 def test_an_option_without_effect_is_refused(bodies, words, tmp_path):
     found = invoke("study", "article", "--bodies", bodies, *words, "--out", tmp_path)
     assert found.exit_code == 2
@@ -170,15 +164,11 @@ def test_an_option_without_effect_is_refused(bodies, words, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize(
-    ("change", "path"),
-    [
-        (("excitation", "unbalance", None), "excitation.unbalance"),
-        (("contact", "discretisation", "resultant"), "contact.discretisation"),
-        (("load", "axial", 0.0), "load.axial"),
-        (("mesh", None, None), "mesh"),
-    ],
-)
+@pytest.mark.parametrize(("change", "path"), [
+    (("excitation", "unbalance", None), "excitation.unbalance"),
+    (("contact", "discretisation", "resultant"), "contact.discretisation"), (("load", "axial", 0.0), "load.axial"),
+    (("mesh", None, None), "mesh"),
+])  # fmt: skip
 def test_a_scene_that_the_study_cannot_use_is_refused(change, path):
     found = copy.deepcopy(read_toml(SCENE))
     table, name, value = change

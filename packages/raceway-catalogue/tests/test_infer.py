@@ -231,18 +231,12 @@ def test_the_command_infers_one_bearing_and_a_table(tmp_path):
     assert "refused" in invoke("catalogue", "--infer", str(file)).stdout
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["catalogue", "--infer"],
-        ["catalogue", "--infer", "none.csv"],
-        ["catalogue", "--infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN"],
-        ["catalogue", "--infer", "nsk", "--bore", "70 mm"],
-        ["catalogue", "7014B"],
-        ["catalogue", "70*", "--picture", "all.png"],
-        ["catalogue", "7014C", "--picture", "one.bmp"],
-    ],
-)
+@pytest.mark.parametrize("words", [
+    ["catalogue", "--infer"], ["catalogue", "--infer", "none.csv"],
+    ["catalogue", "--infer", "--bore", "70 mm", "--outer-diameter", "110 mm", "--rating", "15:47 kN"],
+    ["catalogue", "--infer", "nsk", "--bore", "70 mm"], ["catalogue", "7014B"],
+    ["catalogue", "70*", "--picture", "all.png"], ["catalogue", "7014C", "--picture", "one.bmp"],
+])  # fmt: skip
 def test_mistakes_on_the_command_line_are_one_message(words):
     found = invoke(*words)
     assert found.exit_code == 2

@@ -185,16 +185,11 @@ def test_the_key_of_a_row_follows_the_scene_and_the_files_it_names(tmp_path):
     assert keys[0] != keys[1]
 
 
-@pytest.mark.parametrize(
-    ("words", "code", "said"),
-    [
-        (["--vary", "integrator.stepz=1,2"], 2, "stepz"),
-        (["--vary", "nothing"], 2, "nothing"),
-        (["--reference", "integrator.stepz=3"], 2, "stepz"),
-        (["--limit", "0"], 2, "limit"),
-        (["--repeats", "0"], 2, "repeats"),
-    ],
-)
+@pytest.mark.parametrize(("words", "code", "said"), [
+    (["--vary", "integrator.stepz=1,2"], 2, "stepz"), (["--vary", "nothing"], 2, "nothing"),
+    (["--reference", "integrator.stepz=3"], 2, "stepz"), (["--limit", "0"], 2, "limit"),
+    (["--repeats", "0"], 2, "repeats"),
+])  # fmt: skip
 def test_mistakes_are_found_before_anything_runs(words, code, said, tmp_path, monkeypatch):
     monkeypatch.setattr(module, "measured_once", lambda *_: pytest.fail("it ran"))
     found = invoke("precision", ARTICLE, *words, "--out", tmp_path)

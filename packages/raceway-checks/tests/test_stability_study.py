@@ -58,15 +58,11 @@ def test_every_law_and_transient_integrator_takes_part_and_a_third_partys_in_the
     assert len(quick) < len({one.name for one in foreign})
 
 
-@pytest.mark.parametrize(
-    ("limit", "good", "bad"),
-    [
-        (Limit.equal(2.0, 0.01), (2.019, 1.981), (2.021, 1.979)),
-        (Limit.equal(-2.0, 0.01), (-2.019,), (-2.021, 2.0)),
-        (Limit.at_most(1.0), (1.0,), (1.1, math.nan, (0.5, math.nan))),
-        (Limit.at_least(1.0), (1.0, (1.0, 0.3)), (0.9, math.inf)),
-    ],
-)
+@pytest.mark.parametrize(("limit", "good", "bad"), [
+    (Limit.equal(2.0, 0.01), (2.019, 1.981), (2.021, 1.979)), (Limit.equal(-2.0, 0.01), (-2.019,), (-2.021, 2.0)),
+    (Limit.at_most(1.0), (1.0,), (1.1, math.nan, (0.5, math.nan))),
+    (Limit.at_least(1.0), (1.0, (1.0, 0.3)), (0.9, math.inf)),
+])  # fmt: skip
 def test_expectations_judge(limit, good, bad):
     rows = Rows("c")
     assert {rows.check("q", value, "", limit).verdict for value in good} == {AS_EXPECTED}
@@ -334,15 +330,10 @@ def test_an_interruption_keeps_finished_cases(tmp_path, monkeypatch):
     assert stability(only="answer", processes=0, kept=tmp_path).reused == 2
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (("--only", "chater"), "no case is called so"),
-        (("--set", "load.axial=1"), "no scene is given"),
-        ((ARTICLE, "--set", "load.axal=1"), "load.axal"),
-        (("nowhere.toml",), "no such file"),
-    ],
-)
+@pytest.mark.parametrize(("words", "message"), [
+    (("--only", "chater"), "no case is called so"), (("--set", "load.axial=1"), "no scene is given"),
+    ((ARTICLE, "--set", "load.axal=1"), "load.axal"), (("nowhere.toml",), "no such file"),
+])  # fmt: skip
 def test_bad_input(words, message, tmp_path):
     found = invoke("stability", *words, "--processes", 0, "--out", tmp_path)
     assert found.exit_code == 2 and message in found.output

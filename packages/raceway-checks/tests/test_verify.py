@@ -54,15 +54,11 @@ def test_several_cases_come_in_the_order_of_the_file_with_progress():
     assert seen == [("masta-dgbb-1", 0, 2), ("seed-unbalance", 1, 2), ("", 2, 2)]
 
 
-@pytest.mark.parametrize(
-    ("name", "said"),
-    [
-        ("masta-dgbb-2", "masta-dgbb"),
-        ("nsk-7206c-stiffness", "nsk-7206C-stiffness"),
-        ("zzz", "known: masta-dgbb-1"),
-        ("ross-friswell-ball", "a formula that this program need not compute"),
-    ],
-)
+@pytest.mark.parametrize(("name", "said"), [
+    ("masta-dgbb-2", "masta-dgbb"), ("nsk-7206c-stiffness", "nsk-7206C-stiffness"),
+    ("zzz", "known: masta-dgbb-1"),
+    ("ross-friswell-ball", "a formula that this program need not compute"),
+])  # fmt: skip
 def test_a_case_that_is_unknown_or_for_information_is_refused(name, said):
     with pytest.raises(SceneError) as caught:
         verify(only=name)

@@ -275,15 +275,12 @@ def test_foreign_law_is_a_table(tmp_path: Path) -> None:
     assert -out[:3] == pytest.approx(core.force[:3], rel=1e-7)
 
 
-@pytest.mark.parametrize(
-    ("changes", "key"),
-    [
-        ({"contact": {"friction": 0.03}}, "contact.friction"),
-        ({"contact": {"kind": "film"}, "lubricant": {"oil": "VG 32", "temperature_c": 60.0}}, "contact.kind"),
-        ({"bodies": {"kind": "condensed"}}, "bodies.kind"),
-        ({"bearing": FORCES["DB"]["bearing"] | {"preload_kind": "spring"}}, "bearing.preload_kind"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "key"), [
+    ({"contact": {"friction": 0.03}}, "contact.friction"),
+    ({"contact": {"kind": "film"}, "lubricant": {"oil": "VG 32", "temperature_c": 60.0}}, "contact.kind"),
+    ({"bodies": {"kind": "condensed"}}, "bodies.kind"),
+    ({"bearing": FORCES["DB"]["bearing"] | {"preload_kind": "spring"}}, "bearing.preload_kind"),
+])  # fmt: skip
 def test_force_refuses_what_is_no_function_of_the_displacement(changes: dict[str, dict[str, object]], key: str) -> None:
     with pytest.raises(SceneError, match="--kind map") as refusal:
         rw.export_fmu(FORCES["centrifugal"] | changes, kind="force")

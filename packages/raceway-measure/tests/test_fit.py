@@ -139,14 +139,11 @@ def test_what_the_data_do_not_determine_is_said_with_the_combination(tmp_path):
 
 TABLE = {"axial [N]": [400.0, 1000.0], "kxx [N/um]": [39.0, 67.0]}
 BAD = [
-    (TABLE, [], "names no key"),
-    (TABLE, ["bearing.ball_count"], "no continuous key"),
-    (TABLE, [ANGLE, ANGLE], "twice"),
-    (TABLE, ["load.axial"], "column of the data"),
+    (TABLE, [], "names no key"), (TABLE, ["bearing.ball_count"], "no continuous key"),
+    (TABLE, [ANGLE, ANGLE], "twice"), (TABLE, ["load.axial"], "column of the data"),
     (TABLE, ["integrator.tolerance"], "setting of a method"),
     (TABLE, [ANGLE, "bearing.conformity_inner", "bearing.conformity_outer"], "2 measured numbers do not determine 3 free"),
-    ({}, [ANGLE], "is empty"),
-    ({"axial [N]": [], "kxx [N/um]": []}, [ANGLE], "no measurements"),
+    ({}, [ANGLE], "is empty"), ({"axial [N]": [], "kxx [N/um]": []}, [ANGLE], "no measurements"),
     ({"axial [N]": [400.0], "kxx": [39.0]}, [ANGLE], "has no unit"),
     ({"axial [N]": [400.0], "kxx [um]": [39.0]}, [ANGLE], "not a unit"),
     ({"axial [m]": [400.0], "kxx [N/um]": [39.0]}, [ANGLE], "not a unit"),
@@ -159,9 +156,8 @@ BAD = [
     ({"axial [N]": [400.0, 500.0], "kxx [N/um]": [39.0]}, [ANGLE], "differ in length"),
     ({"axial [N]": [400.0], "K [N/um]": [39.0]}, [ANGLE], "excitation"),
     ({"conformity_inner": [0.2], "kxx [N/um]": [39.0]}, [ANGLE], "measurement 1"),
-    ("no-such-file.csv", [ANGLE], "no such file"),
-    (3.0, [ANGLE], "must be a CSV file"),
-]
+    ("no-such-file.csv", [ANGLE], "no such file"), (3.0, [ANGLE], "must be a CSV file"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("data", "free", "words"), BAD)
@@ -419,14 +415,10 @@ def test_the_rigs_record_gives_the_angle_that_its_scene_does_not_say(signals):
     assert 0.3 < missed / unlike.equivalent_stiffness_error < 1.0
 
 
-@pytest.mark.parametrize(
-    ("free", "words"),
-    [
-        ("excitation.unbalance", "is defined by the rig"),
-        ("load.radial[0]", "circular whirl"),
-        (f"{ANGLE},load.axial,bearing.conformity_inner", "2 measured"),
-    ],
-)
+@pytest.mark.parametrize(("free", "words"), [
+    ("excitation.unbalance", "is defined by the rig"), ("load.radial[0]", "circular whirl"),
+    (f"{ANGLE},load.axial,bearing.conformity_inner", "2 measured"),
+])  # fmt: skip
 def test_keys_that_a_rig_does_not_tell_are_refused(signals, free, words):
     folder, scene, _ = signals
     with pytest.raises(SceneError, match=words):

@@ -126,22 +126,18 @@ def test_meshes_that_are_no_body(case, tmp_path):
         File(**{body: path}, sets={body: sets} if sets else {}).mesh(BEARING)
 
 
-@pytest.mark.parametrize(
-    ("mesher", "name", "words"),
-    [
-        (File, "body.obj", "no format has the ending '.obj'"),
-        (File, "gone.vtu", "does not exist"),
-        *(
-            pytest.param(Gmsh, name, words, marks=pytest.mark.needs("gmsh"))
-            for name, words in (
-                ("bad.step", "not a STEP file"),
-                ("gone.step", "does not exist"),
-                ("x.iges", "reads .step"),
-                ("cut.step", "cut.step' cannot be meshed: Could not read"),
-            )
-        ),
-    ],
-)
+@pytest.mark.parametrize(("mesher", "name", "words"), [
+    (File, "body.obj", "no format has the ending '.obj'"), (File, "gone.vtu", "does not exist"),
+    *(
+        pytest.param(Gmsh, name, words, marks=pytest.mark.needs("gmsh"))
+        for name, words in (
+            ("bad.step", "not a STEP file"),
+            ("gone.step", "does not exist"),
+            ("x.iges", "reads .step"),
+            ("cut.step", "cut.step' cannot be meshed: Could not read"),
+        )
+    ),
+])  # fmt: skip
 def test_files_of_no_use(mesher, name, words, tmp_path, capfd):
     (tmp_path / "bad.step").write_text("nothing of the kind")
     (tmp_path / "cut.step").write_text("ISO-10303-21; nothing more")

@@ -89,15 +89,12 @@ def test_contact_damping_is_in_c():
     assert one.dynamic_stiffness(SPEED, SPEED)[1, 1].imag / SPEED == pytest.approx(wanted, rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    "given, words",
-    [
-        ({"bearing": "B7206G"}, "the nearest"),
-        ({"bearing": {"bearing": {"preset": "B7206C"}, "contact": {"friction": 0.1}}}, "dissipates"),
-        ({"bearing": "B7206C", "preload": 100.0, "damping": -1.0}, "must be a finite damping"),
-        ({"bearing": "B7206C", "preload": 100.0, "tilt": "loose"}, "supports.tilt"),
-    ],
-)
+@pytest.mark.parametrize("given, words", [
+    ({"bearing": "B7206G"}, "the nearest"),
+    ({"bearing": {"bearing": {"preset": "B7206C"}, "contact": {"friction": 0.1}}}, "dissipates"),
+    ({"bearing": "B7206C", "preload": 100.0, "damping": -1.0}, "must be a finite damping"),
+    ({"bearing": "B7206C", "preload": 100.0, "tilt": "loose"}, "supports.tilt"),
+])  # fmt: skip
 def test_bad_input_is_refused(given, words):
     with pytest.raises(SceneError, match=words):
         node_bearing(**given)

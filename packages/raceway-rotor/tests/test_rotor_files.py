@@ -173,15 +173,12 @@ def test_a_table_over_speed_and_frequency():
         rw.export_coefficients(data, kind="ansys", at={SPIN: 9000.0})
 
 
-@pytest.mark.parametrize(
-    "given, told",
-    [
-        ({"kind": "abaqus"}, "must be one of nastran, ansys, csv, json"),
-        ({"path": "b.xls"}, "states its kind by the ending: one of .csv, .json"),
-        ({"kind": "nastran", "number": 0}, "`number` = 0: must be a whole number below 1e9, at least 1"),
-        ({"kind": "ansys", "number": 10**6}, "give an element type of Ansys from 1 to"),
-    ],
-)
+@pytest.mark.parametrize("given, told", [
+    ({"kind": "abaqus"}, "must be one of nastran, ansys, csv, json"),
+    ({"path": "b.xls"}, "states its kind by the ending: one of .csv, .json"),
+    ({"kind": "nastran", "number": 0}, "`number` = 0: must be a whole number below 1e9, at least 1"),
+    ({"kind": "ansys", "number": 10**6}, "give an element type of Ansys from 1 to"),
+])  # fmt: skip
 def test_bad_input_is_refused(held, given, told):
     with pytest.raises(RacewayError, match=re.escape(told)):
         rw.export_coefficients(held, source="tangent", **given)

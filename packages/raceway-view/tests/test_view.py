@@ -255,15 +255,12 @@ def raceway_meshers():
 FLIPPED = '{"ball_0": SimpleNamespace(points=points, cells=np.array([[4, 5, 6, 7, 0, 1, 2, 3]]))}'
 
 
-@pytest.mark.parametrize(
-    ("answer", "words"),
-    [
-        ("None", "mesher 'wrong': mesh() returned NoneType; it must be meshes by name"),
-        (FLIPPED, "`ball_0`: 1 of 1 cells are inverted or degenerate"),
-        ('{"ball_0": points}', "mesher 'wrong': body 'ball_0' is no mesh"),
-        ('{"inner_ring": SimpleNamespace(points=1e3 * points, cells=np.arange(8)[None])}', "must return metres"),
-    ],
-)
+@pytest.mark.parametrize(("answer", "words"), [
+    ("None", "mesher 'wrong': mesh() returned NoneType; it must be meshes by name"),
+    (FLIPPED, "`ball_0`: 1 of 1 cells are inverted or degenerate"),
+    ('{"ball_0": points}', "mesher 'wrong': body 'ball_0' is no mesh"),
+    ('{"inner_ring": SimpleNamespace(points=1e3 * points, cells=np.arange(8)[None])}', "must return metres"),
+])  # fmt: skip
 def test_what_a_plug_in_mesher_must_not_return(tmp_path, answer, words):
     (tmp_path / "wrong.py").write_text(MESHER.replace("{answer}", answer))
     given = ("--plugin", tmp_path / "wrong.py", "--set", "mesh.kind=wrong", "--out", tmp_path / "out")

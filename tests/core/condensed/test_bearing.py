@@ -25,13 +25,10 @@ def at_rest(**changes):
     return settled(tables(**changes))
 
 
-@pytest.mark.parametrize(
-    ("supports", "displacement", "diagonal"),
-    [
-        ({"tilt": "locked"}, {0: 28.691, 1: 1.957}, (65.00, 254.8, 255.5)),
-        ({"tilt": "free"}, {0: 26.921, 1: 13.676, 4: 1544.7}, (65.60, 267.5, 253.8)),
-    ],
-)
+@pytest.mark.parametrize(("supports", "displacement", "diagonal"), [
+    ({"tilt": "locked"}, {0: 28.691, 1: 1.957}, (65.00, 254.8, 255.5)),
+    ({"tilt": "free"}, {0: 26.921, 1: 13.676, 4: 1544.7}, (65.60, 267.5, 253.8)),
+])  # fmt: skip
 def test_whole_bearing(supports, displacement, diagonal):
     """An independent program's answers (um, urad, N/um): 1 %."""
     found = at_rest(supports=supports)[1]
@@ -98,19 +95,13 @@ def test_a_result_tells_what_elasticity_does_and_how_sure_it_is():
     assert found["phase_lag_error_deg"] < 0.1 * np.degrees(error["mesh"])
 
 
-@pytest.mark.parametrize(
-    ("changes", "word"),
-    [
-        ({"bearing.bore": 0.0385}, "cuts the inner raceway"),
-        ({"bearing.width": 0.004}, "does not hold the groove"),
-        ({"supports.outer_seat": 0}, "must be greater than 0"),
-        ({"supports.inner_seat": -1e11}, "must be greater than 0"),
-        ({"supports.outer_seat": "[1e11,2e11]"}, "bodies.kind = 'elastic'"),
-        ({"supports.outer_seat": 500}, "500 N/mm3 is 5e11"),
-        ({"mesh.kind": "structured", "mesh.element_size": 1e-5}, "GiB"),
-        ({"contact.damping": 50000}, "N s/m"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "word"), [
+    ({"bearing.bore": 0.0385}, "cuts the inner raceway"), ({"bearing.width": 0.004}, "does not hold the groove"),
+    ({"supports.outer_seat": 0}, "must be greater than 0"), ({"supports.inner_seat": -1e11}, "must be greater than 0"),
+    ({"supports.outer_seat": "[1e11,2e11]"}, "bodies.kind = 'elastic'"),
+    ({"supports.outer_seat": 500}, "500 N/mm3 is 5e11"), ({"mesh.kind": "structured", "mesh.element_size": 1e-5}, "GiB"),
+    ({"contact.damping": 50000}, "N s/m"),
+])  # fmt: skip
 def test_what_cannot_be_condensed_ends_with_one_message(changes, word, tmp_path):
     words = [part for key, value in changes.items() for part in ("--set", f"{key}={value}")]
     done = invoke("run", EXAMPLES / "b7206_condensed.toml", "--out", tmp_path, *words)

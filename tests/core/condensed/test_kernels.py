@@ -54,16 +54,11 @@ def elastic(
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
 #: What ball and contacts can be, each another kernel or branch.
 SCENES = {
-    "weightless": {"kinematics": {"ball_inertia": False}},
-    "inertial": {},
-    "penalty": {"contact": {"kind": "penalty"}},
-    "damped": {"contact": {"damping": 50.0}},
-    "gyroscopic": {"kinematics": {"gyroscopic": "outer_race"}},
-    "shared": {"kinematics": {"gyroscopic": "shared"}},
-    "stick": {"contact": {"friction": 0.03}},
-    "slip": {"contact": {"friction": 0.0005}},
-    "light": {"load": {"axial": 60.0, "radial": [50.0, 0.0]}},
-}
+    "weightless": {"kinematics": {"ball_inertia": False}}, "inertial": {}, "penalty": {"contact": {"kind": "penalty"}},
+    "damped": {"contact": {"damping": 50.0}}, "gyroscopic": {"kinematics": {"gyroscopic": "outer_race"}},
+    "shared": {"kinematics": {"gyroscopic": "shared"}}, "stick": {"contact": {"friction": 0.03}},
+    "slip": {"contact": {"friction": 0.0005}}, "light": {"load": {"axial": 60.0, "radial": [50.0, 0.0]}},
+}  # fmt: skip
 
 
 def model(tilt="free", load=None, **more):

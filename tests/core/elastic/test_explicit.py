@@ -91,16 +91,13 @@ def test_what_the_ring_gains_is_its_kinetic_energy(model):
         a.added_mass = kept
 
 
-@pytest.mark.parametrize(
-    ("tables", "words"),
-    [
-        ({"integrator": {"kind": "newmark", "least_step": 3e-9}}, "unknown key"),
-        ({"integrator": {"kind": "central_difference", "least_step": "soon"}}, "must be a number"),
-        ({"integrator": {"kind": "central_difference", "least_step": -1.0}}, "greater than 0"),
-        ({"integrator": {"kind": "central_difference", "least_step": 1e-3}}, "contacts"),
-        ({"integrator": {"kind": "central_difference", "least_step": 3e-9}, "bodies": {"kind": "condensed"}}, "elastic"),
-    ],
-)
+@pytest.mark.parametrize(("tables", "words"), [
+    ({"integrator": {"kind": "newmark", "least_step": 3e-9}}, "unknown key"),
+    ({"integrator": {"kind": "central_difference", "least_step": "soon"}}, "must be a number"),
+    ({"integrator": {"kind": "central_difference", "least_step": -1.0}}, "greater than 0"),
+    ({"integrator": {"kind": "central_difference", "least_step": 1e-3}}, "contacts"),
+    ({"integrator": {"kind": "central_difference", "least_step": 3e-9}, "bodies": {"kind": "condensed"}}, "elastic"),
+])  # fmt: skip
 def test_a_least_step_that_cannot_be_is_refused(tables, words):
     from raceway import make_plan
 

@@ -20,16 +20,10 @@ pytestmark = pytest.mark.night
 HERTZ = {"kind": "hertz"}
 
 
-@pytest.mark.parametrize(
-    ("path", "printed", "misses"),
-    [
-        (*ROLLED[0], ""),
-        (
-            *ROLLED[1],
-            "the exercise takes every contact for piezoviscous-elastic; this one is light and fast, isoviscous-rigid",
-        ),
-    ],
-)
+@pytest.mark.parametrize(("path", "printed", "misses"), [
+    (*ROLLED[0], ""),
+    (*ROLLED[1], "the exercise takes every contact for piezoviscous-elastic; this one is light and fast, isoviscous-rigid"),
+])  # fmt: skip
 def test_ball_on_a_plate(claim, path, printed, misses):
     value = 1e6 * float(film(**rolled(path)).minimum[0])
     quantity = f"h_min of a ball rolling down a plate, after {path:g} m"

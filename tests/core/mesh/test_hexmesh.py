@@ -106,17 +106,12 @@ def test_missing_and_empty_sets_are_named_with_the_nearest():
         mesh.nodes("raceway")
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"points": [[0.0, 0.0]]}, r"must be \(n, 3\)"),
-        ({"cells": [[0, 1, 2, 3]]}, r"must be \(m, 8\)"),
-        ({"cells": [[0, 1, 2, 3, 4, 5, 6, 999]]}, "a point that does not exist"),
-        ({"points": np.full((200, 3), np.nan)}, "not a finite number"),
-        ({"node_sets": {"far": [500]}}, "node set 'far'"),
-        ({"facet_sets": {"far": [[500, 0]]}}, "facet set 'far'"),
-    ],
-)
+@pytest.mark.parametrize(("change", "words"), [
+    ({"points": [[0.0, 0.0]]}, r"must be \(n, 3\)"), ({"cells": [[0, 1, 2, 3]]}, r"must be \(m, 8\)"),
+    ({"cells": [[0, 1, 2, 3, 4, 5, 6, 999]]}, "a point that does not exist"),
+    ({"points": np.full((200, 3), np.nan)}, "not a finite number"), ({"node_sets": {"far": [500]}}, "node set 'far'"),
+    ({"facet_sets": {"far": [[500, 0]]}}, "facet set 'far'"),
+])  # fmt: skip
 def test_arrays_that_are_no_mesh_are_refused(change, words):
     with pytest.raises(MeshError, match=words):
         attrs.evolve(block(), **change)

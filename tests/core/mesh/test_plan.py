@@ -37,15 +37,12 @@ def test_the_prediction_is_the_mesh():
     assert found["bytes"] > kept
 
 
-@pytest.mark.parametrize(
-    ("mesh", "path", "words"),
-    [
-        ({"element_size": 5e-3}, "mesh.element_size", "is larger than the wall of the inner ring"),
-        ({"element_size": 1e-5}, "mesh.element_size", "GiB, above 4 GiB"),
-        ({"kind": "gmsh", "ball": "gone.step"}, "mesh", "does not exist"),
-        ({"bodies": "rigid"}, "mesh", "rigid bodies have no mesh"),
-    ],
-)
+@pytest.mark.parametrize(("mesh", "path", "words"), [
+    ({"element_size": 5e-3}, "mesh.element_size", "is larger than the wall of the inner ring"),
+    ({"element_size": 1e-5}, "mesh.element_size", "GiB, above 4 GiB"),
+    ({"kind": "gmsh", "ball": "gone.step"}, "mesh", "does not exist"),
+    ({"bodies": "rigid"}, "mesh", "rigid bodies have no mesh"),
+])  # fmt: skip
 def test_the_plan_refuses_meshes_beside_everything_else(mesh, path, words):
     chosen = attrs.evolve(scene(**mesh), kinematics=attrs.evolve(scene().kinematics, orbiting=True))
     with pytest.raises(SceneError) as told:
@@ -149,14 +146,10 @@ def test_other_meshers_predictions_are_judged():
         predicted_mesh(resolve(attrs.evolve(chosen, mesh=Guessing(7.0))))
 
 
-@pytest.mark.parametrize(
-    ("duty", "call"),
-    [
-        ("mesh", lambda scene: mesh_bodies(resolve(scene))),
-        ("predict", lambda scene: predicted_mesh(resolve(scene))),
-        ("predict", make_plan),
-    ],
-)
+@pytest.mark.parametrize(("duty", "call"), [
+    ("mesh", lambda scene: mesh_bodies(resolve(scene))), ("predict", lambda scene: predicted_mesh(resolve(scene))),
+    ("predict", make_plan),
+])  # fmt: skip
 def test_what_a_mesher_raises_is_put_to_its_name(duty, call):
     with pytest.raises(PluginError, match=rf"^mesher 'guessing': {duty}\(\) raises KeyError: 'teeth'"):
         call(attrs.evolve(scene(), mesh=Guessing(KeyError("teeth"))))

@@ -165,21 +165,13 @@ def test_the_ball_load_comes_from_the_scene():
         mesh_bodies(resolve(scene_from_dict({"bearing": {"preset": "B7206C"}})))
 
 
-@pytest.mark.parametrize(
-    ("mesher", "change", "words"),
-    [
-        (
-            {"element_size": 5e-3},
-            {},
-            r"`mesh.element_size` = 0.005: is larger than the wall of the inner ring .*, 0.0032\d* m",
-        ),
-        ({"element_size": 1e-5}, {}, r"`mesh.element_size` = 1e-05: would give about .*e\+10 elements and take .* GiB"),
-        ({"element_size": 2e-4, "azimuth_cells": 100_000}, {}, "elements and take .* GiB, above 4 GiB"),
-        ({}, {"bore": None}, "`bearing.bore`: is missing"),
-        ({}, {"width": 6e-3}, "width of 6 mm does not hold the groove"),
-        ({}, {"shoulder_height": 1e-4}, "contact angle of 15 deg lies outside the groove"),
-    ],
-)
+@pytest.mark.parametrize(("mesher", "change", "words"), [
+    ({"element_size": 5e-3}, {}, r"`mesh.element_size` = 0.005: is larger than the wall of the inner ring .*, 0.0032\d* m"),
+    ({"element_size": 1e-5}, {}, r"`mesh.element_size` = 1e-05: would give about .*e\+10 elements and take .* GiB"),
+    ({"element_size": 2e-4, "azimuth_cells": 100_000}, {}, "elements and take .* GiB, above 4 GiB"),
+    ({}, {"bore": None}, "`bearing.bore`: is missing"), ({}, {"width": 6e-3}, "width of 6 mm does not hold the groove"),
+    ({}, {"shoulder_height": 1e-4}, "contact angle of 15 deg lies outside the groove"),
+])  # fmt: skip
 def test_what_cannot_be_meshed_is_refused_with_numbers(mesher, change, words):
     with pytest.raises(MeshError, match=words):
         Structured(**mesher).mesh(attrs.evolve(BEARING, **change))

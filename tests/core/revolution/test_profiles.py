@@ -117,22 +117,19 @@ def test_a_rectangle_is_the_ring_of_the_catalogue():
     assert coarse_profile(given).points == pytest.approx(coarse_profile(shape).points, abs=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("polygon", "word"),
-    [
-        ([[0.0, 15e-3], [1e-3, 15e-3], [1e-3, 20e-3]], "at least 4"),
-        ([[-8e-3, 15e-3], [8e-3, 15e-3], [9e-3, 17e-3], [8e-3, 20e-3], [-8e-3, 20e-3]], "side face"),
-        ([[-8e-3, 15e-3], [2e-3, 15e-3], [2e-3, 16e-3], [8e-3, 16e-3], [8e-3, 20e-3], [-8e-3, 20e-3]], "vertical step"),
-        ([[-8e-3, 15e-3], [8e-3, 15e-3], [8e-3, 18e-3], [-8e-3, 18e-3]], "meets the race side 0 times"),
-        ([[-2e-3, 15e-3], [2e-3, 15e-3], [2e-3, 20e-3], [-2e-3, 20e-3]], "meets the race side 0 times"),
-        ([[-8e-3, 15e-3], [-1e-3, 18.9e-3], [8e-3, 15e-3], [8e-3, 20e-3], [-8e-3, 20e-3]], "no wall is left"),
-        ([[-8e-3, 15e-3], [8e-3, 15e-3], [8e-3, 24e-3], [-8e-3, 24e-3]], "closes over the groove"),
-        ([[-8e-3, 14e-3], [8e-3, 14e-3], [8e-3, 20e-3], [-8e-3, 20e-3]], "give the same"),
-        ([[-8e-3, 15e-3], [8e-3, 15e-3], [8e-3, -20e-3], [-8e-3, 20e-3]], "greater than 0"),
-        ([[-8e-3, 15e-3], [0.0, 21e-3], [8e-3, 15e-3], [8e-3, 20e-3], [-8e-3, 20e-3]], "crosses itself"),
-        ("round", "list of points"),
-    ],
-)
+@pytest.mark.parametrize(("polygon", "word"), [
+    ([[0.0, 15e-3], [1e-3, 15e-3], [1e-3, 20e-3]], "at least 4"),
+    ([[-8e-3, 15e-3], [8e-3, 15e-3], [9e-3, 17e-3], [8e-3, 20e-3], [-8e-3, 20e-3]], "side face"),
+    ([[-8e-3, 15e-3], [2e-3, 15e-3], [2e-3, 16e-3], [8e-3, 16e-3], [8e-3, 20e-3], [-8e-3, 20e-3]], "vertical step"),
+    ([[-8e-3, 15e-3], [8e-3, 15e-3], [8e-3, 18e-3], [-8e-3, 18e-3]], "meets the race side 0 times"),
+    ([[-2e-3, 15e-3], [2e-3, 15e-3], [2e-3, 20e-3], [-2e-3, 20e-3]], "meets the race side 0 times"),
+    ([[-8e-3, 15e-3], [-1e-3, 18.9e-3], [8e-3, 15e-3], [8e-3, 20e-3], [-8e-3, 20e-3]], "no wall is left"),
+    ([[-8e-3, 15e-3], [8e-3, 15e-3], [8e-3, 24e-3], [-8e-3, 24e-3]], "closes over the groove"),
+    ([[-8e-3, 14e-3], [8e-3, 14e-3], [8e-3, 20e-3], [-8e-3, 20e-3]], "give the same"),
+    ([[-8e-3, 15e-3], [8e-3, 15e-3], [8e-3, -20e-3], [-8e-3, 20e-3]], "greater than 0"),
+    ([[-8e-3, 15e-3], [0.0, 21e-3], [8e-3, 15e-3], [8e-3, 20e-3], [-8e-3, 20e-3]], "crosses itself"),
+    ("round", "list of points"),
+])  # fmt: skip
 def test_polygons_that_are_no_ring_are_refused_with_the_key(polygon, word):
     with pytest.raises(SceneError, match=word) as found:
         scene(inner_profile=polygon)

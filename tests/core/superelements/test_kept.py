@@ -40,16 +40,10 @@ def test_what_was_kept_gives_the_same_digits_without_a_factorisation_and_serves_
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"bodies": {"formulation": "full"}},
-        {"mesh": {"azimuth_cells": 30}},
-        {"bearing": {"rings": {"young": 205e9}}},
-        {"supports": {"outer_seat": 1e13}},
-    ],
-    ids=["formulation", "mesh", "material", "seat"],
-)
+@pytest.mark.parametrize("change", [
+    {"bodies": {"formulation": "full"}}, {"mesh": {"azimuth_cells": 30}}, {"bearing": {"rings": {"young": 205e9}}},
+    {"supports": {"outer_seat": 1e13}},
+], ids=["formulation", "mesh", "material", "seat"])  # fmt: skip
 def test_other_bodies_are_other_entries(change):
     """Each against a cache of its own: a wrong answer would be read without a word."""
     settled(built())

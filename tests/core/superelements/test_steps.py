@@ -62,15 +62,11 @@ def image_of(system, dt):
     return image
 
 
-@pytest.mark.parametrize(
-    ("tables", "steps"),
-    [
-        pytest.param({}, (1e-6,), id="fastened"),
-        pytest.param(SEATS, (1e-2,), id="on beds"),
-        pytest.param({}, (1e-2, 1e-6), id="fastened, both", marks=pytest.mark.slow),
-        pytest.param(SEATS, (1e-2, 1e-6), id="on beds, both", marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.parametrize(("tables", "steps"), [
+    pytest.param({}, (1e-6,), id="fastened"), pytest.param(SEATS, (1e-2,), id="on beds"),
+    pytest.param({}, (1e-2, 1e-6), id="fastened, both", marks=pytest.mark.slow),
+    pytest.param(SEATS, (1e-2, 1e-6), id="on beds, both", marks=pytest.mark.slow),
+])  # fmt: skip
 def test_a_solution_is_that_of_the_matrix_of_a_step(tables, steps):
     """Stiffness, friction, dashpots, mass: the image of the solution is the right side, whether mass holds the balls or hardly."""
     system, rng = on_the_way(**tables)
@@ -113,13 +109,10 @@ def assert_solved(system, rng, dt, first=1e-3):
         found = found + system.solver.solve(*coefficients(dt), rest)
 
 
-@pytest.mark.parametrize(
-    "method",
-    [
-        pytest.param(built_in("integrator", "newmark")(tolerance=1e-10), id="newmark"),
-        pytest.param(GeneralizedAlpha(tolerance=1e-10), id="generalized_alpha", marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.parametrize("method", [
+    pytest.param(built_in("integrator", "newmark")(tolerance=1e-10), id="newmark"),
+    pytest.param(GeneralizedAlpha(tolerance=1e-10), id="generalized_alpha", marks=pytest.mark.slow),
+])  # fmt: skip
 @pytest.mark.parametrize(
     "tables", [pytest.param({}, id="fastened"), pytest.param(SEATS, id="on beds", marks=pytest.mark.slow)]
 )

@@ -18,15 +18,12 @@ from raceway.testing import default_registry
 
 #: B7206C, 400 N axial, tilt free, weightless balls; 40 N along y and a dashpot of about 2 % of critical damping.
 SCENE: dict[str, Any] = {
-    "title": "B7206C, 400 N axial, tilt free, 40 N along one direction",
-    "bearing": {"preset": "B7206C"},
-    "supports": {"tilt": "free"},
-    "rotor": {"mass": 2.0, "damping": 200.0},
-    "load": {"axial": 400.0},
+    "title": "B7206C, 400 N axial, tilt free, 40 N along one direction", "bearing": {"preset": "B7206C"},
+    "supports": {"tilt": "free"}, "rotor": {"mass": 2.0, "damping": 200.0}, "load": {"axial": 400.0},
     "excitation": {"kind": "unidirectional", "speed_rpm": 6000.0, "amplitude": "constant", "force": 40.0},
     "kinematics": {"ball_inertia": False, "gyroscopic": "none", "ring_growth": False},
     "contact": {"damping": 0.0},
-}
+}  # fmt: skip
 OVER = "excitation.speed_rpm=500:30000"
 FORCE = 40.0
 

@@ -21,13 +21,10 @@ FACTORS = ["excitation.kind=unidirectional,bidirectional", "excitation.amplitude
            "kinematics.ball_inertia=false,true"]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("words", "scene", "vary"),
-    [
-        ("excitation, amplitude, speed, tilt, ball inertia", "b7206", FACTORS),
-        ("rigid and condensed bodies, speed, tilt", "b7206_condensed", ["bodies.kind=rigid,condensed", SPEEDS, TILT]),
-    ],
-)
+@pytest.mark.parametrize(("words", "scene", "vary"), [
+    ("excitation, amplitude, speed, tilt, ball inertia", "b7206", FACTORS),
+    ("rigid and condensed bodies, speed, tilt", "b7206_condensed", ["bodies.kind=rigid,condensed", SPEEDS, TILT]),
+])  # fmt: skip
 def test_comparison(claim, words, scene, vary):
     study = compare(read_toml(ROOT / "examples" / f"{scene}.toml"), vary)
     content = study.to_dict()

@@ -25,13 +25,10 @@ def largest(case: str, words: str | tuple[str, ...], count: int, tolerance: floa
     return max(row.error for row in chosen)
 
 
-@pytest.mark.parametrize(
-    ("case", "preloads", "axial", "why"),
-    [
-        ("7206C", 4, 0.04, "the conformity is fitted to its eight numbers and those of 7206A5, which it meets within 3.6 %"),
-        ("7206A", 3, 0.01, "not in that fit; two or three printed digits"),
-    ],
-)
+@pytest.mark.parametrize(("case", "preloads", "axial", "why"), [
+    ("7206C", 4, 0.04, "the conformity is fitted to its eight numbers and those of 7206A5, which it meets within 3.6 %"),
+    ("7206A", 3, 0.01, "not in that fit; two or three printed digits"),
+])  # fmt: skip
 def test_stiffness_of_pairs(claim, case, preloads, axial, why):
     """A pair as the scene of a pair and as twice the tangent of one row, tilts locked."""
     for direction, limit, reason in (
