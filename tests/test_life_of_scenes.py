@@ -9,7 +9,8 @@ import raceway as rw
 from checks.validation.scenes import built_in
 from raceway import SceneError
 from raceway.core.quantities.ratings import equivalent_loads, life_factor, reliability_factor, system_life
-from raceway.extend import open_store
+from raceway.extend import layout, open_store
+from raceway.plugins.quantities import life as life_plugin
 from raceway.points.dataset import write_csv
 from raceway.scene.lubricant import Lubricant
 
@@ -201,11 +202,16 @@ def test_columns_have_the_lives_of_motions(radial):
         assert answers[name][1] == pytest.approx(result.quantities[name], rel=1e-5)
 
 
-def test_balls_that_orbit_pass_the_same_pattern():
-    """Its places are interpolated between balls: 2 % of the life."""
-    orbiting = {**ROTATING, "kinematics": {"orbiting": True}}
+def test_balls_that_orbit_pass_the_same_pattern(monkeypatch):
+    """Its places are interpolated between balls: 2 % of the life.  They travel at the cage speed that the forces know."""
+    travels, places = [], life_plugin.at_places
+    monkeypatch.setattr(life_plugin, "at_places", lambda turn, travel: (travels.append(travel), places(turn, travel))[1])
+    orbiting = rw.run({**ROTATING, "kinematics": {"orbiting": True}})
     fixed = rw.run(ROTATING).quantities["l10r_million_revolutions"]
-    assert rw.run(orbiting).quantities["l10r_million_revolutions"] == pytest.approx(fixed, rel=0.03)
+    assert orbiting.quantities["l10r_million_revolutions"] == pytest.approx(fixed, rel=0.03)
+    moments = travels[0].shape[-1]
+    pitches_per_s = orbiting.model.system.scalars[layout.CAGE] * 12 / (2.0 * np.pi)
+    assert travels[0][0] == pytest.approx(pitches_per_s * 60.0 / 6000.0 * np.arange(moments) / moments, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -297,6 +297,7 @@ def test_a_table_of_any_width_keeps_every_number_whole(width, columns):
     assert max(map(len, text)) <= width
     words = " ".join(text).split()
     assert all(f"{value:.5g}" in words for row in rows for value in row.values() if isinstance(value, float))
+    assert re.findall(r"^(\d) ", "\n".join(text), re.M) == ["1", "2", "3", "4"] * words.count("#")
 
 
 def test_a_line_ends_neither_in_a_number_nor_before_its_unit():
