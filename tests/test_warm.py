@@ -58,8 +58,12 @@ def test_conductances_are_the_correlations_with_sizes_and_film_of_the_bearing():
         axes = ball[f"semi_major_{race}_m"], ball[f"semi_minor_{race}_m"]
         contact = rolling_contact(*axes, film["entraining_speed_m_per_s"], film["central_m"], oil.conductivity)
         wanted[f"{race}_balls"] = 24 * float(contact)
-    stated = found["heat"]["conductances_w_per_k"]
+    stated, level, flows = (found["heat"][name] for name in ("conductances_w_per_k", "temperatures_k", "flows_w"))
     assert stated == pytest.approx(wanted, rel=2e-3) and stated.keys() == wanted.keys()
+    for seat, ring in (("shaft", "inner"), ("housing", "outer")):
+        along = stated[f"{ring}_{seat}"] * (level[ring] - level[seat])
+        out = stated[f"{seat}_ambient"] * (level[seat] - 293.15)
+        assert [along, out] == pytest.approx([flows[seat], flows[seat]], rel=1e-9)
 
 
 def test_at_rest_hot_surroundings_are_told():
@@ -126,6 +130,8 @@ def test_more_oil_and_less_speed_are_colder():
     flow, speed = np.meshgrid([2e-6, 8e-6, 32e-6], [4000.0, 10_000.0, 16_000.0])
     for level in (f(flow, speed)[name] for name in f.outputs):
         assert (np.diff(level, axis=1) < 0.0).all() and (np.diff(level, axis=0) > 0.0).all()
+    flooded = rw.run(published.warm_pair({"oil_flow": 4e-5}))  # jets were measured from n d_m = 1.3 million on
+    assert any("n d_m = 0.55 is outside 1.3 to 3.35 million" in words for words in flooded.warnings)
 
 
 def test_the_band_holds_the_answer():
