@@ -11,6 +11,7 @@ from checks.validation.command_line import invoke
 from raceway import SceneError, scene_from_dict
 from raceway.extend import default_registry, stated_columns, tolerances_of
 from raceway.pipeline.first_order import limits
+from raceway.points.band import _summary
 from raceway.points.sensitivities import design, indices
 from raceway.testing import b7206c
 
@@ -21,11 +22,16 @@ def test_indices_of_ishigamis_function_are_the_closed_form():
     """Ishigami, Homma (1990): a = 7, b = 0.1 on [-pi, pi]^3."""
     a, b = 7.0, 0.1
     x = np.pi * (2.0 * design(4096, 3, seed=3) - 1.0)
-    found = indices((np.sin(x[:, 0]) + a * np.sin(x[:, 1]) ** 2 + b * x[:, 2] ** 4 * np.sin(x[:, 0]))[None], 3)
+    y = np.sin(x[:, 0]) + a * np.sin(x[:, 1]) ** 2 + b * x[:, 2] ** 4 * np.sin(x[:, 0])
+    found = indices(y[None], 3)
     v1, v2, v13 = 0.5 * (1.0 + b * np.pi**4 / 5.0) ** 2, a**2 / 8.0, b**2 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
     whole = v1 + v2 + v13
     assert np.abs(found.first[0] - np.array([v1, v2, 0.0]) / whole).max() < 0.02
     assert np.abs(found.total[0] - np.array([v1 + v13, v2, v13]) / whole).max() < 0.02
+    made = _summary("T", (), {"y": 0.0}, {}, [{"y": value} for value in y], 3)
+    assert (made.first["y"], made.total["y"]) == (found.first[0].tolist(), found.total[0].tolist())
+    shares = [(y[: 2 * 4096] < end).mean() for end in (made.low["y"], made.high["y"])]  # of what is drawn at random
+    assert shares == pytest.approx([0.025, 0.975], abs=1e-3)
 
 
 def test_limits_of_a_sum_of_even_numbers_are_the_closed_forms():
@@ -182,7 +188,8 @@ def test_people_read_newtons_per_micrometre_and_files_hold_the_histogram(tmp_pat
     told = invoke("band", str(file), "--out", str(tmp_path), "--samples", "16", "--processes", "0")
     content = json.loads((tmp_path / "band.json").read_text())["quantities"]["kxx"]
     row = next(line for line in told.output.splitlines() if line.startswith("kxx [N/µm]"))
-    assert float(row.split()[2]) == pytest.approx(1e-6 * content["value"], rel=1e-4)
+    shown = [1e-6 * content[name] for name in ("value", "low", "high")]
+    assert [float(number) for number in row.split()[2:5]] == pytest.approx(shown, rel=1e-4)
     edges, counts = content["histogram"]["edges"], content["histogram"]["counts"]
     assert sum(counts) == 32 and edges[0] < content["low"] < content["high"] < edges[-1]
     assert (tmp_path / "band.png").stat().st_size > 0

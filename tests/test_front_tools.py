@@ -57,8 +57,10 @@ def test_compare_gives_the_rows_of_the_command_line(comparison, file, tmp_path):
     assert found["effects"] == own["effects"] and found["words"] == own["words"]
 
 
-def test_a_comparison_shows_itself_and_is_labelled(comparison):
+def test_a_comparison_shows_itself_and_is_labelled(comparison, tmp_path):
     assert brief(comparison)
+    starts = {path.suffix: path.read_bytes()[:500] for path in comparison.save(tmp_path, "svg")}
+    assert b"<svg" in starts[".svg"] and starts[".png"].startswith(b"\x89PNG")
     data = comparison.to_xarray()
     for row in comparison.rows:
         k = float(data.equivalent_stiffness.sel(row.point))

@@ -36,6 +36,11 @@ def identified(identifier: str, turns: float, force: np.ndarray, displacement: n
     tables = rotating(1000.0, "locked", SPEED * 30.0 / np.pi, False, "newmark")
     tables["identifier"] = {"kind": identifier}
     model = model_of(tables)
+    return recorded(model, force, displacement, time, turns), model.mass_used
+
+
+def recorded(model, force: np.ndarray, displacement: np.ndarray, time: np.ndarray, turns: float = 1):
+    """The same of a model."""
     empty, z = np.zeros((len(time), 24)), np.zeros((12, 2))
     still = Motion(np.zeros(5), np.zeros(5), np.zeros(5), z, z)
     record = Record(
@@ -43,7 +48,7 @@ def identified(identifier: str, turns: float, force: np.ndarray, displacement: n
         contact_force=empty, ball=np.zeros((len(time), 12, 2)), final=still,
         schedule=Schedule(time[1] - time[0], 360, max(int(turns), 1)), counts={},
     )  # fmt: skip
-    return model.scene.identifier.method.identify([record], solve_equilibrium(model), model), model.mass_used
+    return model.scene.identifier.method.identify([record], solve_equilibrium(model), model)
 
 
 @pytest.mark.parametrize("kind", ["forward", "backward", "fixed"])
@@ -84,6 +89,23 @@ def test_a_window_that_ends_with_the_record_is_tracked():
     time, force, displacement = signals(6)
     found, _ = identified("order_tracking", 6, force, displacement, time)
     assert len(found.series) == 1 and found.dynamic_stiffness == pytest.approx(Z, rel=1e-6)
+
+
+def test_order_tracking_takes_off_what_the_change_of_speed_does_to_the_inertia():
+    """A circle of one size, x = A exp(j phase): F = (K - m w^2 + j (w C + m w')) x, and C is that of F without m w'."""
+    run_up = {"kind": "run_up", "first_speed_rpm": 9000.0, "speed_rpm": 12000.0, "duration_s": 0.1, "unbalance": 1e-4}
+    changes = {"excitation": run_up, "identifier": {"kind": "order_tracking", "window_turns": 4.0}}
+    model = model_of(rotating(1000.0, "locked", 12000.0, False, "newmark") | changes)
+    time = np.arange(1, 4001) * 2.5e-5
+    mass, rate = model.system.mass[1, 1], 3000.0 * np.pi / 30.0 / 0.1
+    w = 9000.0 * np.pi / 30.0 + rate * time
+    circle = 1e-6 * np.exp(1j * model.excitation.phase(time))[:, None] * np.array([0, 1, -1j, 0, 0])
+    force = (K - mass * w**2 + 1j * (w * 60.0 + mass * rate))[:, None] * circle
+    found = recorded(model, force.real, circle.real, time)
+    for speed, value in found.series:
+        # First order in m w' / K, 1e-4, whose square is left.
+        assert value.imag == pytest.approx(60.0 * speed, rel=1e-4)
+    assert mass * rate > 0.05 * 60.0 * w.max()
 
 
 @pytest.mark.parametrize("identifier", ["fft_1x", "sine_fit"])

@@ -9,7 +9,8 @@ import raceway as rw
 from checks.validation.scenes import built_in
 from raceway import SceneError
 from raceway.core.quantities.ratings import equivalent_loads, life_factor, reliability_factor, system_life
-from raceway.extend import open_store
+from raceway.extend import layout, open_store
+from raceway.plugins.quantities import life as life_plugin
 from raceway.points.dataset import write_csv
 from raceway.scene.lubricant import Lubricant
 
@@ -101,7 +102,11 @@ def test_the_oil_gives_the_viscosity_ratio():
 
 
 def test_rows_of_a_set_add_up():
-    found = life({**B7206, "bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0}})
+    pair = {**B7206, "bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0}}
+    found, pulled = life(pair), life({**pair, "load": {"axial": -1000.0}})
+    for each, worst in ((found, 0), (pulled, 1)):
+        safeties = [row["static_safety"] for row in each["rows"]]
+        assert each["static_safety"] == min(safeties) == safeties[worst]
     rings = [[ring["l10_million_revolutions"] for ring in row["rings"]] for row in found["rows"]]
     assert found["l10r_million_revolutions"] == pytest.approx(float(system_life(np.array(rings), axis=(0, 1))), rel=1e-12)
     assert found["rating_n"] == pytest.approx(2.0**0.7 * 23000.0, rel=1e-12)
@@ -173,6 +178,10 @@ def test_a_rotating_force_exchanges_the_exponents_of_the_rings():
     inner, outer = (ring["equivalent_load_n"] for ring in found["rows"][0]["rings"])
     assert inner == pytest.approx((loads[0] ** (10 / 3)).mean() ** 0.3, rel=2e-3)
     assert outer == pytest.approx((loads[1] ** 3).mean() ** (1 / 3), rel=2e-3)
+    # The most loaded moment counts: C0 permits what a ball carries at rest times its safety there.
+    still = rw.run({name: ROTATING[name] for name in ("bearing", "load")} | {"kinematics": {"spin_speed_rpm": 6000.0}})
+    permitted = still.quantities["static_safety"] * still.equilibrium.contact_force[:12].max()
+    assert found["static_safety"] == pytest.approx(permitted / loads[0].max(), rel=1e-3)
     standing = equivalent_loads(loads)
     assert abs(inner / standing[0] - 1.0) > 5e-3  # the exponents matter here
 
@@ -201,11 +210,16 @@ def test_columns_have_the_lives_of_motions(radial):
         assert answers[name][1] == pytest.approx(result.quantities[name], rel=1e-5)
 
 
-def test_balls_that_orbit_pass_the_same_pattern():
-    """Its places are interpolated between balls: 2 % of the life."""
-    orbiting = {**ROTATING, "kinematics": {"orbiting": True}}
+def test_balls_that_orbit_pass_the_same_pattern(monkeypatch):
+    """Its places are interpolated between balls: 2 % of the life.  They travel at the cage speed that the forces know."""
+    travels, places = [], life_plugin.at_places
+    monkeypatch.setattr(life_plugin, "at_places", lambda turn, travel: (travels.append(travel), places(turn, travel))[1])
+    orbiting = rw.run({**ROTATING, "kinematics": {"orbiting": True}})
     fixed = rw.run(ROTATING).quantities["l10r_million_revolutions"]
-    assert rw.run(orbiting).quantities["l10r_million_revolutions"] == pytest.approx(fixed, rel=0.03)
+    assert orbiting.quantities["l10r_million_revolutions"] == pytest.approx(fixed, rel=0.03)
+    moments = travels[0].shape[-1]
+    pitches_per_s = orbiting.model.system.scalars[layout.CAGE] * 12 / (2.0 * np.pi)
+    assert travels[0][0] == pytest.approx(pitches_per_s * 60.0 / 6000.0 * np.arange(moments) / moments, rel=1e-12)
 
 
 @pytest.mark.parametrize(("key", "value", "words"), [

@@ -17,7 +17,7 @@ from checks.validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 from raceway.answers import table
 from raceway.extend import Words, duration, equilibrium_table, rows_table
 from raceway.framework.estimate import Estimate, few_words
-from raceway.pipeline.run_parts import cost_row, equilibrium_rows
+from raceway.pipeline.run_parts import bodies_rows, cost_row, equilibrium_rows, loaded_balls, mounting_rows
 from raceway.testing import b7206c, settled
 
 PACKAGE = Path(__file__).parents[1] / "raceway"
@@ -230,6 +230,34 @@ def test_a_pair_is_called_one_and_its_balls_have_rows(tmp_path):
     assert f"preload {result['equilibrium']['preload']['running_n']:.5g} N" in text
 
 
+def test_rows_have_the_numbers_by_whose_names_they_go():
+    """Of results whose numbers all differ."""
+    model = {
+        "elasticity": [[-0.11, None], [None, -0.22]], "compliance": {"inner_m_per_n": 1.1e-9, "outer_m_per_n": 2.2e-9, "contact_angle_deg": 15.5},
+        "inertia": {"inner_supported_hz": 3e3, "inner_supported_error": 1e-3, "outer_supported_hz": 2e3, "outer_supported_error": 2e-3},
+    }  # fmt: skip
+    assert [row[1:] for row in bodies_rows(model)[1:]] == [
+        ("-11.0 %, -22.0 %", "against rigid rings and balls"), ("1.10, 2.20 nm/N", "inner, outer over Hertz, 15.5 deg"),
+        ("2 kHz", "outer ring, off by 2.0e-03"),
+    ]  # fmt: skip
+    preload = {"running_n": 310.0, "mounted_n": 305.0, "before_mounting_n": 300.0, "second_before_mounting_n": 300.0}
+    preload |= {"rows_n": [320.0, 290.0], "lift_off_axial_n": [900.0, None], "lift_off_row": [2, None]}
+    assert [row[1:] for row in mounting_rows({"preload": preload, "held_axial": None})] == [
+        ("310 N", "running; 300 N before, 305 mounted"), ("320, 290 N", "under the loads"), ("900 N, never", "row 2 along +x"),
+    ]  # fmt: skip
+    loads, names = ((5.0, 6.0), (9.0, 12.0), (2.0, 3.0), (7.0, 8.0)), ("inner", "outer")
+    ball = dict.fromkeys((f"contact_angle_{race}_deg" for race in names), 15.0) | {
+        f"peak_pressure_{race}_pa": 1e9 for race in names
+    }
+    balls = [
+        ball | {"row": 1 + k // 2, "azimuth_deg": 90.0 * k, "load_inner_n": i, "load_outer_n": o}
+        for k, (i, o) in enumerate(loads)
+    ]
+    most, least = loaded_balls({"equilibrium": {"balls": balls, "largest_ball_load_race": "outer"}}, ["most", "least"])
+    assert most[1:] == ("12 N", "row 1, ball 1 at 90 deg; outer 1000 MPa, 15.00 deg; inner 9 N, 1000 MPa, 15.00 deg")
+    assert least[1:] == ("2 N", "row 2, ball 0 at 180 deg; inner 1000 MPa, 15.00 deg")
+
+
 def test_a_table_says_once_what_is_the_same_in_all_rows():
     rows = [{"axial": "400", "speed_rpm": f"{speed}", "K N/µm": 153.2} for speed in (12000, 15000)]
     text = lines(rows_table(rows))
@@ -297,6 +325,7 @@ def test_a_table_of_any_width_keeps_every_number_whole(width, columns):
     assert max(map(len, text)) <= width
     words = " ".join(text).split()
     assert all(f"{value:.5g}" in words for row in rows for value in row.values() if isinstance(value, float))
+    assert re.findall(r"^(\d) ", "\n".join(text), re.M) == ["1", "2", "3", "4"] * words.count("#")
 
 
 def test_a_line_ends_neither_in_a_number_nor_before_its_unit():

@@ -414,6 +414,10 @@ def test_the_command(tmp_path):
     content = json.loads(invoke(*words, "--resume", "--json").stdout)
     assert content["axes"] == [{"key": "load.axial", "values": [500, 600]}] and content["store"] == str(tmp_path / "s")
     assert set(content["rows"][0]) - {"warnings"} == {"point", "status", "values"}
+    values = content["rows"][0]["values"]
+    stated = [values["equivalent_stiffness"], values["z_real"], values["stiffness"][1][1]]  # K, Re Z, kyy
+    line = next(line for line in shown.output.splitlines() if line.split()[:1] == ["500"])
+    assert line.split()[1:4] == [f"{1e-6 * value:.3f}" for value in stated]
     for more, word in (
         (["--executor", "seriall"], "did you mean 'serial'"),
         (["--workers", "3"], "executor 'serial' has no --workers"),

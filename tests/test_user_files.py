@@ -14,7 +14,7 @@ from raceway_measure.fit.signals import signals_of
 from checks.validation.cubes import block
 from checks.validation.scenes import built_in
 from raceway import MeshError, RacewayError, SceneError, scene_from_dict
-from raceway.extend import memory_for, read_numbers, size_words
+from raceway.extend import memory_for, read_numbers, row_key, size_words
 from raceway.points.axes import design_file
 from raceway.storage import number_table
 from raceway.testing import b7206c, default_registry
@@ -67,6 +67,11 @@ def table(path, rows):
     lines = [f"{k * 1e-4:.6f},{np.cos(k):.9f},{np.sin(k):.9f}" for k in range(rows)]
     path.write_text("t,Fy,Fz\n" + "\n".join(lines))
     return path
+
+
+def test_finished_rows_belong_to_what_a_file_of_the_scene_holds(tmp_path):
+    keys = [row_key(measured(table(tmp_path / "force.csv", rows)), default_registry()) for rows in (60, 61, 60)]
+    assert keys[0] == keys[2] != keys[1]
 
 
 def test_a_long_record_takes_less_than_twice_its_size_in_memory(tmp_path, monkeypatch):

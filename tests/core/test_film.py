@@ -76,6 +76,20 @@ def test_the_heat_of_the_inlet_thins_all_of_the_film():
     assert half.minimum == pytest.approx(0.5 * hot.minimum, rel=1e-12)
 
 
+def test_the_law_has_force_and_slope_of_a_film_that_thins_with_the_load():
+    """Gap and force at a load Q: h(Q) - (Q/K)^(2/3) and Q; the slope by central differences over 1e-4 of Q, good to 1e-8."""
+    law, pairs = Film(viscosity=0.03, pressure_viscosity=2e-8, temperature_viscosity=0.035), example_pairs(6, nodal=False)
+
+    def gap(factor):
+        loaded = attrs.evolve(pairs, load=factor * pairs.load)
+        return law.thickness(loaded).central - np.cbrt(loaded.load / pairs.hertz_factor) ** 2
+
+    approach = law.reach(pairs) - gap(1.0)
+    assert law.build(pairs)[:, 0] * approach**1.5 == pytest.approx(pairs.load, rel=1e-12)
+    by_gap = 2e-4 * pairs.load / (gap(1.0 - 1e-4) - gap(1.0 + 1e-4))
+    assert 1.5 * pairs.load / approach == pytest.approx(by_gap, rel=1e-7)
+
+
 def test_oils_thin_with_the_temperature_as_their_lines_do():
     oil = Walther(*GRADES["VG 32"])
     warmer, cooler = oil.viscosity(50.0), oil.viscosity(30.0)

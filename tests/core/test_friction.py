@@ -27,6 +27,10 @@ def friction(**tables):
     return result.to_dict()["friction"], result.warnings
 
 
+def palmgren(**tables):
+    return friction(**tables)[0]["palmgren_nm"]
+
+
 def test_parts_rows_and_places_sum_up():
     table, _ = friction(quantities={"friction": {"seal_torque": 0.02, "cage_torque": 0.01, "measured_band": 1.0}})
     speed = 6000.0 * np.pi / 30.0
@@ -46,6 +50,10 @@ def test_parts_rows_and_places_sum_up():
     assert table["palmgren_nm"]["oil_bath"] == pytest.approx(
         1e-3 * (1e-7 * 3.3 * (nu * 6000.0) ** (2 / 3) * 46.0**3 + load), rel=1e-6
     )
+    rule = {supply: 1e3 * torque - load for supply, torque in table["palmgren_nm"].items()}
+    assert [rule["oil_and_air"], rule["oil_jet"]] == pytest.approx(
+        [0.5 * rule["oil_bath"], 2.0 * rule["oil_bath"]], rel=1e-9
+    )
     assert 0.3 < table["torque_nm"] / table["palmgren_nm"]["oil_bath"] < 1.5
 
 
@@ -54,6 +62,12 @@ def test_rows_of_a_pair_have_torques_of_their_own():
     table, _ = friction(bearing=pair, load={"axial": 200.0})
     first, second = (row["torque_nm"] for row in table["rows"])
     assert first + second == pytest.approx(table["torque_nm"], rel=1e-12) and first != pytest.approx(second, rel=1e-3)
+    # Palmgren's M1 is linear in loads: rows in tandem, which share them, have that of one bearing.  M = M0 + M1, half of M0 in oil and air.
+    tandem = {"preset": "B7206C", "arrangement": "DT", "row_distance": 0.016}
+    one, two = (2.0 * rule["oil_and_air"] - rule["oil_bath"] for rule in (palmgren(), palmgren(bearing=tandem)))
+    assert two == pytest.approx(one, rel=1e-9)
+    slow = palmgren(kinematics={"spin_speed_rpm": 1.0})  # M0 = 160e-7 f0 d_m^3, printed to 1 %
+    assert 2.0 * (slow["oil_bath"] - slow["oil_and_air"]) == pytest.approx(1e-3 * 160e-7 * 3.3 * 46.0**3, rel=0.01)
 
 
 @pytest.mark.parametrize("inputs", [{"lubricant.temperature_c": [40.0, 80.0]}, {"load.axial": [300.0, 900.0]}])
@@ -96,8 +110,11 @@ def test_gyroscopic_moments_are_those_of_the_balls_material():
 
 
 def test_values_of_the_screen_are_short():
-    rows = Friction.rows(friction(quantities={"friction": {"seal_torque": 0.02}})[0])
+    table, _ = friction(quantities={"friction": {"seal_torque": 0.02}})
+    rows = Friction.rows(table)
     assert all(len(value) < 20 for _, value, _ in rows)
+    low, high = (6000.0 * np.pi / 30.0 * table["band"][end] for end in ("low", "high"))
+    assert rows[2][2].startswith(f"{low:.3g} to {high:.3g}, ")
     assert [remark for name, _, remark in rows if name == "torque by source"][0].count(",") == 4
 
 

@@ -64,7 +64,11 @@ def test_stable_limit_is_where_central_differences_blow_up():
     method = scene_from_dict(rotating(1.0, "locked", 12000.0, False, "central_difference")).integrator.method
     held = np.array([-system.scalars[0], 1e-6, 0.0, 0.0, 0.0])
     start = at_rest(system, held, system.evaluate(held).ball, True)
-    assert system.critical_time_step(np.zeros((5, 5))) == pytest.approx(2.0 / w0, rel=1e-12)
+    none, unit = np.zeros((5, 5)), system.mass * w0  # dashpots c = 2 z m w0 of a contact
+    assert system.critical_time_step(none) == pytest.approx(2.0 / w0, rel=1e-12)
+    for z in (0.05, 1.0):
+        wanted = 2.0 / w0 * (np.sqrt(1.0 + 4.0 * z * z) - 2.0 * z)
+        assert system.damped_time_step(none, 2.0 * z * unit) == pytest.approx(wanted, rel=1e-12)
     calm = integrate(method, system, start, Schedule(1.98 / w0, 500, 1))
     assert np.abs(calm.displacement[:, 1]).max() < 1e-3
     with pytest.raises(StabilityError, match="grew without bound"):

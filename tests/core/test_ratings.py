@@ -63,7 +63,10 @@ def test_a_clearance_alone_is_a_nominal_angle_of_zero():
 
 
 def test_ceramic_balls_lower_the_static_rating_only():
-    steel, hybrid = load_ratings(bearing(preset="7014C")), load_ratings(bearing(preset="7014C", balls={"material": "Si3N4"}))
+    ceramic = bearing(preset="7014C", balls={"material": "Si3N4"})
+    steel, hybrid = load_ratings(bearing(preset="7014C")), load_ratings(ceramic)
+    shares = [(1.0 - part.poisson**2) / part.young for part in (ceramic.rings, ceramic.balls)]
+    assert hybrid.modulus == pytest.approx(1.0 / sum(shares), rel=1e-12)
     assert hybrid.dynamic == steel.dynamic == 47000.0
     assert hybrid.static == pytest.approx(steel.static * (steel.modulus / hybrid.modulus) ** 2, rel=1e-12)
 

@@ -164,10 +164,13 @@ def test_peak_pressures_and_edges_are_those_of_each_row():
     model, now = built("DB", 300.0, {"row": [{}, {"ball_diameter": 8e-3}]})
     z = model.system.ball_count
     found = model.bearing.contact_ellipse(model, 0, now.contact_force[:z])[0]
+    same, pressures = np.array([100.0]), []  # of no particular balls: of the row in which they press hardest
     for row, own in enumerate(({}, {"ball_diameter": 8e-3})):
         alone, at = built("single", None, own, load={"axial": 300.0})
         expected = alone.bearing.contact_ellipse(alone, 0, at.contact_force[:12])[0]
         np.testing.assert_allclose(found[row * 12 : row * 12 + 12], expected, rtol=SAME)
+        pressures.append(alone.bearing.contact_ellipse(alone, 0, same)[0])
+    assert model.bearing.contact_ellipse(model, 0, same)[0] == pytest.approx(max(pressures), rel=SAME)
 
 
 def test_both_forces_given():

@@ -1,5 +1,7 @@
 """Stresses below contacts at points: a ball on a groove against Hertz, a bearing's table, its picture and its file."""
 
+from types import SimpleNamespace
+
 import attrs
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ import pytest
 from checks.validation.cubes import block
 from raceway import scene_from_dict
 from raceway.core.fem.elastic.stress import contact_axes
+from raceway.core.fem.elastic.surface import Facets
 from raceway.extend import BelowContact, below_contacts, cells_near, write_whole
 from raceway.testing import run
 from tests.core.test_elastic_scene import TINY
@@ -45,6 +48,20 @@ def test_the_normal_starts_on_both_surfaces_and_goes_into_both_bodies(result):
         # The force on the ball points along its normal; points a millimetre apart turn the resultant's direction by degrees.
         force = contact.resultants()[pair]
         assert of_ball.axes[2] @ force / np.linalg.norm(force) > np.cos(np.radians(5.0))
+
+
+def test_the_ring_s_pole_has_moved_as_the_points_have():
+    """Points of a ball that touched a plane of facets and moved along it by 3 mm, on an undeformed plane 1 mm lower."""
+    plane = np.array([[x, y, -1.0] for x in range(10) for y in range(10)], dtype=float)
+    quads = np.array([[10 * x + y, 10 * x + 10 + y, 10 * x + 11 + y, 10 * x + y + 1] for x in range(9) for y in range(9)])
+    place = np.array([[3.6, 4.3, 0.1], [2.6, 4.3, 0.1], [3.1, 4.8, 0.1], [3.1, 3.8, 0.1]])
+    pairs, ones = [SimpleNamespace(facets=Facets(plane, quads))], np.ones(4)
+    contact = SimpleNamespace(
+        pair=np.zeros(4, dtype=int), area=ones, pressure=ones, place=place, projected=place + [3.0, 0.0, -1.1], pairs=pairs
+    )
+    of_ball, of_ring = contact_axes(contact, 0, np.array([3.1, 4.3, 5.0]), np.array([0.0, 1.0, 0.0]))
+    assert of_ball.pole[:2] == pytest.approx([3.1, 4.3], abs=1e-12)
+    assert of_ring.pole == pytest.approx([6.1, 4.3, -1.0], abs=1e-12)
 
 
 def test_the_table_names_the_most_loaded_contact_of_each_race(result):

@@ -30,11 +30,15 @@ def test_a_balls_mean_stress_is_that_of_the_forces_on_it(result):
 
 
 def test_von_mises_and_shear_of_uniaxial_and_pure_shear_stress():
-    stress = np.array([[3.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 2.0, 0.0, 0.0]])
+    """And of principal stresses 3, 1, 0, whichever way the axes point."""
+    turn = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
+    turned = (turn * [3.0, 1.0, 0.0]) @ turn.T
+    turned = turned[[0, 1, 2, 0, 1, 2], [0, 1, 2, 1, 2, 0]]
+    stress = np.array([[3.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 2.0, 0.0, 0.0], turned])
     none = np.zeros((0, 3))
     fields = StressFields(none, none, none, none, stress)
-    assert fields.von_mises == pytest.approx([3.0, 2.0 * np.sqrt(3.0)], rel=1e-14)
-    assert fields.largest_shear == pytest.approx([1.5, 2.0], rel=1e-14)
+    assert fields.von_mises == pytest.approx([3.0, 2.0 * np.sqrt(3.0), np.sqrt(7.0)], rel=1e-14)
+    assert fields.largest_shear == pytest.approx([1.5, 2.0, 1.5], rel=1e-14)
 
 
 def test_stresses_beside_contact_resultants_are_named_structure_only_with_hertz_pressure(result):

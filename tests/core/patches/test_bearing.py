@@ -80,6 +80,19 @@ def test_the_tangent_is_the_derivative(free):
     assert np.abs(now.stiffness - now.stiffness.T).max() < 1e-9 * np.abs(now.stiffness).max()
 
 
+def test_dashpots_resist_the_ring_by_half_of_theirs_in_series(free):
+    """Balls follow the ring by half: the dashpots c of both contacts in series, normal to them; 3 % of a stiffer race's share."""
+    case, found = free
+    scalars = case.system.scalars.copy()
+    scalars[layout.DAMPING] = 50.0
+    damped, v = attrs.evolve(case.system, scalars=scalars), np.array([2e-3, -1e-3, 1e-3, 0.0, 0.0])
+    still, moving = (damped.evaluate(found.displacement, rate, found.ball) for rate in (0.0 * v, v))
+    azimuth, angle = np.radians(30.0 * np.arange(12)), found.angle_inner
+    closing = v[0] * np.sin(angle) + (v[1] * np.cos(azimuth) + v[2] * np.sin(azimuth)) * np.cos(angle)
+    power = 25.0 * closing @ closing
+    assert [v @ (moving.force - still.force), v @ moving.damping @ v] == pytest.approx([power, power], rel=0.03)
+
+
 def test_a_state_does_not_depend_on_the_states_before(free):
     case, found = free
     before = case.system.evaluate(found.displacement, ball=found.ball)

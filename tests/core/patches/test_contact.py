@@ -117,6 +117,11 @@ def test_the_mean_stiffness_is_the_mean_of_the_points_over_one_distance_of_rows(
     assert mean < 0.01 and mean < 0.4 * point
     points = np.mean([stiffness((k + 0.5) / 8.0 - 0.5)[0] for k in range(8)])
     assert stiffness(0.0)[1] == pytest.approx(points, rel=0.01)
+    # Along the groove the force turns with the ball: F / |x|, a hundredth of the stiffness across it; these points leave 4 %.
+    place = coarse.place(5e-6)
+    length, force = np.hypot(*place), np.hypot(*contact.press(place, np.zeros(2)).force)
+    along = np.array([place[1], -place[0]]) / length
+    assert along @ contact.mean_stiffness(place) @ along == pytest.approx(force / length, rel=0.07)
 
 
 def test_a_softer_law_approaches_further_by_its_penetration(coarse):
