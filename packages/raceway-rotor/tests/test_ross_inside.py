@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from raceway_rotor.node_bearing import node_bearing, secant_stiffness
 from raceway_rotor.ross_file import ross
+from scipy.integrate import solve_ivp
 
 import raceway as rw
 from checks.validation.command_line import EXAMPLES
@@ -38,6 +39,9 @@ def test_a_secant_carries_the_motion_and_is_symmetric():
     true = random.normal(size=(4, 4))
     true, tangent = true + true.T, np.diag([1.0, 2.0, 3.0, 4.0])
     u, units = random.normal(size=4) + 1j * random.normal(size=4), np.array([1.0, 1.0, 0.02, 0.02])
+    assert node_bearing("B7206C", 1000.0, "node").units(SPEED) == pytest.approx(
+        [1, 1, 0.023, 0.023], rel=0.2
+    )  # half the pitch diameter
     found = secant_stiffness(tangent, u, true @ u, units)
     np.testing.assert_allclose(found @ u, true @ u, rtol=1e-10)
     np.testing.assert_allclose(found, found.T, rtol=1e-10)
@@ -86,7 +90,10 @@ def test_contact_damping_is_in_c():
     one = node_bearing({"bearing": {"preset": "B7206C"}, "contact": {"damping": 100.0}}, 1000.0, damping=7.0)
     tables = {**scene(1000.0, 1.0), "contact": {"damping": 100.0}, "identifier": {"kind": "tangent"}}
     wanted = rw.run(tables).equivalent_damping + 7.0
-    assert one.dynamic_stiffness(SPEED, SPEED)[1, 1].imag / SPEED == pytest.approx(wanted, rel=1e-9)
+    c = one.dynamic_stiffness(SPEED, SPEED).imag / SPEED
+    assert c[1, 1] == pytest.approx(wanted, rel=1e-9)
+    without = node_bearing({"bearing": {"preset": "B7206C"}, "contact": {"damping": 100.0}}, 1000.0)
+    assert np.allclose(c - without.dynamic_stiffness(SPEED, SPEED).imag / SPEED, 7.0 * np.eye(3), atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -119,13 +126,38 @@ def test_an_old_ross_is_refused(monkeypatch):
         ross("this", least=3)
 
 
-def test_an_unbalance_turns_with_the_shaft():
-    """A free mass on springs under a force from X towards Y: m_u w^2 / (k - m w^2) of it, Y a quarter turn later; ROSS is not asked."""
+def beside_an_empty_ross(name):
+    """A module of the package that imports ROSS, which is not asked."""
     names = [f"raceway_rotor.{name}" for name in ("bearing", "responses")]
     with mock.patch.dict(sys.modules, {"ross": types.SimpleNamespace(__version__="3.0", BearingElement=object)}):
-        for name in names:
-            sys.modules.pop(name, None)
-        balance = importlib.import_module(names[1])._Balance
+        for other in names:
+            sys.modules.pop(other, None)
+        return importlib.import_module(f"raceway_rotor.{name}")
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_axes_are_turned_and_not_mirrored(side):
+    """A bearing that faces -z is one turned half about X; tilts about y, z turn as y, z do, so that their coupling keeps its hand."""
+    element = object.__new__(beside_an_empty_ross("bearing").RollingBearing)
+    k, c = np.random.default_rng(4).normal(size=(2, 5, 5))
+    own = types.SimpleNamespace(size=5, dynamic_stiffness=lambda w, speed: k + 1j * w * speed * c)
+    element.side, element.n_link, element.node_bearing, element._at_motion = side, None, own, {}
+    frame = element.frame
+    assert frame[0].tolist() == [0, 0, side, 0, 0] and frame[1].tolist() == [1, 0, 0, 0, 0]  # X, Y, Z are y, z, x
+    assert np.linalg.det(frame[:3, :3]) == pytest.approx(1.0) and not frame[:3, 3:].any() and not frame[3:, :3].any()
+    np.testing.assert_array_equal(frame[3:, 3:], frame[1:3, :2])
+    np.testing.assert_allclose(element.K(50.0, -20.0), frame.T @ k @ frame)
+    np.testing.assert_allclose(element.C(50.0, -20.0), 20.0 * frame.T @ c @ frame)
+    for name, column in element._table(np.array([3.0, 50.0])).items():
+        row, place = ("xyz".index(letter) for letter in name[1:])
+        assert column[1] == pytest.approx(getattr(element, name[0].upper())(50.0)[row, place])
+    element.n_link = 7
+    assert not (element.K(50.0) @ np.tile(np.eye(5), 2).T).any()  # no force where both nodes move alike
+
+
+def test_an_unbalance_turns_with_the_shaft():
+    """A free mass on springs under a force from X towards Y: m_u w^2 / (k - m w^2) of it, Y a quarter turn later; ROSS is not asked."""
+    balance = beside_an_empty_ross("responses")._Balance
     k, m, w, none = 1e7, 2.0, 500.0, np.zeros((3, 3))
     machine = types.SimpleNamespace(
         K=lambda _: k * np.eye(3), M=lambda _: m * np.eye(3), C=lambda _: none, G=lambda: none, ndof=3, number_dof=3
@@ -136,6 +168,38 @@ def test_an_unbalance_turns_with_the_shaft():
     size = 1e-4 * w**2 / (k - m * w**2) * np.exp(0.3j)
     np.testing.assert_allclose(found.response, size * np.array([1.0, -1.0j]), rtol=1e-12)
     np.testing.assert_allclose(found.receptance, np.eye(2) / (k - m * w**2), rtol=1e-12)
+
+
+def test_steps_with_the_bearing_s_force_are_of_second_order_in_a_gyroscopic_rotor():
+    """Newmark's steps as ROSS takes them, with a force of k x + k_3 x^3, against scipy's solution."""
+    k, k3, w, eye, gyro = 1e6, 1e14, 300.0, np.eye(3), np.array([[0.0, 0.8, 0.0], [-0.8, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    own = types.SimpleNamespace(
+        size=3,
+        dynamic_stiffness=lambda *_: k * eye,
+        resistance=lambda _, q: (k * q + k3 * q**3, np.diag(k + 3.0 * k3 * q**2)),
+    )
+    machine = types.SimpleNamespace(K=lambda _: k * eye, M=lambda: eye, C=lambda _: 100.0 * eye, G=lambda: gyro, ndof=3)
+    bearing = types.SimpleNamespace(node_bearing=own, frame=eye, dofs=[0, 1, 2])
+    damping, end, errors = 100.0 * eye + w * gyro, 0.02, []
+
+    def force(t):
+        return 100.0 * np.stack([np.cos(w * t), np.sin(w * t), 0.0 * t], axis=-1)
+
+    def rate(t, s):
+        return np.concatenate([s[3:], force(t) - damping @ s[3:] - k * s[:3] - k3 * s[:3] ** 3])
+
+    true = solve_ivp(rate, (0.0, end), np.zeros(6), rtol=1e-9, atol=1e-13).y[:3, -1]
+    for count in (400, 800):
+        dt, forces = end / count, force(np.linspace(0.0, end, count + 1))
+        extra = beside_an_empty_ross("responses")._NonlinearForce(machine, [bearing], w, forces, 0.5, 0.25)
+        y, v, a = np.zeros(3), np.zeros(3), forces[0]
+        for n in range(1, count + 1):
+            load = forces[n] + extra(n, time_step=dt, disp_resp=y, velc_resp=v, accl_resp=a)
+            y, v = y + dt * v + 0.25 * dt**2 * a, v + 0.5 * dt * a
+            a = np.linalg.solve(eye + 0.5 * dt * damping + 0.25 * dt**2 * k * eye, load - k * y - damping @ v)
+            y, v = y + 0.25 * dt**2 * a, v + 0.5 * dt * a
+        errors.append(np.abs(y - true).max() / np.abs(true).max())
+    assert errors[0] < 1e-2 and errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
 
 
 def test_the_example_is_short_and_says_what_is_missing(tmp_path):
