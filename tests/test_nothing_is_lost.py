@@ -106,12 +106,18 @@ def test_meshes_that_are_not_one_body_are_refused(fault, tmp_path):
         bad, words = HexMesh(mesh.points, np.vstack([mesh.cells, mesh.cells[:3]]), {}, {}), "3 cells are duplicated"
     else:
         shift = np.ptp(mesh.points[:, 0]) * (1.0 if fault == "unmerged" else 2.0)
-        points = np.vstack([mesh.points, mesh.points + [shift, 0.0, 0.0]])
+        other = mesh.points + 4e-11 * np.cos(np.arange(3 * count)).reshape(-1, 3)  # .inp files have eleven figures
+        points = np.vstack([mesh.points, other + [shift, 0.0, 0.0]])
         bad = HexMesh(points, np.vstack([mesh.cells, mesh.cells + count]), {}, {})
-        words = "points coincide with others" if fault == "unmerged" else "its cells form 2 parts"
-    built_in("format", "vtu")().write(tmp_path / "body.vtu", bad)
+        words = "`: 30 points coincide with others" if fault == "unmerged" else "its cells form 2 parts"
+    form, mesher = built_in("format", "vtu")(), built_in("mesher", "file")(inner_ring=str(tmp_path / "body.vtu"))
+    form.write(tmp_path / "body.vtu", bad)
     with pytest.raises(MeshError, match=words):
-        built_in("mesher", "file")(inner_ring=str(tmp_path / "body.vtu")).mesh(scene_from_dict(b7206c()).bearing)
+        mesher.mesh(scene_from_dict(b7206c()).bearing)
+    form.write(
+        tmp_path / "body.vtu", HexMesh(mesh.points * [1e-6, 1.0, 1.0], mesh.cells, {}, {})
+    )  # layers of 0.01 um in 30 mm
+    assert len(mesher.mesh(scene_from_dict(b7206c()).bearing)["inner_ring"].points) == count
 
 
 def test_a_groove_is_not_deeper_than_its_balls_centre():

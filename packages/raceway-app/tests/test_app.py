@@ -3,6 +3,7 @@
 import json
 import re
 import time
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -169,6 +170,26 @@ def test_a_slider_is_moved_by_the_keyboard(tab):
     tab.settle()
     assert before < tab.scene(0)["load"]["axial"] < 1.1 * before
     shown_is_run(tab)
+
+
+#: Intervals by cause of two scenes, whether they are of one bearing, and the interval of their ratio.
+APART = [
+    ({"numerical": (-3, 3)}, {"numerical": (-4, 4)}, True, (-5, 5)),  # errors that do not know of each other
+    ({"geometry": (-1, 2)}, {"geometry": (-2, 5)}, True, (-1, 3)),  # one cause, which moves both
+    ({"data": (0, 2)}, {"data": (0, 5)}, True, (0, 3)),
+    ({"data": (0, 2)}, {"data": (0, 5)}, False, (-2, 5)),  # the first may be larger, or the second
+    ({"hypotheses": (0, 1), "contact": (0, 3), "numerical": (-3, 3)}, {"hypotheses": (0, 0), "contact": (0, 0), "numerical": (0, 0)},
+     True, (-5, 3)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("first", "second", "same", "wanted"), APART)
+def test_the_interval_of_a_ratio_is_that_of_what_both_do_not_share(browser, first, second, same, wanted):
+    script = (files("raceway_app") / "data/app.js").read_text(encoding="utf-8")
+    (function,) = re.findall(r"^  function apart\(.*?^  \}\n", script, re.DOTALL | re.MULTILINE)
+    parts = [{"K": {"parts": {cause: {"low": a, "high": b} for cause, (a, b) in one.items()}}} for one in (first, second)]
+    code = f"const INTERVALS = {{}}; {function} return apart(arguments[0].map((intervals) => ({{ intervals }})), 'K', arguments[1])"
+    assert browser.run(code, parts, same) == pytest.approx(wanted)
 
 
 def test_search_finds_keys_by_what_they_are(tab):

@@ -12,14 +12,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from raceway_app.picture import Curves, axes_of, form, titles_of
+from raceway_app.picture import Curves, _panel, at_rest, axes_of, form, result_picture, titles_of
 from raceway_app.session import Session, groups
 from raceway_app.worker import Job, News, Worker
 
 import raceway as rw
 from checks.validation.browser.application import Application, proportional_memory
 from checks.validation.command_line import EXAMPLES, PATIENCE_S
-from raceway.extend import as_given
+from raceway import PointStatus
+from raceway.extend import as_given, default_registry, plugin_quantities
 
 SCENE = str(EXAMPLES / "b7206.toml")
 
@@ -69,6 +70,35 @@ def test_curves_after_a_change_are_those_of_the_changed_scene(change):
     assert fresh["speed", "ball load"]["lines"][0]["y"][-1] != pytest.approx(
         before["speed", "ball load"]["lines"][0]["y"][-1], rel=1e-3
     )
+
+
+def test_the_picture_of_a_run_is_in_the_units_that_it_is_labelled_with():
+    scene = rw.load_scene(SCENE, ["bearing.arrangement=DB", "bearing.preload=300", "bearing.row_distance=0.016"])
+    panels, result = curves(scene)
+    content = result_picture(result, at_rest(result))
+    # The path of the last turn [um], and loads of both races by azimuth [deg]
+    motion = 1e6 * result.to_xarray()["motion"].values[:, 1:3]
+    assert np.ptp(content["orbit"], axis=0) == pytest.approx(np.ptp(motion, axis=0), rel=1e-3)
+    balls = result.content["equilibrium"]["balls"]
+    assert content["polar"] == [[ball[name] for name in ("azimuth_deg", "load_inner_n", "load_outer_n")] for ball in balls]
+    # What the rows of a pair push apart with differs by the load on the shaft.
+    first, second = (np.array(line["y"], float) for line in panels["speed", "axial force of rows"]["lines"])
+    np.testing.assert_allclose(np.abs(first - second), scene.load.axial, rtol=1e-6)
+
+
+def test_curves_run_over_the_scene_and_temperatures_are_in_celsius():
+    axis = axes_of(rw.load_scene(SCENE), {"load": (100.0, 400.0)})["load"]
+    assert axis.low == 100.0 and axis.high >= axis.present == 1000.0 and axis.present in axis.numbers()
+    status, quantities = np.array([PointStatus.COMPUTED, PointStatus.FAILED]), plugin_quantities(default_registry())
+    answer = {
+        "status": status,
+        "points": np.array([1.0, 2.0]),
+        "reason": ["", "why"],
+        "temperature_inner_k": np.array([300.0, 310.0]),
+    }
+    panel = _panel("speed", axis, "temperature", ["temperature_inner_k"], answer, {n: q for n, (_, q) in quantities.items()})
+    assert panel["lines"][0]["y"] == [pytest.approx(26.85), None]
+    assert (panel["unit"], panel["missing"], panel["why"]) == ("°C", [2.0], "why")
 
 
 def status(application, path: str, host: str = "", **headers: str) -> int:

@@ -9,7 +9,7 @@ import math
 import attrs
 import numpy as np
 import pytest
-from raceway_checks.stability import scenes, systems
+from raceway_checks.stability import motions, scenes, systems
 from raceway_checks.stability.catalogue import BASE, SCENES, Case, catalogue, law_changes, laws_with, transient
 from raceway_checks.stability.scenes import displacement_under_axial_load, energy_slope
 from raceway_checks.stability.study import AS_EXPECTED, FAILED, Limit, Rows, case_rows, measured, stability
@@ -171,6 +171,23 @@ def test_energy_of_symplectic_steps_has_no_trend(integrator):
         assert row.verdict == AS_EXPECTED, row
 
 
+def test_a_trend_is_that_part_of_the_motion_s_energy(monkeypatch):
+    """Deliberate fault: velocities that grow by 1e-4 over the run.  Half of a small motion's energy is kinetic."""
+    exact = motions.integrate
+
+    def growing(*given):
+        record = exact(*given)
+        return attrs.evolve(record, velocity=record.velocity * np.linspace(1.0, 1.0 + 1e-4, len(record.time))[:, None])
+
+    monkeypatch.setattr(motions, "integrate", growing)
+    wanted = {"integrator": "newmark", "law": "hertz"}
+    one = next(
+        one for one in CASES if one.name == "undamped steps" and one.setting == wanted and one.arguments["amplitude"] < 1.0
+    )
+    (row,) = case_rows(attrs.evolve(one, arguments={**one.arguments, "steps": 20_000}), REGISTRY)
+    assert row.observed == pytest.approx(1e-4, rel=0.05) and row.verdict == FAILED
+
+
 @pytest.mark.slow
 def test_newmark_chatters_and_generalized_alpha_or_finer_steps_do_not():
     rows = rows_named("chatter", law="hertz")
@@ -313,6 +330,8 @@ def test_quick_cases_are_the_default_and_the_screen_says_what_is_left_out(tmp_pa
     found = invoke(*words, "--all")
     assert found.exit_code == 1 and "failed: long, value far, one, equal within 0.1, 1, 2" in found.stdout
     assert "left out" not in found.stdout
+    content = json.loads((tmp_path / "stability.json").read_text())
+    assert (content["failed"], content["cases"]) == (1, 2)
     page = (tmp_path / "stability.md").read_text()
     assert page.index("## Failed") < page.index("## answer")
 

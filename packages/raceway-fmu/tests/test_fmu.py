@@ -184,6 +184,11 @@ def test_heavy_loads_are_flagged(forces: dict[int, Path]) -> None:
     assert instance(30e-6, *[0.0] * 4, 1000.0, 0.0)[5] > 0.0 and instance.in_range
     assert instance(500e-6, *[0.0] * 4, 1000.0, 0.0)[5] > 6000.0 and not instance.in_range
     assert instance(30e-6, *[0.0] * 4, 1e4, 0.0)[5] > 0.0 and not instance.in_range
+    races = rw.build_model(as_scene(TURNING)).bearing.basis
+    for x in np.linspace(140e-6, 260e-6, 9):  # up to the static pressure of ISO 76 for ball bearings, of each race
+        loads = instance(x, *[0.0] * 4, 1000.0, 0.0)[7:31].reshape(2, 12).max(axis=1)
+        pressures = [np.max(race.peak_pressure(load)) for race, load in zip((races.inner, races.outer), loads, strict=True)]
+        assert instance.in_range == (max(pressures) <= 4.2e9), (x, pressures)
 
 
 @pytest.mark.parametrize("version", [2, pytest.param(3, marks=pytest.mark.slow)])

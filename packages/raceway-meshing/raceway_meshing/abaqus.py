@@ -1,10 +1,13 @@
 """Input files of Abaqus and CalculiX: nodes, hexahedra, *NSET and *SURFACE."""
 
+from __future__ import annotations
+
 import re
 import warnings
 from collections.abc import Iterator
+from io import StringIO
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import attrs
 import numpy as np
@@ -13,6 +16,11 @@ from raceway import MeshError, one_of, option
 from raceway.extend import HexMesh, memory_for
 from raceway_meshing import formats as exchange
 
+if TYPE_CHECKING:
+    from meshio import Mesh
+
+#: Keyword, options and lines of a part of the file.
+Block = tuple[str, dict[str, str], list[str]]
 #: Element types that both programs know, by this program's word for the hexahedron.
 _TYPES = {"one_point": "C3D8R", "full": "C3D8", "incompatible": "C3D8I"}
 #: CalculiX reads 20 characters of a number: ten decimals leave room for a sign and an exponent of three figures.
@@ -45,13 +53,17 @@ class Abaqus:
             for number, line in enumerate(stream, 1):
                 if "INCLUDE" in line.upper() and line.partition(",")[0].strip().replace("*", "").upper() == "INCLUDE":
                     raise MeshError(f"'{path}', line {number}: *INCLUDE is not supported: insert what is in that file")
-        content = exchange.load(path, exchange.meshio().abaqus.read)
+        content, blocks = exchange.load(path, _content)
         cells, first = exchange.hexahedra(path, content)
-        members = dict[str, np.ndarray]()  # (k,) hexahedra of an element set, which meshio gives block by block
-        for name, blocks in content.cell_sets.items():
-            parts = [np.asarray(b, dtype=int) + start for b, start in zip(blocks, first, strict=False) if start is not None]
+        members = dict[str, np.ndarray]()  # (k,) hexahedra of an element set, which is given block by block
+        for name, rows in content.cell_sets.items():
+            parts = [np.asarray(b, dtype=int) + start for b, start in zip(rows, first, strict=True) if start is not None]
             members[name.lower()] = np.concatenate(parts) if parts else np.zeros(0, dtype=int)
-        surfaces = list(_surfaces(Path(path).read_text(encoding="utf-8")))
+        surfaces = [
+            (options["NAME"], [tuple(part.strip() for part in line.split(",")[:2]) for line in lines])
+            for keyword, options, lines in blocks
+            if keyword == "SURFACE" and options.get("TYPE", "ELEMENT").upper() == "ELEMENT" and "NAME" in options
+        ]
         facets = {name: _facets(path, name, lines, members) for name, lines in surfaces}
         in_use = {line[0].lower() for _, lines in surfaces for line in lines}
         others = sorted(name for name, elements in members.items() if name not in in_use and len(elements) < len(cells))
@@ -91,17 +103,57 @@ def _entries(numbers: np.ndarray) -> Iterator[str]:
         yield ", ".join(map(str, (numbers[first : first + _ENTRIES] + 1).tolist()))
 
 
-def _surfaces(text: str) -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    """Name and lines (element set, face) of each element surface."""
-    for head, body in re.findall(r"^\*SURFACE\s*,([^\n]*)\n((?:(?!\*)[^\n]*\n?)*)", text, re.MULTILINE | re.IGNORECASE):
-        words = dict(word.strip().split("=", 1) for word in head.split(",") if "=" in word)
-        options = {key.strip().upper(): value.strip() for key, value in words.items()}
-        if options.get("TYPE", "ELEMENT").upper() == "ELEMENT" and "NAME" in options:
-            lines = [tuple(part.strip() for part in line.split(",")[:2]) for line in body.splitlines() if line.strip()]
-            yield options["NAME"], lines
+def _content(path: Path) -> tuple[Mesh, list[Block]]:
+    """Nodes, elements and their sets, by rows, and the file's blocks.
+
+    meshio is given nodes and elements only: it keeps the last block of nodes alone and puts sets of elements on those of other blocks.
+    """
+    blocks: list[Block] = []
+    for line in map(str.strip, Path(path).read_text(encoding="utf-8").splitlines()):
+        if line.startswith("*") and not line.startswith("**"):
+            keyword, *words = line[1:].split(",")
+            pairs = [word.partition("=")[::2] for word in words]
+            blocks.append((keyword.strip().upper(), {key.strip().upper(): value.strip() for key, value in pairs}, []))
+        elif line and not line.startswith("**") and blocks:
+            blocks[-1][2].append(line)
+    text = ["*NODE", *(line for keyword, _, lines in blocks if keyword == "NODE" for line in lines)]
+    for keyword, options, lines in blocks:
+        if keyword == "ELEMENT":
+            text += [f"*ELEMENT, TYPE={options['TYPE'].upper()}", *lines]
+    content = exchange.meshio().abaqus.read(StringIO("\n".join(text)))
+    cells = iter(content.cells)
+    nodes, elements = [np.zeros(0, dtype=int)], list[np.ndarray]()  # numbers in the file, block by block
+    sets: dict[str, dict[str, np.ndarray]] = {"NSET": {}, "ELSET": {}}  # numbers of members
+    for keyword, options, lines in blocks:
+        kind = {"NODE": "NSET", "ELEMENT": "ELSET"}.get(keyword, keyword)
+        if kind not in sets:
+            continue
+        entries = [e for line in lines for e in map(str.strip, line.split(",")) if e and keyword != "NODE"]
+        known = {name.lower(): name for name in sets[kind]}
+        if keyword == "NODE":
+            nodes.append(members := np.array([line.partition(",")[0] for line in lines], dtype=int))
+        elif keyword == "ELEMENT":
+            width = len(entries) // max(len(next(cells).data), 1)
+            elements.append(members := np.array(entries[:: max(width, 1)], dtype=int))
+        elif "GENERATE" in options:
+            first, last, step = map(int, entries)
+            members = np.arange(first, last + 1, step)
+        else:  # numbers, and names of other sets
+            parts = [sets[kind][known[e.lower()]] if e.lower() in known else np.array([e], dtype=int) for e in entries]
+            members = np.concatenate([nodes[0], *parts])
+        if name := options.get(kind):
+            name = known.get(name.lower(), name)
+            sets[kind][name] = np.concatenate([sets[kind].get(name, members[:0]), members])
+    for word, numbers in (("node", nodes), ("element", elements)):
+        found, counts = np.unique(np.concatenate(numbers), return_counts=True)
+        if (counts > 1).any():
+            raise ValueError(f"{word} {found[counts > 1][0]} is given twice")
+    content.point_sets = {name: np.flatnonzero(np.isin(np.concatenate(nodes), n)) for name, n in sets["NSET"].items()}
+    content.cell_sets = {name: [np.flatnonzero(np.isin(e, n)) for e in elements] for name, n in sets["ELSET"].items()}
+    return content, blocks
 
 
-def _facets(path: Path, name: str, lines: list[tuple[str, str]], members: dict[str, np.ndarray]) -> np.ndarray:
+def _facets(path: Path, name: str, lines: list[tuple[str, ...]], members: dict[str, np.ndarray]) -> np.ndarray:
     facets = [np.zeros((0, 2), dtype=int)]
     for line in lines:
         word, face = (*line, "")[:2]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 import attrs
 import numpy as np
@@ -20,6 +20,7 @@ from raceway.extend import HexMesh, ReadTables, memory_for, size_of, size_words
 if TYPE_CHECKING:
     from meshio import Mesh
 
+T = TypeVar("T")
 #: Bytes of the largest mesh file.
 LARGEST = 2**32
 #: Solids that meshio knows and the kernels do not.
@@ -33,8 +34,8 @@ def meshio() -> ModuleType:
     return package
 
 
-def load(path: Path, reader: Callable[[Path], Mesh]) -> Mesh:
-    """meshio's own mesh; MeshError, by name: a file that is missing, empty, unpacks without end, or cannot be read."""
+def load(path: Path, reader: Callable[[Path], T]) -> T:
+    """What is read; MeshError, by name: a file that is missing, empty, unpacks without end, or cannot be read."""
     path = Path(path)
     size = readable(path)
     if not size:

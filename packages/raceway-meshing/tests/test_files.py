@@ -89,6 +89,37 @@ def test_an_abaqus_file_written_by_hand(tmp_path):
         Abaqus().read(path)
 
 
+def test_sets_of_an_abaqus_file_are_on_the_elements_of_their_numbers(tmp_path):
+    """Nodes and elements in several blocks, numbered from above, shells between them; sets in parts, of ranges and of other sets."""
+    mesh, path = block(1, 1, 4), tmp_path / "parts.inp"
+    nodes = [f"{50 - i}, {x}, {y}, {z}" for i, (x, y, z) in enumerate(mesh.points)]
+    bricks = [f"{90 - 10 * i}, {', '.join(str(50 - n) for n in cell)}" for i, cell in enumerate(mesh.cells)]
+    head, lines = "*ELEMENT, TYPE=C3D8", ["*NODE, NSET=Low", *nodes[:8], "*NODE", *nodes[8:]]
+    lines += [head, bricks[0], "*ELEMENT, TYPE=S4, ELSET=Skin", f"7, {', '.join(str(50 - n) for n in mesh.cells[0][:4])}"]
+    lines += [head + ", ELSET=Some", bricks[1], head, bricks[2], head + ", ELSET=some", bricks[3]]
+    lines += [
+        "*ELSET, ELSET=Range, GENERATE",
+        "70, 90, 10",
+        "*ELSET, ELSET=Both",
+        "Skin,",
+        "some",
+        "*ELSET, ELSET=Both",
+        "90",
+    ]
+    lines += ["*NSET, NSET=More", "LOW, 42", "** sets", *(f"*SURFACE, NAME={n}\n{n}, S2" for n in ("Some", "Range", "Both"))]
+    path.write_text("\n".join(lines))
+    with pytest.warns(UserWarning, match="element sets skin are ignored"):
+        back = Abaqus().read(path)
+    assert np.array_equal(back.points, mesh.points) and np.array_equal(back.cells, mesh.cells)
+    for name, cells in (("Some", [1, 3]), ("Range", [0, 1, 2]), ("Both", [0, 1, 3])):
+        assert sorted(back.facets(name).tolist()) == [[cell, 1] for cell in cells]
+    assert back.nodes("Low").tolist() == [*range(8)] and back.nodes("More").tolist() == [*range(9)]
+    for twice, word in ((nodes[0], "node 50"), (bricks[0], "element 90")):
+        path.write_text("\n".join(lines).replace(twice, f"{twice}\n{twice}"))
+        with pytest.raises(MeshError, match=rf"parts.inp' cannot be read: .*{word} is given twice"):
+            Abaqus().read(path)
+
+
 @pytest.fixture
 def given(tmp_path):
     Abaqus().write(tmp_path / "body.inp", block())

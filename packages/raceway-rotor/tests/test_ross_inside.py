@@ -38,6 +38,9 @@ def test_a_secant_carries_the_motion_and_is_symmetric():
     true = random.normal(size=(4, 4))
     true, tangent = true + true.T, np.diag([1.0, 2.0, 3.0, 4.0])
     u, units = random.normal(size=4) + 1j * random.normal(size=4), np.array([1.0, 1.0, 0.02, 0.02])
+    assert node_bearing("B7206C", 1000.0, "node").units(SPEED) == pytest.approx(
+        [1, 1, 0.023, 0.023], rel=0.2
+    )  # half the pitch diameter
     found = secant_stiffness(tangent, u, true @ u, units)
     np.testing.assert_allclose(found @ u, true @ u, rtol=1e-10)
     np.testing.assert_allclose(found, found.T, rtol=1e-10)
@@ -86,7 +89,10 @@ def test_contact_damping_is_in_c():
     one = node_bearing({"bearing": {"preset": "B7206C"}, "contact": {"damping": 100.0}}, 1000.0, damping=7.0)
     tables = {**scene(1000.0, 1.0), "contact": {"damping": 100.0}, "identifier": {"kind": "tangent"}}
     wanted = rw.run(tables).equivalent_damping + 7.0
-    assert one.dynamic_stiffness(SPEED, SPEED)[1, 1].imag / SPEED == pytest.approx(wanted, rel=1e-9)
+    c = one.dynamic_stiffness(SPEED, SPEED).imag / SPEED
+    assert c[1, 1] == pytest.approx(wanted, rel=1e-9)
+    without = node_bearing({"bearing": {"preset": "B7206C"}, "contact": {"damping": 100.0}}, 1000.0)
+    assert np.allclose(c - without.dynamic_stiffness(SPEED, SPEED).imag / SPEED, 7.0 * np.eye(3), atol=1e-6)
 
 
 @pytest.mark.parametrize("given, words", [
@@ -116,13 +122,38 @@ def test_an_old_ross_is_refused(monkeypatch):
         ross("this", least=3)
 
 
-def test_an_unbalance_turns_with_the_shaft():
-    """A free mass on springs under a force from X towards Y: m_u w^2 / (k - m w^2) of it, Y a quarter turn later; ROSS is not asked."""
+def beside_an_empty_ross(name):
+    """A module of the package that imports ROSS, which is not asked."""
     names = [f"raceway_rotor.{name}" for name in ("bearing", "responses")]
     with mock.patch.dict(sys.modules, {"ross": types.SimpleNamespace(__version__="3.0", BearingElement=object)}):
-        for name in names:
-            sys.modules.pop(name, None)
-        balance = importlib.import_module(names[1])._Balance
+        for other in names:
+            sys.modules.pop(other, None)
+        return importlib.import_module(f"raceway_rotor.{name}")
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_axes_are_turned_and_not_mirrored(side):
+    """A bearing that faces -z is one turned half about X; tilts about y, z turn as y, z do, so that their coupling keeps its hand."""
+    element = object.__new__(beside_an_empty_ross("bearing").RollingBearing)
+    k, c = np.random.default_rng(4).normal(size=(2, 5, 5))
+    own = types.SimpleNamespace(size=5, dynamic_stiffness=lambda w, speed: k + 1j * w * speed * c)
+    element.side, element.n_link, element.node_bearing, element._at_motion = side, None, own, {}
+    frame = element.frame
+    assert frame[0].tolist() == [0, 0, side, 0, 0] and frame[1].tolist() == [1, 0, 0, 0, 0]  # X, Y, Z are y, z, x
+    assert np.linalg.det(frame[:3, :3]) == pytest.approx(1.0) and not frame[:3, 3:].any() and not frame[3:, :3].any()
+    np.testing.assert_array_equal(frame[3:, 3:], frame[1:3, :2])
+    np.testing.assert_allclose(element.K(50.0, -20.0), frame.T @ k @ frame)
+    np.testing.assert_allclose(element.C(50.0, -20.0), 20.0 * frame.T @ c @ frame)
+    for name, column in element._table(np.array([3.0, 50.0])).items():
+        row, place = ("xyz".index(letter) for letter in name[1:])
+        assert column[1] == pytest.approx(getattr(element, name[0].upper())(50.0)[row, place])
+    element.n_link = 7
+    assert not (element.K(50.0) @ np.tile(np.eye(5), 2).T).any()  # no force where both nodes move alike
+
+
+def test_an_unbalance_turns_with_the_shaft():
+    """A free mass on springs under a force from X towards Y: m_u w^2 / (k - m w^2) of it, Y a quarter turn later; ROSS is not asked."""
+    balance = beside_an_empty_ross("responses")._Balance
     k, m, w, none = 1e7, 2.0, 500.0, np.zeros((3, 3))
     machine = types.SimpleNamespace(
         K=lambda _: k * np.eye(3), M=lambda _: m * np.eye(3), C=lambda _: none, G=lambda: none, ndof=3, number_dof=3
@@ -133,6 +164,36 @@ def test_an_unbalance_turns_with_the_shaft():
     size = 1e-4 * w**2 / (k - m * w**2) * np.exp(0.3j)
     np.testing.assert_allclose(found.response, size * np.array([1.0, -1.0j]), rtol=1e-12)
     np.testing.assert_allclose(found.receptance, np.eye(2) / (k - m * w**2), rtol=1e-12)
+
+
+def test_the_bearing_s_force_is_that_at_the_end_of_a_step_of_a_gyroscopic_rotor():
+    """Newmark's steps as ROSS takes them, with a force of k x + k_3 x^3: k x less that is on the right-hand side."""
+    k, k3, w, dt, eye, gyro = (
+        1e6,
+        1e14,
+        300.0,
+        1e-4,
+        np.eye(3),
+        np.array([[0.0, 0.8, 0.0], [-0.8, 0.0, 0.0], [0.0, 0.0, 0.0]]),
+    )
+    own = types.SimpleNamespace(
+        size=3,
+        dynamic_stiffness=lambda *_: k * eye,
+        resistance=lambda _, q: (k * q + k3 * q**3, np.diag(k + 3.0 * k3 * q**2)),
+    )
+    machine = types.SimpleNamespace(K=lambda _: k * eye, M=lambda: eye, C=lambda _: 100.0 * eye, G=lambda: gyro, ndof=3)
+    turns, damping = w * dt * np.arange(50), 100.0 * eye + w * gyro
+    forces = 100.0 * np.column_stack([np.cos(turns), np.sin(turns), 0.0 * turns])
+    bearing = types.SimpleNamespace(node_bearing=own, frame=eye, dofs=[0, 1, 2])
+    extra = beside_an_empty_ross("responses")._NonlinearForce(machine, [bearing], w, forces, 0.5, 0.25)
+    y, v, a = np.zeros(3), np.zeros(3), forces[0]
+    for n in range(1, len(forces)):
+        added = extra(n, time_step=dt, disp_resp=y, velc_resp=v, accl_resp=a)
+        y, v = y + dt * v + 0.25 * dt**2 * a, v + 0.5 * dt * a
+        a = np.linalg.solve(eye + 0.5 * dt * damping + 0.25 * dt**2 * k * eye, forces[n] + added - k * y - damping @ v)
+        y, v = y + 0.25 * dt**2 * a, v + 0.5 * dt * a
+        assert added == pytest.approx(-k3 * y**3, rel=1e-8, abs=1e-6)  # solved to 1e-10 of the displacement
+    assert np.abs(k3 * y**3).max() > 5.0  # of 100 N
 
 
 def test_the_example_is_short_and_says_what_is_missing(tmp_path):

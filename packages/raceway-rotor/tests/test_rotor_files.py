@@ -2,9 +2,11 @@
 
 import json
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from raceway_rotor import command
 from raceway_rotor.coefficient_file import point_rows
 from raceway_rotor.node_bearing import node_bearing
 
@@ -232,6 +234,32 @@ def test_the_command_writes_all_of_them(tmp_path):
     assert refused.exit_code == 2 and "give --ross, --nastran, --ansys or --table" in " ".join(refused.stderr.split())
     refused = invoke("export", tmp_path / "store", "--table", tmp_path / "b.xls")
     assert refused.exit_code == 2 and "states its kind by the ending" in refused.stderr
+
+
+def test_every_option_of_the_command_reaches_every_file(monkeypatch, tmp_path):
+    given, asked = {"at": ("load.axial=1",), "source": "tangent", "damping": 3.0, "node": 7, "tag": "left"}, []
+    for name in ("export_ross", "export_coefficients"):
+        written = SimpleNamespace(write=lambda path: path)
+        monkeypatch.setattr(command, name, lambda *_, written=written, **options: asked.append(options) or written)
+    files = {
+        name: tmp_path / f"b.{end}"
+        for name, end in (("ross", "toml"), ("nastran", "bdf"), ("ansys", "inp"), ("table", "csv"))
+    }
+    command.export("store", **files, **given, ross_version="2", number=5)
+    assert len(asked) == 4 and all(given.items() <= options.items() for options in asked)
+    assert asked[0]["ross_version"] == "2" and [(one["kind"], one["number"]) for one in asked[1:]] == [
+        ("nastran", 5), ("ansys", 5), ("csv", 5),
+    ]  # fmt: skip
+
+
+def test_coefficients_are_drawn_and_labelled_in_their_units():
+    bearing = rw.export_coefficients(made({SPEED: SPEEDS}), kind="csv")
+    for name, column in (("kyy", 1e-6 * stiffness(SPEEDS, 1000.0)), ("cyy", damping(SPEEDS))):
+        panel = bearing.plot((name,))
+        np.testing.assert_allclose(panel.lines[0].get_xydata(), np.column_stack([SPEEDS, column]))
+        assert [panel.get_xlabel(), panel.get_ylabel()] == ["speed [r/min]", "[N/µm]" if name == "kyy" else "[N s/m]"]
+    data = bearing.to_xarray()
+    assert (data.kyy.units, data.cyy.units, data.speed.units) == ("N/m", "N s/m", "rad/s")
 
 
 def test_columns_that_are_alike_are_one():

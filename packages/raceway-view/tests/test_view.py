@@ -1,6 +1,8 @@
 """raceway view and mesh: what the surfaces measure, what is drawn of a state, numbers and files of meshes, refusals."""
 
+import base64
 import json
+import re
 from pathlib import Path
 
 import attrs
@@ -8,6 +10,7 @@ import numpy as np
 import pytest
 from raceway_view.bodies import BearingSolids, contact_patch
 from raceway_view.bodies import ball as solid_ball
+from raceway_view.page import ball_cells, state_data
 from raceway_view.pictures import LETTERS, ball_labels, contacts
 from raceway_view.view import at_peak, at_rest
 
@@ -153,6 +156,50 @@ def test_the_edge_of_a_drawn_contact_is_its_ellipse(result):
     panel = contacts(BearingSolids.of(result), state, "made up").axes[1]
     at = np.asarray(panel.collections[0].get_coordinates()) / (1e3 * state.half[ball])
     assert np.hypot(*at[:, -1].T) == pytest.approx(np.ones(at.shape[0]), rel=1e-12)
+
+
+def test_the_section_points_to_the_contacts_and_both_ellipses_have_one_scale_of_pressure(result):
+    bearing, state = BearingSolids.of(result), at_rest(result)
+    ball = int(np.argmax(state.load[:12]))
+    section, *panels = contacts(bearing, state, "made up").axes
+    arrows = [text for text in section.texts if not text.get_text()]
+    radial = [0.0, np.cos(state.azimuth[ball]), np.sin(state.azimuth[ball])]
+    for arrow, towards in zip(arrows, bearing.towards(state)[[ball, 12 + ball]], strict=True):
+        drawn = np.subtract(arrow.xy, arrow.xyann) / (0.5 * bearing.diameter)
+        assert drawn == pytest.approx([towards[0], towards @ radial])
+    words = " ".join(text.get_text() for text in section.texts)
+    for panel, i in zip(panels, (ball, 12 + ball), strict=False):
+        assert f"{state.load[i]:.4g} N" in words and f"{np.degrees(state.angle[i]):.2f}°" in words
+        ends = [0.0, 1e-6 * max(state.peak[ball], state.peak[12 + ball])]
+        assert panel.collections[0].get_clim() == pytest.approx(ends)
+        assert (
+            f"{1e-6 * state.peak[i]:.4g} MPa, {2e3 * state.half[i, 0]:.3g} x {2e3 * state.half[i, 1]:.3g} mm"
+            in panel.get_title()
+        )
+
+
+def test_the_page_has_the_numbers_of_the_result_and_colours_by_its_bars(result):
+    import matplotlib
+
+    bearing, state, balls = BearingSolids.of(result), at_rest(result), result.to_dict()["equilibrium"]["balls"]
+    for race in ("inner", "outer"):
+        for k, (cells, ball) in enumerate(zip(ball_cells(state, race == "inner"), balls, strict=True)):
+            columns = (("load_{}_n", 1.0), ("contact_angle_{}_deg", 1.0), ("peak_pressure_{}_pa", 1e-6),
+                       ("semi_major_{}_m", 1e3), ("semi_minor_{}_m", 1e3))  # fmt: skip
+            numbers = [factor * (ball[name.format(race)] or 0.0) for name, factor in columns]
+            assert cells[0] == k and float(cells[1]) == pytest.approx(ball["azimuth_deg"])
+            assert [float(cell or 0.0) for cell in cells[2:]] == pytest.approx(numbers, rel=5.1e-4)  # four digits
+    data = state_data(bearing, state)
+    top, peak = (max(ball[name] for ball in balls for name in names) for names in (
+        ["load_inner_n"], ["peak_pressure_inner_pa", "peak_pressure_outer_pa"]))  # fmt: skip
+    ends = [float(re.findall(r"<span>(.*?)</span>", bar)[-1]) for bar in data["bars"]]
+    assert ends == pytest.approx([top, 1e-6 * peak], rel=5.1e-4)
+    loads, pressures = (matplotlib.colormaps[name] for name in ("viridis", "inferno"))
+    for part, ball in zip(data["parts"], balls, strict=False):
+        assert part["colour"] == pytest.approx(loads(ball["load_inner_n"] / top)[:3], abs=1e-4)
+    tones = np.frombuffer(base64.b64decode(data["shapes"]["patches 0"]["tones"]), np.uint8).reshape(-1, 4)
+    values = np.concatenate([part.surface.values for part in bearing.patches(state)]) / (1e-6 * peak)
+    assert np.abs(tones[:, :3] - 255.0 * pressures(values)[:, :3]).max() <= 0.51 and values.max() == pytest.approx(1.0)
 
 
 def test_a_pair_has_four_rings_and_loads_that_point_apart():
