@@ -8,7 +8,7 @@ import pytest
 
 import raceway as rw
 from checks.recorded import differences
-from checks.robustness._unchanged_scenes import SCENES
+from checks.validation.all_kinds import SCENES
 from checks.validation.command_line import EXAMPLES
 
 #: Seconds each; the same code runs in smaller scenes.

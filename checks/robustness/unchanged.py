@@ -21,7 +21,7 @@ from typing import Any
 from platformdirs import user_cache_path
 
 from checks.robustness import Row
-from checks.robustness._unchanged_scenes import SCENES
+from checks.validation.all_kinds import SCENES
 from raceway.extend import write_whole
 
 #: Relative difference that is allowed: the last digits, should an order of sums have to change.
