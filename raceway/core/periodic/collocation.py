@@ -180,17 +180,14 @@ def _weights(rule: GaussRule, nodes: np.ndarray) -> np.ndarray:
     return (derivative[:, 2:-2] / h[:, :, None]).reshape(-1, s + 4)
 
 
-def _place_step(problem: Problem, path: Path) -> float:
-    return _STEP * max(float(np.abs(path.v / problem.weight).max()), 1e-9) * problem.speed
-
-
 def _solve_places(problem: Problem, path: Path, residual: np.ndarray) -> np.ndarray:
     """(I - D T)^-1 of a residual (m s, Z, r), all balls of a span together: one goes on where another one ends."""
     from scipy.sparse import bsr_array, eye_array
     from scipy.sparse.linalg import splu
 
     n, z, r = residual.shape
-    system, rule, order, step = problem.system, problem.rule, problem.symmetry.order, _place_step(problem, path)
+    system, rule, order = problem.system, problem.rule, problem.symmetry.order
+    step = _STEP * max(float(np.abs(path.v / problem.weight).max()), 1e-9) * problem.speed
     s, places = len(rule.points), []
     angles, q, v = path.states((rule.points, rule.velocity, rule.position))
     time, q, v = angles.ravel() / problem.speed, q.reshape(-1, 5), v.reshape(-1, 5) * problem.speed
