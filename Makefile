@@ -58,7 +58,7 @@ wheel: $(VENV)/.all ## a wheel in dist with compiled kernels, installed into an 
 evidence: $(VENV)/.all ## the numbers that README and docs show, computed again at the commit that is checked out: hours
 	$(BIN)/python -m checks.night
 
-mutants: $(VENV)/.all ## deliberate faults of one line, and whether the tests catch them: an hour
+mutants: $(VENV)/.all ## deliberate faults of one line, and whether the tests catch them: half an hour
 	$(BIN)/python -m checks.mutants
 
 # The package is installed in place, so only a change of pyproject.toml installs anything again.

@@ -95,8 +95,7 @@ class Estimate(Enum):
 
     # The mesh of the bodies.
     NO_MESH = ("rigid bodies have no mesh",)
-    FINER_MESH = ("not estimated: run the scene with a finer mesh, or with bodies.kind = 'condensed'",
-                  "compare with a finer mesh")
+    FINER_MESH = ("not estimated: run the scene with a finer mesh, or with bodies.kind = 'condensed'", "compare with a finer mesh")
     COARSER_MESH = ("largest change of a diagonal stiffness from a mesh twice as coarse",)
     COARSER_MESH_FAILED = ("no equilibrium with the coarser mesh: {why}",)
     FEWER_POINTS = ("a third of the displacement's change from half as many points per semi-axis (order 2)",

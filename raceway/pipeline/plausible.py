@@ -339,12 +339,8 @@ def _secant(
     if "speeds" in identifier.needs:
         return None, "not estimated: it is fitted over several speeds"
     if "record" not in identifier.needs:
-        k = K.of(identification)
-
-        def of_equilibrium(variant: Model, state: Equilibrium) -> float:
-            return float((K.of(identifier.identify([], state, variant)) - k) / abs(k))
-
-        return of_equilibrium, f"identifier '{model.problem.identifier.kind}' at each equilibrium"
+        k, how = K.of(identification), f"identifier '{model.problem.identifier.kind}' at each equilibrium"
+        return lambda variant, state: float((K.of(identifier.identify([], state, variant)) - k) / abs(k)), how
     turn = None if simulation is None or period is None else last_turn(simulation.whole, period)
     if model.problem.contact.friction > 0.0 or turn is None:
         return None, "not estimated: with friction, or without whole turns, there is no steady orbit to compare with"

@@ -1,13 +1,11 @@
 """Input files of Abaqus and CalculiX: nodes, hexahedra, *NSET and *SURFACE."""
 
-from __future__ import annotations
-
 import re
 import warnings
 from collections.abc import Iterator
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import Any, ClassVar
 
 import attrs
 import numpy as np
@@ -15,9 +13,6 @@ import numpy as np
 from raceway import MeshError, one_of, option
 from raceway.extend import HexMesh, memory_for
 from raceway_meshing import formats as exchange
-
-if TYPE_CHECKING:
-    from meshio import Mesh
 
 #: Keyword, options and lines of a part of the file.
 Block = tuple[str, dict[str, str], list[str]]
@@ -103,7 +98,7 @@ def _entries(numbers: np.ndarray) -> Iterator[str]:
         yield ", ".join(map(str, (numbers[first : first + _ENTRIES] + 1).tolist()))
 
 
-def _content(path: Path) -> tuple[Mesh, list[Block]]:
+def _content(path: Path) -> tuple[Any, list[Block]]:
     """Nodes, elements and their sets, by rows, and the file's blocks.
 
     meshio is given nodes and elements only: it keeps the last block of nodes alone and puts sets of elements on those of other blocks.
