@@ -182,17 +182,20 @@ def test_what_a_class_cannot_say_is_refused(tables, given, words):
         tolerances_of(scene_from_dict(LOADED | tables), given)
 
 
-def test_people_read_newtons_per_micrometre_and_files_hold_the_histogram(tmp_path):
+def test_people_read_newtons_per_micrometre_and_files_hold_the_histogram(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     file = tmp_path / "scene.toml"
     file.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[tolerances]\n"load.axial" = "±10 %"\n')
-    told = invoke("band", str(file), "--out", str(tmp_path), "--samples", "16", "--processes", "0")
-    content = json.loads((tmp_path / "band.json").read_text())["quantities"]["kxx"]
+    told = invoke("band", str(file), "--samples", "16", "--processes", "0")
+    (folder,) = (tmp_path / "raceway-out").iterdir()
+    assert folder.name.endswith("-band")  # beside that of a run of the scene
+    content = json.loads((folder / "band.json").read_text())["quantities"]["kxx"]
     row = next(line for line in told.output.splitlines() if line.startswith("kxx [N/µm]"))
     shown = [1e-6 * content[name] for name in ("value", "low", "high")]
     assert [float(number) for number in row.split()[2:5]] == pytest.approx(shown, rel=1e-4)
     edges, counts = content["histogram"]["edges"], content["histogram"]["counts"]
     assert sum(counts) == 32 and edges[0] < content["low"] < content["high"] < edges[-1]
-    assert (tmp_path / "band.png").stat().st_size > 0
+    assert (folder / "band.png").stat().st_size > 0
 
 
 def test_the_command_goes_on_with_what_is_kept(tmp_path):

@@ -255,8 +255,10 @@ def test_labelled_arrays_say_their_units(moving, static):
     assert all("units" in variable.attrs for variable in data.data_vars.values())
     assert data.stiffness.sel(dof="y", dof2="y").item() == moving.stiffness[1, 1]
     assert np.array_equal(data.motion.sel(dof="z"), record.displacement[:, 2])
-    assert data.contact_force.sel(race="inner").shape == (len(record.time), 12)
+    assert np.array_equal(data.contact_force.sel(race="outer"), record.contact_force[:, 12:])
     assert data.ball_load.sel(race="inner").values.tolist() == moving.ball_loads.tolist()
+    assert data.azimuth.values == pytest.approx(30.0 * np.arange(12), abs=1e-9)
+    assert np.array_equal(data.contact_angle.sel(race="outer"), np.degrees(moving.equilibrium.angle_outer))
     assert float(data.equivalent_stiffness) == moving.equivalent_stiffness
     assert "time" not in static.to_xarray().dims and "equivalent_stiffness" not in static.to_xarray()
 
@@ -281,7 +283,12 @@ def test_pictures_on_axes(moving, static, monkeypatch):
     assert any(np.array_equal(line.get_xdata()[: used.size], used) for line in ax.lines)  # the orbit is drawn closed
     assert ax.get_xlabel() == "displacement y [µm]"
     assert len(moving.plot()) == 3 and len(static.plot()) == 1
-    assert moving.plot("ball_loads").name == "polar"
+    loads = moving.plot("ball_loads")
+    assert loads.name == "polar" and np.array_equal(loads.lines[0].get_ydata()[:12], moving.ball_loads)
+    # The 1x line of a circle has its radius.
+    assert (
+        moving.plot("spectrum").texts[0].get_text().startswith(f"1x: {1e6 * moving.identification.forward_amplitude:.4g} µm")
+    )
     for what, given, words in (
         ("orbits", None, "did you mean 'orbit'"),
         ("ball_loads", ax, "needs polar axes"),

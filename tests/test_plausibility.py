@@ -76,6 +76,9 @@ def test_a_bearing_that_unseats_during_a_turn_is_told():
 
 def test_a_moment_on_locked_tilts_has_no_effect_and_says_so():
     assert any("`load.moment` has no effect" in w for w in computed(load={"moment": [3.0, 0.0]}).warnings)
+    for tilt, faults in (("locked", 1), ("free", 0)):
+        told = check({"bearing": {"preset": "B7206C"}, "load": {"moment": [3.0, 0.0]}, "supports": {"tilt": tilt}}).mistakes
+        assert sum("no load acts" in mistake.message for mistake in told) == faults
 
 
 def static(**tables):

@@ -15,6 +15,7 @@ from rich.console import Console
 import raceway as rw
 from checks.validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
 from raceway.answers import table
+from raceway.answers.quantities import C
 from raceway.extend import Words, duration, equilibrium_table, rows_table
 from raceway.framework.estimate import Estimate, few_words
 from raceway.pipeline.run_parts import bodies_rows, cost_row, equilibrium_rows, loaded_balls, mounting_rows
@@ -256,6 +257,8 @@ def test_rows_have_the_numbers_by_whose_names_they_go():
     most, least = loaded_balls({"equilibrium": {"balls": balls, "largest_ball_load_race": "outer"}}, ["most", "least"])
     assert most[1:] == ("12 N", "row 1, ball 1 at 90 deg; outer 1000 MPa, 15.00 deg; inner 9 N, 1000 MPa, 15.00 deg")
     assert least[1:] == ("2 N", "row 2, ball 0 at 180 deg; inner 1000 MPa, 15.00 deg")
+    damping = {"equivalent_damping": 3.0, "equivalent_damping_error": 4.0}
+    assert C.fact({"identification": damping})[1:] == ("not resolved", f"below its error of 4 N s/m; {C.words}")
 
 
 def test_a_table_says_once_what_is_the_same_in_all_rows():

@@ -2,6 +2,7 @@
 
 from itertools import product
 from math import hypot, isclose
+from types import SimpleNamespace
 
 import attrs
 import numpy as np
@@ -12,7 +13,7 @@ from rich.console import Console
 import raceway as rw
 from checks.validation.command_line import MINIMAL, invoke
 from raceway.answers.quantities import KXX, KYY
-from raceway.extend import K, stated
+from raceway.extend import K, radial_note, stated
 from raceway.pipeline.uncertainty import elastic_change, interval
 
 STATIC = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}}
@@ -137,8 +138,8 @@ def test_sweeps_have_the_ends_where_they_are_asked_for():
         rw.sweep(STATIC, {"load.axial": [400.0]}, quantities=["speed"])
 
 
-def test_files_for_other_programs_say_it():
-    """The store knows what the scene leaves to its preset."""
+def test_files_for_other_programs_say_it(monkeypatch):
+    """The store knows what the scene leaves to its preset.  Ten seconds is what a note may take."""
     swept = rw.sweep(
         {**STATIC, "kinematics": {"spin_speed_rpm": 0.0}}, {"kinematics.spin_speed_rpm": [0.0, 500.0, 1000.0, 1500.0]}
     )
@@ -147,3 +148,7 @@ def test_files_for_other_programs_say_it():
         rw.export_fmu(STATIC, ranges=["load.axial=900:1100"], outputs=["kyy"]).notes,
     ):
         assert any("kyy of the scene itself" in note and "inferred geometry" in note for note in notes), notes
+    for seconds, count in ((9.0, 1), (11.0, 0)):
+        plan = SimpleNamespace(predicted_wall_s=seconds)
+        monkeypatch.setattr("raceway.planning.plan.make_plan", lambda scene, plan=plan: plan)
+        assert len(radial_note(STATIC)) == count

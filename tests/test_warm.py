@@ -145,6 +145,10 @@ def test_the_band_holds_the_answer():
     narrow = rw.run(published.warm_pair({"conductance_band": 0.0}, quantities={"friction": bands})).to_dict()
     rows = {name: (value, remark) for name, value, remark in Temperatures.rows(table)}
     assert rows["running preload"][0].endswith(" N") and rows["running preload"][1] == "within the bands"
+    for name in ("kxx", "kyy"):
+        low, high = (1e-6 * end for end in table["band"][f"{name}_n_per_m"])
+        assert rows[name][0] == f"{low:.4g} to {high:.4g} N/µm"
+    assert_allclose(table["band"]["conductances"], [1.0 / 1.5, 1.5])  # heat.conductance_band is 0.5
     assert_allclose(narrow["heat"]["band"]["running_preload_n"], narrow["equilibrium"]["preload"]["running_n"], rtol=1e-6)
 
 

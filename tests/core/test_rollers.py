@@ -99,6 +99,8 @@ def test_centrifugal_forces_load_the_outer_races_alone():
     inner, outer = np.split(equilibrium.contact_force, 2)
     assert outer - inner == pytest.approx(np.full(13, mass * 0.5 * 46.5e-3 * cage**2), rel=1e-9)
     assert inner @ np.cos(model.azimuth) == pytest.approx(FORCE, rel=1e-9)
+    ring = 7810.0 * np.pi * (18.75e-3**2 - 15e-3**2) * 16e-3  # between its bore and where rollers run
+    assert model.system.mass[1, 1] == pytest.approx(ring, rel=1e-9)
 
 
 def test_pressures_are_hertz_line_contacts():

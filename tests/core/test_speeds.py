@@ -1,5 +1,7 @@
 """Several speeds: K and C by a fit, a run-up with order tracking."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from checks.validation.scenes import built_in
 from raceway import ConvergenceError, SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.energy import friction_energy
 from raceway.extend import CAGE, Schedule, SteppedBearing, at_rest, integrate, layout
+from raceway.pipeline.identified import series_warnings
 from raceway.testing import b7206c, ring_inertia
 
 RunUp = built_in("excitation", "run_up")
@@ -166,6 +169,13 @@ def test_slow_run_up_agrees_with_steady_runs(first, last, whirl):
         assert abs(found.series[k][1] - expected) < 2e-3 * abs(expected)
     forward, backward = found.forward_amplitude, found.backward_amplitude
     assert (forward > 100.0 * backward) if whirl == "forward" else (backward > 100.0 * forward)
+
+
+def test_windows_of_a_run_up_that_lag_behind_are_told():
+    windows = tuple((rpm * np.pi / 30.0, 1e8 + 0j) for rpm in (6000.0, 7000.0, 8000.0, 9000.0))
+    (words,) = series_warnings(SimpleNamespace(series=windows, series_error=(0.01, 0.2, None, 0.06)))
+    assert "in 2 of 4 windows, 7000 to 9000 r/min: the error of Z is up to 0.2 of |Z| there (at 7000 r/min)" in words
+    assert series_warnings(SimpleNamespace(series=windows, series_error=(0.01, 0.04, None, 0.0))) == []
 
 
 def test_phase_is_the_kernels():

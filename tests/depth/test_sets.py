@@ -291,10 +291,13 @@ def test_a_set_goes_through_a_file(tmp_path):
 
 
 def test_an_open_contact_is_about_to_carry_a_tenth_of_the_largest_load_of_its_own_row():
-    """As laws of running contacts take it; one ball of either row is loaded."""
-    problem = resolve(scene("DB", kinematics={"spin_speed_rpm": 9000.0}))
+    """As laws of running contacts take it; one ball of either row is loaded.  Of balls that orbit each carries the mean of all."""
+    problem, orbiting = (resolve(scene("DB", kinematics={"spin_speed_rpm": 9000.0, "orbiting": on})) for on in (False, True))
     force = np.zeros((2, 2, problem.bearing.ball_count))
     force[:, :, 0] = 10.0, 100.0
     angles = np.full((2, force[0].size), radians(25.0))
-    load = running_pairs(problem, make_basis(problem), force.ravel(), tuple(angles)).load.reshape(force.shape)
+    load, mean = (
+        running_pairs(p, make_basis(p), force.ravel(), tuple(angles)).load.reshape(force.shape) for p in (problem, orbiting)
+    )
     assert load == pytest.approx(np.maximum(force, 0.1 * force.max(axis=2, keepdims=True)))
+    assert mean == pytest.approx(np.broadcast_to(force.mean(axis=2, keepdims=True), force.shape))

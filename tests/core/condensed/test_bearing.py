@@ -1,6 +1,7 @@
 """Whole condensed bearings: published answers, what a result tells, what is refused."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ import pytest
 import raceway as rw
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway import SceneError, make_plan, scene_from_dict
+from raceway.bodies.model import calibration_error
 from raceway.core.fem import calibration
 from raceway.pipeline.uncertainty import elastic_change
 from raceway.plugins.bodies import condensed_bearing
@@ -61,6 +63,16 @@ def test_the_mesh_error_bounds_what_a_finer_mesh_changes(size, along):
     free = case.system.free > 0.0
     change = np.abs(np.diag(fine.stiffness)[free] / np.diag(found.stiffness)[free] - 1.0).max()
     assert change < case.bearing.mesh_error(case, found)[0] < 10.0 * change
+
+
+def test_the_error_of_a_calibration_is_that_of_both_contacts_over_what_a_ball_gives():
+    case, found = settled(b7206c())
+    load = found.contact_force[0]
+    give = (case.inner.approach(load) + case.outer.approach(load)) / (1.5 * load)  # both tangents of Hertz
+    for known in ((1e-10, 0.0), (0.0, 3e-10)):
+        races = [SimpleNamespace(error=lambda load, error=error: error + 0.0 * load) for error in known]
+        rings = SimpleNamespace(calibrations=races, at=lambda angle: (0.0, 0.0), ball_opposite=0.0)
+        assert calibration_error(rings, case, found)[0] == pytest.approx(sum(known) / give, rel=1e-9)
 
 
 def test_a_result_tells_what_elasticity_does_and_how_sure_it_is():

@@ -78,11 +78,15 @@ def test_the_table_names_the_most_loaded_contact_of_each_race(result):
         assert 0.30 < one["hertz_largest_shear_pa"] / ball[f"peak_pressure_{one['race']}_pa"] < 0.33
         assert 0.70 < one["hertz_depth_m"] / ball[f"semi_minor_{one['race']}_m"] < 0.79
         assert one["resolved"] is False and one["cells_to_hertz_depth"] < 1.0
+        assert one["cells_per_semi_major"] > one["cells_per_semi_minor"]  # the ellipse is longer than the elements
 
 
 def test_the_line_ends_below_hertz_s_depth(result):
     for side in below_contacts(result.model.bearing, result.model, result.equilibrium):
         assert side.profile.depth[0] == 0.0 and side.profile.depth[-1] > 2.0 * side.hertz[1]
+    last = attrs.evolve(result.equilibrium, contact_force=np.tile([1.0, 1.0, 2.0], 2))
+    bodies = [side.index for side in below_contacts(result.model.bearing, result.model, last)]
+    assert bodies == [4, 0, 4, 1]  # of rings and balls: the third ball and each ring
 
 
 def test_a_race_that_carries_nothing_is_absent(result):
