@@ -35,7 +35,10 @@ MOVING = {
 def answers(tables, name, **bearing):
     """A quantity of scenes with another bearing over load."""
     scene = {**tables, "bearing": {**tables["bearing"], **bearing}}
-    return [rw.sensitivities(rw.evolve(scene, f"load.axial={load}"), ["load.axial"]).values[name] for load in LOADS]
+    scenes = [rw.evolve(scene, f"load.axial={load}") for load in LOADS]
+    if name in ("y", "z"):
+        return [float(rw.run(scene).equilibrium.displacement["xyz".index(name)]) for scene in scenes]
+    return [rw.sensitivities(scene, ["load.axial"]).values[name] for scene in scenes]
 
 
 LINE = [Free("a", "", 1.0, 10.0), Free("b", "", 1.0, 10.0)]
@@ -97,9 +100,11 @@ def test_two_numbers_that_only_add_up_are_told_as_a_combination():
     assert both < 1.0 < alone
 
 
-@pytest.mark.parametrize(("tables", "name", "rel"), [(LOADED, "kxx", 1e-6), (LOADED, "x", 1e-6), (MOVING, "K", 1e-5)])
+@pytest.mark.parametrize(("tables", "name", "rel"), [
+    (LOADED, "kxx", 1e-6), (LOADED, "x", 1e-6), (MOVING, "K", 1e-5), ({**LOADED, "load": {"axial": 500.0, "radial": [20.0, 90.0]}}, "z", 1e-5),
+])  # fmt: skip
 def test_exact_answers_of_another_bearing_give_its_angle_back(tables, name, rel):
-    unit = "m" if name == "x" else "N/m"
+    unit = "m" if name in "xyz" else "N/m"
     data = {"axial [N]": LOADS, f"{name} [{unit}]": answers(tables, name, contact_angle_deg=17.0)}
     found = rw.fit(data, tables, ANGLE)
     assert found[ANGLE] == pytest.approx(17.0, rel=rel)
@@ -110,10 +115,17 @@ def test_derivatives_of_residuals_are_those_of_the_residuals():
     """Exact gradients of the scene against central differences of whole answers."""
     scene = rw.Scene.from_dict(MOVING)
     table = NumberTable(
-        ["axial [N]", "K [N/µm]", "kxx [N/µm]"], np.array([[400.0, 40.0, 40.0], [900.0, 60.0, 60.0]]), np.arange(2)
+        ["axial [N]", "K [N/µm]", "kxx [N/µm]"], np.array([[400.0, 40.0, 140.0], [900.0, 60.0, 160.0]]), np.arange(2)
     )
     free = free_keys(scene, [ANGLE, "rotor.mass"])
     measured = measurements_in(table, "made up", scene)
+    assert [weights[0] for weights in measured.weights.values()] == pytest.approx(
+        [50e6, 150e6]
+    )  # errors of one relative size
+    table = NumberTable(["axial [N]", "K [N/µm]", "K error [N/µm]"], np.array([[400.0, 40.0, 1.96]]), np.arange(1))
+    assert measurements_in(table, "made up", scene).errors["K"] == pytest.approx(
+        [1e6], rel=1e-3
+    )  # of half an interval of 95 %
     problem = TableResiduals(measured, free, scene)
     at = np.array([15.5, 2.0])
     problem.residuals(at)
