@@ -82,12 +82,14 @@ def test_damping_is_identified(rig, scene):
     # The dashpot acts on the deflection; the shaft's slope is not in phase with it, and brings a part of its own.
     assert state.locked[1] == pytest.approx(3000.0, rel=5e-3)  # the coupling is that at rest
     quiet = attrs.evolve(quiet_signals(Signals()), duration=0.5)
-    found = identify_recording(record(rig, response(rig, held, state, quiet), quiet, 1), rig, held)
+    signals = record(rig, response(rig, held, state, quiet), quiet, 1)
+    found = identify_recording(signals, rig, held)
     # Marks between samples turn all phases by a little: that is what its own uncertainty says.
     assert abs(found.state.damping - state.damping) < found.uncertainty[1]
     assert abs(found.state.locked[1] - state.locked[1]) < found.uncertainty[3]
     assert found.state.stiffness == pytest.approx(state.stiffness, rel=1e-3)
-    line, rolled = found.component, attrs.evolve(found, run_out=RunOut(1e-6 * np.exp(0.5j)))
+    line, rolled = found.component, identify_recording(signals, rig, held, RunOut(1e-9 * np.exp(0.5j), 1e-9))
+    assert rolled.parts["slow roll"] / rolled.parts["spread"] == pytest.approx(1e-9 / line.error)
     angles = [rolled.content()[part]["angle_deg"] for part in ("line", "run_out")]
     assert angles == pytest.approx(np.degrees([np.angle(line.forward), 0.5]))
     unsure = attrs.evolve(found, parts={"spread": np.array([0.5 * state.stiffness, 1e9, state.stiffness, 1e9])})
