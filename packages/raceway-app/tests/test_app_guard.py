@@ -90,15 +90,10 @@ def test_curves_run_over_the_scene_and_temperatures_are_in_celsius():
     axis = axes_of(rw.load_scene(SCENE), {"load": (100.0, 400.0)})["load"]
     assert axis.low == 100.0 and axis.high >= axis.present == 1000.0 and axis.present in axis.numbers()
     status, quantities = np.array([PointStatus.COMPUTED, PointStatus.FAILED]), plugin_quantities(default_registry())
-    answer = {
-        "status": status,
-        "points": np.array([1.0, 2.0]),
-        "reason": ["", "why"],
-        "temperature_inner_k": np.array([300.0, 310.0]),
-    }
+    answer = {"status": status, "points": status, "reason": ["", "why"], "temperature_inner_k": np.array([300.0, 310.0])}
     panel = _panel("speed", axis, "temperature", ["temperature_inner_k"], answer, {n: q for n, (_, q) in quantities.items()})
     assert panel["lines"][0]["y"] == [pytest.approx(26.85), None]
-    assert (panel["unit"], panel["missing"], panel["why"]) == ("°C", [2.0], "why")
+    assert (panel["unit"], panel["missing"], panel["why"]) == ("°C", [PointStatus.FAILED], "why")
 
 
 def status(application, path: str, host: str = "", **headers: str) -> int:

@@ -107,9 +107,17 @@ def made_page(monkeypatch):
 
 
 def test_page_of_invented_numbers_has_every_figure_and_every_verdict(made_page):
-    text = made_page(lambda s, load, w: 1e8 * (1.0 + 0.2 * w * (s.tilt == "free")))
+    text = made_page(lambda s, load, w: 1e5 * load * (1.0 + 0.2 * w * (s.tilt == "free")))
     images = re.findall(r'<img alt="([^"]+)"', text)
     assert len(images) == 70 and all(len(words) > 40 for words in images)
+    for words in (  # K rises by a fifth over the speed at every load, which it is proportional to
+        "k* (k = K) over w* from 0 to 1, tilt free: rotating, m e w²: 1 to 1.2; unidirectional, constant: 1 to 1.2",
+        "K [10⁶ N/m] over w*, tilt free, with ball inertia: 400 N: 40 to 48; 1000 N: 100 to 120",
+        "Map of k* over w* and axial load, tilt free: 1.000 to 1.200",
+        "over the tilt stiffness, from next to free to next to locked: 400 N: 1.1 to 0.78",
+    ):
+        assert any(words in image for image in images), words
+    assert len(re.findall(r"<td[^>]*>200</td>", text)) == 18  # N/µm at the rig's speeds and loads
     for number in ("1a", "1b", "2", "3a", "3b", "4", "5a", "5b", "5c", "5d", "5e", "6a", "6b", "6c", "6"):
         assert f'<th scope="row">{number}</th>' in text or f'<th scope="row" class="number">{number}</th>' in text
     assert not re.search(r"\bnan\b", re.sub(r'src="[^"]+"', "", text))

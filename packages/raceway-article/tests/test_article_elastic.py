@@ -9,7 +9,7 @@ import tomllib
 import attrs
 import pytest
 from article_study import elastic_study
-from raceway_article import elastic, elastic_design, elastic_rows
+from raceway_article import elastic, elastic_design, elastic_page, elastic_rows
 from raceway_article.elastic_design import SCENE, ElasticDesign, design
 from raceway_article.elastic_page import drawings, page
 from raceway_article.remaining_time import RemainingTime
@@ -224,7 +224,8 @@ def test_the_page_of_invented_numbers_opens_without_a_network(monkeypatch):
 
 def test_the_page_gives_no_shear_stress_that_the_mesh_does_not_resolve():
     content = elastic_study().to_dict()
-    assert "410.0" in page(content, [], None, "").html()
+    shear_and_depth_beside_hertz = r">410\.0<.*?>400\.0<.*?>61\.0<.*?>60\.0<"
+    assert re.search(shear_and_depth_beside_hertz, page(content, [], None, "").html(), re.DOTALL)
     for row in content["rows"]:
         for side in row.get("below_contact") or []:
             side["resolved"] = False
@@ -248,6 +249,10 @@ def test_deviations_are_those_of_rows_made_by_hand():
     off = elastic_rows.difference_in_motion(*moving)
     assert off["k"] == pytest.approx(0.01) and off["c"] == pytest.approx(0.5)
     z = moving[1]["identification"]["dynamic_stiffness"]["abs"]
+    lines = elastic_page.tables(study.to_dict()).values()  # "400 N axial", "unidirectional constant force"
+    shown = [[*next(line for line in part if line["bodies"] == "elastic").values()] for part in lines]
+    assert shown[0][2:] == ["9.9000", "0.0000", "251.00", "+0.50\u202f%", "−1.00\u202f%", "–", "+0.40\u202f%"]
+    assert shown[1][2:6] == ["202.00", "150", "198.84", "+1.00\u202f%"]
     assert off["wc"] == pytest.approx(12000.0 * 3.14159265 / 30.0 * 50.0 / z)  # w 50 N s/m over |Z|
 
 

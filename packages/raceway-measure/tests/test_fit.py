@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 from raceway_measure.fit.estimate import Free, estimate, free_keys, judged
 from raceway_measure.fit.linear import LinearResiduals, free_parts
-from raceway_measure.fit.signals import signals_of, write_recording
+from raceway_measure.fit.rig import _RigResiduals
+from raceway_measure.fit.shaft_angle import rotation_of
+from raceway_measure.fit.signals import recording_of, signals_of, write_recording
 from raceway_measure.fit.spectra import aliasing_error, largest_tone, spectra_of, spectrum_of, uneven_block
+from raceway_measure.fit.synchronous import RunOut, synchronous
 from raceway_measure.fit.table import TableResiduals, measurements_in
 from raceway_measure.rig.signals import record as rig_record
 from raceway_measure.rig.signals import response, slow_roll_record, white_noise
@@ -18,7 +21,7 @@ from raceway_rotor.shaft import balance, bearing, rotor
 import raceway as rw
 from checks.validation.command_line import EXAMPLES, invoke
 from checks.validation.shaker import hammer_record, record, turning_record
-from raceway import ConvergenceError, SceneError, load_scene
+from raceway import ConvergenceError, RacewayError, SceneError, load_scene
 from raceway.extend import NumberTable, with_number
 from raceway.testing import b7206c, default_registry
 
@@ -35,7 +38,10 @@ MOVING = {
 def answers(tables, name, **bearing):
     """A quantity of scenes with another bearing over load."""
     scene = {**tables, "bearing": {**tables["bearing"], **bearing}}
-    return [rw.sensitivities(rw.evolve(scene, f"load.axial={load}"), ["load.axial"]).values[name] for load in LOADS]
+    scenes = [rw.evolve(scene, f"load.axial={load}") for load in LOADS]
+    if name in ("y", "z"):
+        return [float(rw.run(scene).equilibrium.displacement["xyz".index(name)]) for scene in scenes]
+    return [rw.sensitivities(scene, ["load.axial"]).values[name] for scene in scenes]
 
 
 LINE = [Free("a", "", 1.0, 10.0), Free("b", "", 1.0, 10.0)]
@@ -97,23 +103,30 @@ def test_two_numbers_that_only_add_up_are_told_as_a_combination():
     assert both < 1.0 < alone
 
 
-@pytest.mark.parametrize(("tables", "name", "rel"), [(LOADED, "kxx", 1e-6), (LOADED, "x", 1e-6), (MOVING, "K", 1e-5)])
+@pytest.mark.parametrize(("tables", "name", "rel"), [
+    (LOADED, "kxx", 1e-6), (LOADED, "x", 1e-6), (MOVING, "K", 1e-5), ({**LOADED, "load": {"axial": 500.0, "radial": [20.0, 90.0]}}, "z", 1e-5),
+])  # fmt: skip
 def test_exact_answers_of_another_bearing_give_its_angle_back(tables, name, rel):
-    unit = "m" if name == "x" else "N/m"
+    unit = "m" if name in "xyz" else "N/m"
     data = {"axial [N]": LOADS, f"{name} [{unit}]": answers(tables, name, contact_angle_deg=17.0)}
     found = rw.fit(data, tables, ANGLE)
     assert found[ANGLE] == pytest.approx(17.0, rel=rel)
     assert found.estimate.parts["noise"] < 1e-2 and found.determined
+    at_end = attrs.evolve(found, estimate=attrs.evolve(found.estimate, at_limit=(ANGLE,)))
+    assert ["at the end of its range" in " ".join(one.warnings) for one in (found, at_end)] == [False, True]
 
 
 def test_derivatives_of_residuals_are_those_of_the_residuals():
     """Exact gradients of the scene against central differences of whole answers."""
     scene = rw.Scene.from_dict(MOVING)
     table = NumberTable(
-        ["axial [N]", "K [N/µm]", "kxx [N/µm]"], np.array([[400.0, 40.0, 40.0], [900.0, 60.0, 60.0]]), np.arange(2)
+        ["axial [N]", "K [N/µm]", "kxx [N/µm]"], np.array([[400.0, 40.0, 140.0], [900.0, 60.0, 160.0]]), np.arange(2)
     )
     free = free_keys(scene, [ANGLE, "rotor.mass"])
     measured = measurements_in(table, "made up", scene)
+    assert [sizes[0] for sizes in measured.weights.values()] == pytest.approx([50e6, 150e6])  # of one relative size
+    table = NumberTable(["axial [N]", "K [N/µm]", "K error [N/µm]"], np.array([[400.0, 40.0, 1.96]]), np.arange(1))
+    assert measurements_in(table, "", scene).errors["K"] == pytest.approx([1e6], rel=1e-3)  # of half an interval of 95 %
     problem = TableResiduals(measured, free, scene)
     at = np.array([15.5, 2.0])
     problem.residuals(at)
@@ -219,6 +232,8 @@ def test_what_noise_hides_is_not_determined():
 def test_two_directions_give_all_parts():
     k, c = np.array([[5e7, 1e7], [-1e7, 4e7]]), np.array([[800.0, 100.0], [-50.0, 600.0]])
     found = rw.fit(turning_record(k, c, 1.5, 3), free="K,C,mass")
+    with pytest.raises(RacewayError, match="of one axis"):
+        found.to_uff("both.uff")
     for a, one in enumerate("yz"):
         for b, other in enumerate("yz"):
             assert abs(found[f"k{one}{other}"] - k[a, b]) < 2.0 * found.half_width(f"k{one}{other}")
@@ -359,6 +374,7 @@ def test_tolerances_of_what_is_not_free_widen_the_interval():
     # All loads 2 % / sqrt(3) more, which the ranges' standard errors are.
     more = rw.fit({**data, "axial [N]": np.array(LOADS) * (1.0 + 0.02 / np.sqrt(3.0))}, LOADED, ANGLE)
     assert found.estimate.parts["load.axial"][0] == pytest.approx(1.96 * abs(more[ANGLE] - 17.0), rel=0.05)
+    assert 1.96 * np.sqrt(found.to_dict()["covariance"][0][0]) == pytest.approx(found.half_width(ANGLE), rel=1e-3)
 
 
 RECORD = record(5e7, 800.0, 2.0, 1)
@@ -415,6 +431,20 @@ def test_the_rigs_record_gives_the_angle_that_its_scene_does_not_say(signals):
     assert 0.3 < missed / unlike.equivalent_stiffness_error < 1.0
 
 
+def test_a_rigs_residuals_are_weighed_by_all_that_disturbs_them(signals):
+    """A vector's variance lies half along the response and half across it; an angle turns it across alone."""
+    folder, scene, _ = signals
+    component, free = synchronous(rotation_of(recording_of(signals_of(folder / "signals.csv")))), free_keys(scene, [ANGLE])
+
+    def variances(run_out=0.0, angle=0.0):
+        turned = attrs.evolve(component, angle_error=angle)
+        problem = _RigResiduals(scene, rig_of(scene), default_registry(), free, turned, RunOut(0j, run_out))
+        return np.square(problem._balance_at(scene, np.array([free[0].start])).errors)
+
+    assert variances(run_out=1e-6) - variances() == pytest.approx([0.5e-12, 0.5e-12])
+    assert variances(angle=0.02) - variances() == pytest.approx([0.0, (0.02 * abs(component.forward) / 1.96) ** 2], rel=1e-3)
+
+
 @pytest.mark.parametrize(("free", "words"), [
     ("excitation.unbalance", "is defined by the rig"), ("load.radial[0]", "circular whirl"),
     (f"{ANGLE},load.axial,bearing.conformity_inner", "2 measured"),
@@ -438,6 +468,8 @@ def test_the_command_writes_what_it_shows(tmp_path):
     assert "17" in shown.output and (tmp_path / "fit.png").stat().st_size > 1000
     content = json.loads((tmp_path / "fit.json").read_text())
     assert content["free"][0]["value"] == pytest.approx(17.0, abs=1e-3) and content["series"][0]["x"] == list(LOADS)
-    assert json.loads(invoke(*words, "--json", "--no-pictures").stdout)["free"] == content["free"]
+    (number,) = json.loads(invoke(*words, "--json", "--no-pictures").stdout)["free"]
+    assert [number] == content["free"] and number["low"] < number["value"] < number["high"]
+    assert number["high"] - number["low"] == pytest.approx(2.0 * number["error"], rel=1e-3)
     wrong = invoke("fit", table, "--free", ANGLE)
     assert wrong.exit_code == 2 and "`--scene`" in wrong.output

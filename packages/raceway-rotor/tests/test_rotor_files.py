@@ -238,18 +238,15 @@ def test_the_command_writes_all_of_them(tmp_path):
 
 def test_every_option_of_the_command_reaches_every_file(monkeypatch, tmp_path):
     given, asked = {"at": ("load.axial=1",), "source": "tangent", "damping": 3.0, "node": 7, "tag": "left"}, []
+    written = SimpleNamespace(write=lambda path: path)
     for name in ("export_ross", "export_coefficients"):
-        written = SimpleNamespace(write=lambda path: path)
-        monkeypatch.setattr(command, name, lambda *_, written=written, **options: asked.append(options) or written)
-    files = {
-        name: tmp_path / f"b.{end}"
-        for name, end in (("ross", "toml"), ("nastran", "bdf"), ("ansys", "inp"), ("table", "csv"))
-    }
-    command.export("store", **files, **given, ross_version="2", number=5)
+        monkeypatch.setattr(command, name, lambda *_, **options: asked.append(options) or written)
+    command.export(
+        "store", *(tmp_path / f"b.{end}" for end in ("toml", "bdf", "inp", "csv")), **given, ross_version="2", number=5
+    )
     assert len(asked) == 4 and all(given.items() <= options.items() for options in asked)
-    assert asked[0]["ross_version"] == "2" and [(one["kind"], one["number"]) for one in asked[1:]] == [
-        ("nastran", 5), ("ansys", 5), ("csv", 5),
-    ]  # fmt: skip
+    assert asked[0]["ross_version"] == "2"
+    assert [(one["kind"], one["number"]) for one in asked[1:]] == [("nastran", 5), ("ansys", 5), ("csv", 5)]
 
 
 def test_coefficients_are_drawn_and_labelled_in_their_units():

@@ -2,6 +2,7 @@
 
 from math import pi, sqrt
 
+import attrs
 import numpy as np
 import pytest
 from raceway_measure.rig.signals import critical_speed, readings
@@ -129,3 +130,10 @@ def test_the_printed_formula_is_the_article_s_and_with_twice_the_span_timoshenko
     assert bow(found["as printed"], rig, 0.5 * whole, held) == pytest.approx(grown * printed, rel=1e-9)
     assert bow(found["as printed, with L twice the span"], rig, 0.5 * whole, held) == pytest.approx(grown * beam, rel=1e-9)
     assert bow(found["none"], rig, 0.5 * whole, held) == pytest.approx(0.0, abs=1e-15)
+    # Beyond its support the beam is straight, with the slope P L^2 / (16 E I) there.
+    (found,) = (
+        one
+        for one in readings(attrs.evolve(rig, sensor_side="outside"), held, SPEED, LINE)
+        if one.correction.endswith(" bow")
+    )
+    assert bow(found, rig, 0.5 * whole, held) == pytest.approx(-grown * whole * a * span**2 / (16.0 * bending), rel=1e-9)

@@ -7,7 +7,7 @@ import attrs
 import numpy as np
 import pytest
 from raceway_measure.fit.shaft_angle import pulses_of, rotation_of
-from raceway_measure.fit.synchronous import Synchronous, slow_roll_run_out, synchronous
+from raceway_measure.fit.synchronous import RunOut, Synchronous, slow_roll_run_out, stated_run_out, synchronous
 from raceway_rotor.shaft import rotor
 
 from checks.validation.records import HZ, LINE, made
@@ -140,3 +140,9 @@ def test_the_response_is_taken_out(rig, held, rpm, true):
     assert abs(response) > 1e-9  # there is something to take out
     found = slow_roll_run_out(rolled(true + response, line.speed), held, line, ANGLE)
     assert found.vector == pytest.approx(true, abs=1e-6 * abs(response))
+    slow = attrs.evolve(rolled(true + response, line.speed), error=3e-9, angle_error=8e-9 / abs(true + response))
+    assert slow_roll_run_out(slow, held, line, ANGLE).error == pytest.approx(
+        5e-9
+    )  # half of an interval is two standard errors
+    stated = stated_run_out(None, (abs(true), np.degrees(np.angle(true))), None)  # its size, and the angle of its high spot
+    assert isinstance(stated, RunOut) and stated.vector == pytest.approx(true)

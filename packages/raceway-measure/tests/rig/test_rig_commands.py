@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from raceway_measure.fit.identify import identify_recording
 from raceway_measure.fit.signals import write_recording
+from raceway_measure.fit.synchronous import RunOut
 from raceway_measure.rig.signals import quiet_signals, record, response
 from raceway_rotor.rig_table import Signals
 from raceway_rotor.shaft import balance, bearing, rotor
@@ -81,11 +82,30 @@ def test_damping_is_identified(rig, scene):
     # The dashpot acts on the deflection; the shaft's slope is not in phase with it, and brings a part of its own.
     assert state.locked[1] == pytest.approx(3000.0, rel=5e-3)  # the coupling is that at rest
     quiet = attrs.evolve(quiet_signals(Signals()), duration=0.5)
-    found = identify_recording(record(rig, response(rig, held, state, quiet), quiet, 1), rig, held)
+    signals = record(rig, response(rig, held, state, quiet), quiet, 1)
+    found = identify_recording(signals, rig, held)
     # Marks between samples turn all phases by a little: that is what its own uncertainty says.
     assert abs(found.state.damping - state.damping) < found.uncertainty[1]
     assert abs(found.state.locked[1] - state.locked[1]) < found.uncertainty[3]
     assert found.state.stiffness == pytest.approx(state.stiffness, rel=1e-3)
+    line, rolled = found.component, identify_recording(signals, rig, held, RunOut(1e-9 * np.exp(0.5j), 1e-9))
+    assert rolled.parts["slow roll"] / rolled.parts["spread"] == pytest.approx(1e-9 / line.error)
+    angles = [rolled.content()[part]["angle_deg"] for part in ("line", "run_out")]
+    assert angles == pytest.approx(np.degrees([np.angle(line.forward), 0.5]))
+    unsure = attrs.evolve(found, parts={"spread": np.array([0.5 * state.stiffness, 1e9, state.stiffness, 1e9])})
+    assert ("C", "not resolved") in [fact[:2] for fact in unsure._coefficients()]
+    assert unsure.content()["identification"]["tilt_locked"]["equivalent_stiffness_error"] == pytest.approx(state.stiffness)
+    by = {str(change["change"]): float(change["stiffness"]) for change in found.changes}
+    # All lengths at the sensor and all forces 1 % larger is another unit; E I goes with the fourth power of d, a mass with its square.
+    assert (1.0 + by["unbalance +1 %"]) * (1.0 + by["sensor's scale +1 %"]) == pytest.approx(1.0, abs=2e-3)
+    thicker = 4.06 * by["Young's modulus of the shaft +1 %"] + 2.01 * by["density of shaft and disc +1 %"]
+    assert by["shaft's diameter +1 %"] == pytest.approx(thicker, rel=0.05)
+    for words, other in (
+        ("the orbit is not a circle", attrs.evolve(found, component=attrs.evolve(line, backward=0.2 * abs(line.forward)))),
+        ("the bearing moves by", attrs.evolve(found, state=attrs.evolve(found.state, deflection=1e-4 * found.state.sensor))),
+        ("K is known to 50 % only", unsure),
+    ):
+        assert [any(words in text for text in one.warnings) for one in (found, other)] == [False, True], words
 
 
 def test_uneven_samples_and_a_speed_that_drifts(rig, held, state):
