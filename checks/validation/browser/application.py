@@ -79,9 +79,7 @@ def proportional_memory(pid: int) -> int:
 
 def descendants(pid: int) -> list[int]:
     """Processes that a process, and these, have started."""
-    children = [
-        int(word) for task in Path(f"/proc/{pid}/task").iterdir() for word in (task / "children").read_text().split()
-    ]
+    children = [int(w) for task in Path(f"/proc/{pid}/task").iterdir() for w in (task / "children").read_text().split()]
     return children + [below for child in children for below in descendants(child)]
 
 
@@ -226,9 +224,7 @@ class Tab:
     def memory(self) -> int:
         """Of the processes that draw the page [byte]."""
         pids = descendants(self.driver.service.process.pid)
-        return sum(
-            proportional_memory(pid) for pid in pids if b"--type=renderer" in Path(f"/proc/{pid}/cmdline").read_bytes()
-        )
+        return sum(proportional_memory(p) for p in pids if b"--type=renderer" in Path(f"/proc/{p}/cmdline").read_bytes())
 
     def cut_words(self) -> list[str]:
         """Parts beyond the right edge, words that lie on others."""
