@@ -67,8 +67,6 @@ for (const picture of document.querySelectorAll(".chart svg, .stage, .pair svg")
 }
 return faults;
 """
-#: Windows in which the page must be whole [px].
-WIDTHS = (1280, 1024, 400)
 
 
 def proportional_memory(pid: int) -> int:
