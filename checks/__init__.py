@@ -6,5 +6,4 @@ mutants       deliberate faults of one line, and whether the tests catch them
 documents     parts of README and docs that are made from the program;  reports: pages of measured claims
 claims        a test's claim beside a report's row;  night: evidence of a commit
 against_calculix, calculix, explicit_step, kernel   speed, and numbers of another program
-children      work in processes of its own
 """

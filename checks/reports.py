@@ -190,9 +190,7 @@ def summary(reports: dict[str, dict[str, Any]], links: str = "") -> str:
 
 def documents() -> list[Path]:
     """Documents that may hold blocks: README.md and everything under docs but the reports themselves."""
-    pages = [
-        path for path in sorted((ROOT / "docs").rglob("*.md")) if not {FOLDER, ROOT / "docs" / "_build"} & {*path.parents}
-    ]
+    pages = [p for p in sorted((ROOT / "docs").rglob("*.md")) if not {FOLDER, ROOT / "docs" / "_build"} & {*p.parents}]
     return [path for path in [ROOT / "README.md", *pages] if path.is_file()]
 
 

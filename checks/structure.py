@@ -166,9 +166,7 @@ def circles() -> list[list[str]]:
     """Files that import each other, directly or through others."""
     files = list(product())
     place = {name: i for i, name in enumerate(files)}
-    arrows = {
-        (place[name], place[other]) for name, tree in product().items() for other in imports(name, tree) if other != name
-    }
+    arrows = {(place[name], place[b]) for name, tree in product().items() for b in imports(name, tree) if b != name}
     ends = np.array(sorted(arrows)).T
     count, label = connected_components(
         coo_array((np.ones(ends.shape[1]), tuple(ends)), shape=(len(files),) * 2), connection="strong"

@@ -94,9 +94,7 @@ def test_a_package_lists_its_modules_once_each_and_names_what_is_in_it(place):
     module = source(place)
     folder, text = module.path.parent, module.docstrings[0]
     listed = Counter(name for heads in ENTRY.findall(text) for name in "".join(heads).split(", "))
-    present = {
-        path.stem for path in module.place.parent.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists()
-    }
+    present = {p.stem for p in module.place.parent.iterdir() if p.suffix == ".py" or (p / "__init__.py").exists()}
     public = {"data", *raceway.__all__} if folder == Path() else {"data"}
     assert set(listed) - public == present - {"__init__", "__main__"} and max(listed.values()) == 1
     own = set().union(*(found for path, found in words().items() if Path(path).parent == folder), raceway.__all__)
@@ -107,9 +105,7 @@ def test_a_package_lists_its_modules_once_each_and_names_what_is_in_it(place):
 def test_no_module_of_several_plug_ins_is_called_by_the_name_of_one():
     several = 0
     for module in map(source, PATHS):
-        names = [
-            name.replace("_", " ") for name in re.findall(r'^    name: ClassVar\[str\] = "(\w+)"', module.text, re.MULTILINE)
-        ]
+        names = [name.replace("_", " ") for name in re.findall(r'^    name: ClassVar\[str\] = "(\w+)"', module.text, re.M)]
         several += len(names) > 1
         called = [name for name in names if module.docstrings[0].lower().startswith(name)]
         assert len(names) < 2 or len(called) != 1, module.path

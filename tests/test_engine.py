@@ -23,9 +23,7 @@ ITEMS = [Item(f"key {number}", f"number {number}", number) for number in range(6
 def test_rows_are_in_order_and_kept_ones_are_not_computed_again(executor, tmp_path):
     told = []
     with written(tmp_path) as store:
-        found, reused = work_through(
-            squared, ITEMS[::2], store, executor, REGISTRY, on_progress=lambda *words: told.append(words)
-        )
+        found, reused = work_through(squared, ITEMS[::2], store, executor, REGISTRY, on_progress=lambda *w: told.append(w))
     assert [row["square"] for row in found] == [0, 4, 16] and reused == 0
     assert [words[1:] for words in told] == [(1, 3), (2, 3), (3, 3)]
     assert all((row["process"] == os.getpid()) == isinstance(executor, Serial) for row in found)

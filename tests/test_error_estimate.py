@@ -73,9 +73,7 @@ def test_fits_over_speeds_and_run_ups_have_a_part_for_the_transient():
     found = run(tables)
     sudden, z = found.error, found.identification.dynamic_stiffness
     coarse = run({**tables, "integrator": tables["integrator"] | {"steps_per_turn": 30}}).identification.dynamic_stiffness
-    assert sudden["time_step"] == pytest.approx(
-        abs(z - coarse) / 3.0 / abs(z), rel=1e-6
-    )  # order 2, of the fit over all speeds
+    assert sudden["time_step"] == pytest.approx(abs(z - coarse) / 3.0 / abs(z), rel=1e-6)  # order 2, of the fit over speeds
     assert sudden["total"] >= 0.3 * sudden["transient"] > 1e-4 and "steady motion" in sudden["how"]["transient"]
     tables["contact"] |= {"friction": 0.03}
     rubbing = run(tables).error

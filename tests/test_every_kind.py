@@ -82,9 +82,7 @@ def test_a_run_uses_law_excitation_integrator_identifier_and_report(files, tmp_p
         "identifier.kind=three_harmonics",
     ]  # fmt: skip
     scene = tmp_path / "scene.toml"
-    scene.write_text(
-        '[bearing]\npreset = "B7206C"\n[load]\naxial = 1000.0\n[excitation]\nkind = "pulse"\nspeed_rpm = 12000\n'
-    )
+    scene.write_text('[bearing]\npreset = "B7206C"\n[load]\naxial = 1e3\n[excitation]\nkind = "pulse"\nspeed_rpm = 12000\n')
     changes = [word for change in words for word in ("--set", change)]
     kinds = ("contact_law", "excitation", "integrator", "identifier")
     out, path = tmp_path / "out", os.pathsep.join([str(site), str(ROOT)])

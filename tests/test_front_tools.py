@@ -175,9 +175,7 @@ def test_the_notes_say_what_tilt_was_and_that_a_dry_bearing_does_not_damp(turnin
     locked = rw.run(STATIC).stiffness[1, 1]
     assert locked > 5.0 * free  # what the note is worth
     assert ", nearly dry; the rule of thumb" in notes and "damping=C" in notes
-    shown = repr(
-        rw.export_ross(turning, at={"load.axial": 1000})
-    )  # where notes are many, these two are not those that fall away
+    shown = repr(rw.export_ross(turning, at={"load.axial": 1000}))  # these two are not those that fall away
     assert ", nearly dry; the rule" in shown and "in these numbers; of the tangent, kyy" in shown
     given = rw.export_ross(turning, at={"load.axial": 1000}, damping=1000.0)
     assert "next to nothing" not in " ".join(given.notes)

@@ -244,9 +244,7 @@ def test_rows_that_are_refused_have_a_reason() -> None:
 
 
 def test_what_the_loop_cannot_do_is_run() -> None:
-    f = rw.function(
-        {**STATIC, "contact": {"friction": 0.1}, "kinematics": {"spin_speed_rpm": 3000.0}}, ["load.axial"], ["kyy"]
-    )
+    f = rw.function({**STATIC, "contact": {"friction": 0.1}, "kinematics": {"spin_speed_rpm": 3e3}}, ["load.axial"], ["kyy"])
     assert "rub" in f.why_slow
     answer = f([400.0, 900.0])
     assert (answer["status"] == rw.PointStatus.RUN).all()
@@ -330,9 +328,7 @@ def test_calls_that_are_refused() -> None:
 
 
 def test_rings_of_points_grow_by_their_own_sections() -> None:
-    scene = rw.Scene.from_dict(
-        {**STATIC, "kinematics": {"spin_speed_rpm": 20000.0, "gyroscopic": "none", "ring_growth": True}}
-    )
+    scene = rw.Scene.from_dict({**STATIC, "kinematics": {"spin_speed_rpm": 2e4, "gyroscopic": "none", "ring_growth": True}})
     answer = rw.function(scene, ["bearing.pitch_diameter"], ["kyy"])([45.9e-3, 46.1e-3])
     runs = [rw.run(scene.with_(bearing={"pitch_diameter": size})).stiffness[1, 1] for size in (45.9e-3, 46.1e-3)]
     assert (answer["status"] == rw.PointStatus.COMPUTED).all()

@@ -187,9 +187,7 @@ def test_every_number_of_a_motion_has_its_derivative():
     gradients = Gradients(model, still)
     told = values(model, still, gradients.orbit)
     found = derivatives(model, still, gradients.by_path("excitation.speed_rpm"))
-    runs = by_runs(
-        model, "excitation.speed_rpm", 1.8, lambda one, e: np.array([*values(one, e, SteadyOrbit.of(one, e)).values()])
-    )
+    runs = by_runs(model, "excitation.speed_rpm", 1.8, lambda m, e: np.array([*values(m, e, SteadyOrbit.of(m, e)).values()]))
     assert set(found) == set(told)
     for name, expected in zip(told, runs, strict=True):
         assert found[name] == pytest.approx(expected, rel=1e-2 if name == "C" else 1e-5), name
@@ -265,9 +263,7 @@ def test_the_command_writes_what_it_shows(tmp_path):
 def test_derivatives_of_an_unstable_orbit_are_told_to_be_such():
     found = rw.sensitivities(rw.load_scene("examples/folds.toml", ["excitation.speed_rpm=21784"]), ["load.axial"])
     assert "disturbances grow" in found.warnings[0]
-    assert not rw.sensitivities(
-        rw.load_scene("examples/folds.toml", ["excitation.speed_rpm=12000"]), ["load.axial"]
-    ).warnings
+    assert not rw.sensitivities(rw.load_scene("examples/folds.toml", ["excitation.speed_rpm=12e3"]), ["load.axial"]).warnings
 
 
 def test_a_key_that_is_asked_for_and_has_no_derivative_is_refused():

@@ -250,6 +250,4 @@ def test_a_steep_bearing_without_a_rating_has_no_life_and_a_function_says_why():
     with pytest.raises(SceneError, match=r"bearing\.dynamic_rating is missing"):
         rw.function(tables, ["load.axial"], ["l10r_hours"])
     tables["bearing"] = {**steep, "dynamic_rating": 60e3}
-    assert rw.run(tables).quantities["equivalent_load_n"] == pytest.approx(
-        1000.0, rel=0.02
-    )  # a thrust bearing under axial load
+    assert rw.run(tables).quantities["equivalent_load_n"] == pytest.approx(1000.0, rel=0.02)  # a thrust bearing

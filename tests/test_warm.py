@@ -215,9 +215,7 @@ def test_a_temperature_beside_heat_has_no_effect_and_says_so():
     assert given.stiffness.tolist() == plain.stiffness.tolist()
     assert any("`lubricant.temperature_c` has no effect: [heat] computes it" in text for text in given.warnings)
     assert not any("has no effect" in text for text in plain.warnings)
-    assert [mistake.path for mistake in rw.check(published.warm_pair({"oil_inlet_c": 150.0})).mistakes] == [
-        "heat.oil_inlet_c"
-    ]
+    assert [one.path for one in rw.check(published.warm_pair({"oil_inlet_c": 150.0})).mistakes] == ["heat.oil_inlet_c"]
 
 
 def test_points_warn_of_oil_beyond_its_data_as_runs_do(tmp_path):

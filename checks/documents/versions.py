@@ -12,9 +12,7 @@ def with_versions(text: str, root: Path) -> str:
     """The page with its table made anew."""
     files = [root / "pyproject.toml", *sorted(root.glob("packages/*/pyproject.toml"))]
     project, *packages = (tomllib.loads(file.read_text(encoding="utf-8"))["project"] for file in files)
-    needs = {
-        package["name"]: [text for text in package["dependencies"] if not text.startswith("raceway")] for package in packages
-    }
+    needs = {one["name"]: [text for text in one["dependencies"] if not text.startswith("raceway")] for one in packages}
     rows = "".join(f"| {name} | {_packages(needed)} |\n" for name, needed in needs.items() if needed)
     return _BLOCK.sub(lambda match: match[1] + table(project) + rows + match[3], text)
 

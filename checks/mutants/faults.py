@@ -71,6 +71,4 @@ def read_faults(path: Path = TABLE) -> list[Fault]:
 
 def chosen(words: list[str], table: Path = TABLE) -> list[Fault]:
     """The faults whose file or effect holds one of the words; all without words."""
-    return [
-        fault for fault in read_faults(table) if not words or any(word in f"{fault.file} {fault.does}" for word in words)
-    ]
+    return [fault for fault in read_faults(table) if not words or any(w in f"{fault.file} {fault.does}" for w in words)]

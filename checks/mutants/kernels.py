@@ -86,9 +86,7 @@ def touched(fault: Fault) -> set[str]:
     path, found = ROOT / fault.file, set[str]()
     start = path.read_text(encoding="utf-8").partition(fault.was)[0].count("\n") + 1
     lines = set(range(start, start + 1 + fault.was.strip("\n").count("\n")))
-    more = {
-        name for there, made, _ in (_statements(path) if path.suffix == ".py" else ()) if lines & set(there) for name in made
-    }
+    more = {n for there, made, _ in (_statements(path) if path.suffix == ".py" else ()) if lines & set(there) for n in made}
     while more:
         found |= more
         more = set().union(*(_users().get(name, ()) for name in more)) - found

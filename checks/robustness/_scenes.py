@@ -274,7 +274,5 @@ def _spoil(chance: Chance, tables: Tables) -> None:
     elif way <= 5:
         table[chance.one(*sorted(table))] = chance.one(*GARBAGE)
     else:
-        numbers = [
-            key for key, each in sorted(table.items()) if isinstance(each, int | float) and not isinstance(each, bool)
-        ]
+        numbers = [key for key, one in sorted(table.items()) if isinstance(one, int | float) and not isinstance(one, bool)]
         table[chance.one(*(numbers or sorted(table)))] = chance.one(*EXTREME)

@@ -1,4 +1,4 @@
-"""``raceway app`` in headless chromium: time from a change to its picture, start, whole pages, memory, and numbers beside those of runs."""
+"""``raceway app`` in headless chromium: time from a change to its picture, start, memory, and numbers beside those of runs."""
 
 import os
 import statistics
@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from checks.robustness import Row, below
-from checks.validation.browser.application import WIDTHS, Application, Tab, hurry
+from checks.validation.browser.application import Application, Tab, hurry
 from checks.validation.browser.chromium import Browser
 
 #: Changes of each kind, and sequences of changes without a look.
@@ -30,13 +30,6 @@ def rows() -> list[Row]:
                     page = tab.memory()
                     assert page > 1e7, "the processes of the page were not found"
                     memory = served.memory() + page
-                    cut, serious = list[str](), list[str]()
-                    for width in WIDTHS:
-                        tab = Tab(browser, served.address, width)
-                        tab.rest()
-                        cut += [f"{width} px: {fault}" for fault in tab.cut_words()]
-                        serious += tab.inaccessible()
-                    tab = Tab(browser, served.address)
                     tab.press("Compare two scenes")
             numbers = statistics.median(tab.drag("load.axial", 700 + 10 * k, "done") for k in range(5))
             faults = hurry(tab, _SEQUENCES, 3)
@@ -50,8 +43,6 @@ def rows() -> list[Row]:
         below("the same, 95th percentile of either [ms]", late, 200.0, load),
         below("change to all numbers of the run, one scene: median [ms]", numbers, 1000.0, load),
         below("start of the command to all numbers of two scenes [s]", start, 4.0, load),
-        below("words cut or overlapping at 1280, 1024 and 400 px", len(cut), 0, "; ".join(cut[:2])),
-        below("serious violations that axe finds", len(serious), 0, "; ".join(serious[:2])),
         below("memory of server, worker and page [MB]", 1e-6 * memory, 500.0),
         below(f"growth of server and worker by {_CHANGES} changes [MB]", 1e-6 * growth, 20.0),
         below(f"sequences of {_SEQUENCES} that leave numbers of another scene", len(faults), 0, "; ".join(faults[:2])),

@@ -1,7 +1,9 @@
 """Damaged stores of sweeps, gone on with: the same numbers or one message."""
 
+import multiprocessing
 import random
 import shutil
+import signal
 import sqlite3
 import tempfile
 from collections import Counter
@@ -10,19 +12,16 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from checks.children import in_child
 from checks.robustness import Row, below
-from checks.validation import harm
 from checks.validation.sweeps import SCENE, rows_of
 from raceway import RacewayError
 from raceway.extend import open_store
 from raceway.points.store import POINTS, SCHEMA
 
-_STORES = 150
+_STORES, _PAGE = 150, 4096
+Harm = Callable[[Path, Path, random.Random], None]
 #: Damages after which a store goes on: what is not as it was written is computed again.
 _MENDED = ("two rows swapped", "row of another store", "digit of a value", "another file's journal")
-
-
 #: What is acceptable: rows as undisturbed, or one message.
 EQUAL, ANSWERED = "the same rows", "one message"
 _POINTS, _LOADS = 32, ("400:1200:2", "500:1300:2")
@@ -34,7 +33,7 @@ def words(store: Path, loads: str = _LOADS[0]) -> list[str]:
     return ["sweep", str(SCENE), "--set", "integrator.kind=quasi_static", *axes, "--out", str(store)]
 
 
-def _sql(*statements: str) -> harm.Harm:
+def _sql(*statements: str) -> Harm:
     """Harm by statements, in which N and M are keys of two points and the other store is attached."""
 
     def done(path: Path, other: Path, chance: random.Random) -> None:
@@ -50,17 +49,46 @@ def _sql(*statements: str) -> harm.Harm:
 
 def _left_journal(path: Path, other: Path, chance: random.Random) -> None:
     """A journal of another file: SQLite rolls it back where its head looks right."""
-    path.with_name(f"{path.name}-journal").write_bytes(
-        bytes.fromhex("d9d505f920a163d7") + other.read_bytes()[: 3 * harm.PAGE]
-    )
+    path.with_name(f"{path.name}-journal").write_bytes(bytes.fromhex("d9d505f920a163d7") + other.read_bytes()[: 3 * _PAGE])
+
+
+def _content(change: Callable[[bytes, bytes, random.Random], bytes]) -> Harm:
+    """Harm to the content: the file's, another whole one's of its kind, and chance."""
+
+    def done(path: Path, other: Path, chance: random.Random) -> None:
+        path.write_bytes(change(path.read_bytes(), other.read_bytes(), chance))
+
+    return done
+
+
+def _at(begin: int, new: bytes, content: bytes) -> bytes:
+    return content[:begin] + new + content[begin + len(new) :]
+
+
+def _page(content: bytes, chance: random.Random) -> int:
+    """Where a page begins."""
+    return _PAGE * chance.randrange(-(-len(content) // _PAGE))
+
+
+def _swapped_pages(content: bytes, other: bytes, chance: random.Random) -> bytes:
+    pages = [content[k : k + _PAGE] for k in range(0, len(content), _PAGE)]
+    i, j = chance.sample(range(len(pages)), 2)
+    pages[i], pages[j] = pages[j], pages[i]
+    return b"".join(pages)
 
 
 _BOTH = "state, reason, content, cost, digest"
-HARMS: dict[str, Callable[[Path, Path, random.Random], None]] = {
-    "cut": harm.cut, "one bit": harm.flipped, "page of zeros": harm.zeroed_page,
-    "zeros to the end": harm.zeroed_tail, "two pages swapped": harm.swapped_pages,
-    "page of another store": harm.page_of_another, "another store": harm.another,
-    "another program's file": harm.no_such_file, "another file's journal": _left_journal,
+#: What disks, power cuts and foreign programs do to a file.
+HARMS: dict[str, Harm] = {
+    "cut": _content(lambda a, _, chance: a[: chance.randrange(1, len(a))]),
+    "one bit": _content(lambda a, _, chance: _at(k := chance.randrange(len(a)), bytes([a[k] ^ 1 << chance.randrange(8)]), a)),
+    "page of zeros": _content(lambda a, _, chance: _at(k := _page(a, chance), bytes(len(a[k : k + _PAGE])), a)),
+    "zeros to the end": _content(lambda a, _, chance: a[: (k := chance.randrange(1, len(a)))] + bytes(len(a) - k)),
+    "two pages swapped": _content(_swapped_pages),
+    "page of another store": _content(lambda a, b, chance: _at(k := _page(min(a, b, key=len), chance), b[k : k + _PAGE], a)),
+    "another store": _content(lambda a, b, chance: b),
+    "another program's file": _content(lambda a, b, chance: b"x,y\n" * chance.randint(1, 5000)),
+    "another file's journal": _left_journal,
     "two rows swapped": _sql(
         "UPDATE points SET key = -1 WHERE key = {N}",
         "UPDATE points SET key = {N} WHERE key = {M}",
@@ -98,6 +126,35 @@ def resumed(store: Path, wanted: list[Any], foreign: list[Any]) -> str:
     if done.exit_code:
         return f"code {done.exit_code}: {done.stderr[:200]}"
     return EQUAL if rows_of(store) == wanted else "other values"
+
+
+def in_child(function: Callable[..., Any], *given: Any, limit_s: float = 120.0) -> Any:
+    """What it returns; or in words which signal or exception ended it, or that it did not end.  The child is forked: it has
+    the modules and the compiled kernels of this process, and its own copy of everything else."""
+    context = multiprocessing.get_context("fork")
+    here, there = context.Pipe(duplex=False)
+    process = context.Process(target=_answer, args=(there, function, given))
+    process.start()
+    there.close()
+    try:
+        found = here.recv() if here.poll(limit_s) else f"no end within {limit_s:g} s"
+    except EOFError:
+        found = ""
+    process.join(5.0)
+    if process.is_alive():
+        process.kill()
+        process.join()
+    if found == "":
+        code = process.exitcode or 0
+        found = f"ended by {signal.Signals(-code).name}" if code < 0 else f"ended without an answer, code {code}"
+    return found
+
+
+def _answer(there: Any, function: Callable[..., Any], given: tuple[Any, ...]) -> None:
+    try:
+        there.send(function(*given))
+    except BaseException as why:
+        there.send(f"unexpected {type(why).__name__}: {why}")
 
 
 def tried(count: int, seed: int = 17) -> dict[str, Counter[str]]:

@@ -7,5 +7,5 @@ cubes, groove, quarter, squeezed, hexahedra: small bodies and contacts
 fixtures      what all tests may ask for, and what is looked at in each
 figures, records, stores, solids, stability_cases: drawings that overlap, invented records and results, meshes, cases that misbehave
 system_libraries  tests whose system libraries are missing: skipped loudly, or failures
-command_line, browser, cluster, sessions, harm: commands, pages, workers, processes, damaged files
+command_line, browser, cluster, sessions: commands, pages, workers, processes
 """

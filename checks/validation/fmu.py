@@ -63,9 +63,7 @@ class Instance:
             from fmpy.fmi2 import fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 
             callbacks = fmi2CallbackFunctions()
-            callbacks.logger = fmi2CallbackLoggerTYPE(
-                lambda _e, _n, _s, _c, message, *_: self.messages.append(message.decode())
-            )
+            callbacks.logger = fmi2CallbackLoggerTYPE(lambda _e, _n, _s, _c, text, *_: self.messages.append(text.decode()))
             self._callbacks = callbacks
             self.fmu.instantiate(callbacks=callbacks)
             self.fmu.setupExperiment()

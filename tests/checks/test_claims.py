@@ -73,9 +73,7 @@ def test_reports_are_of_modules_without_a_failure(rows, tmp_path, monkeypatch):
     monkeypatch.setattr(files, "refresh", list)
     (tmp_path / "tests" / "evidence").mkdir(parents=True)
     for name in ("good", "bad"):
-        (tmp_path / "tests" / "evidence" / f"test_{name}.py").write_text(
-            f'"""Numbers that are {name}."""\n', encoding="utf-8"
-        )
+        (tmp_path / "tests" / "evidence" / f"test_{name}.py").write_text(f'"""Numbers that are {name}."""\n')
     written: dict[str, tuple] = {}
     claim = claims_into(rows)
     claim("second", 1.0, at_most=2.0, basis="closed form")

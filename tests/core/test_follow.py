@@ -176,9 +176,7 @@ def test_the_bearing_s_period_doubles_under_a_radial_load(tmp_path):
     (branch,) = found.doubled
     assert branch.span_deg == 720.0 and branch.rows[0].parameter == flip.row.parameter
     assert branch.rows[0].stiffness == pytest.approx(flip.row.stiffness, rel=1e-9)
-    assert (
-        branch.rows[-1].verdict == "unstable" and found.rows[0].verdict == "stable"
-    )  # it goes back beside the stable orbit
+    assert branch.rows[-1].verdict == "unstable" and found.rows[0].verdict == "stable"  # back beside the stable orbit
     point = branch.worst[-1]
     size = point.solved.size
     assert np.abs(by_integration(point, 2, 150.0)[2][:3]).max() < 1e-6 * size
@@ -214,9 +212,7 @@ def test_the_article_s_bearing_through_its_folds(curve):
             assert 0.0 < label.angle < np.pi
     assert len(curve.unstable) == 3
     left = {"": 0, "+1": 1, "-1": 1, "pair": 2}
-    assert all(
-        row.unstable >= left[row.leaves_by] and (row.unstable > 0) == (row.verdict == "unstable") for row in curve.rows
-    )
+    assert all(o.unstable >= left[o.leaves_by] and (o.unstable > 0) == (o.verdict == "unstable") for o in curve.rows)
     assert any(1.0 < row.multiplier < 1.1 and row.verdict == "unstable" for row in curve.rows)
     folds = [label.row.parameter for label in curve.labels if label.kind == FOLD]
     assert [row.parameter for row in curve.unstable[0]] == folds

@@ -36,9 +36,7 @@ def test_same_stiffness_as_the_formula(tmp_path, identifier):
     formula = run(scene({"kind": "bidirectional", "speed_rpm": RPM, "amplitude": "constant", "force": FORCE}, **named))
     file = turning(tmp_path / "force.csv")
     measured = run(scene({"kind": "measured", "file": file, "speed_rpm": RPM, "repeats": True}, **named))
-    assert measured.identification.equivalent_stiffness == pytest.approx(
-        formula.identification.equivalent_stiffness, rel=1e-4
-    )
+    assert measured.equivalent_stiffness == pytest.approx(formula.equivalent_stiffness, rel=1e-4)
     assert measured.identification.force_amplitude == pytest.approx(FORCE, rel=1e-4)
     # What the identifier leaves unused may be told; nothing else.
     assert not [text for text in measured.warnings if "has no effect" not in text]
@@ -50,9 +48,7 @@ def test_a_record_that_is_run_through_once(tmp_path):
     formula = run(scene({"kind": "bidirectional", "speed_rpm": RPM, "amplitude": "constant", "force": FORCE}))
     measured = run(scene({"kind": "measured", "file": file, "speed_rpm": RPM}))
     assert measured.model.plan.turns == 12
-    assert measured.identification.equivalent_stiffness == pytest.approx(
-        formula.identification.equivalent_stiffness, rel=1e-3
-    )
+    assert measured.equivalent_stiffness == pytest.approx(formula.equivalent_stiffness, rel=1e-3)
     assert any("ramp" in warning for warning in measured.warnings)
 
 

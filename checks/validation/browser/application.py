@@ -67,8 +67,6 @@ for (const picture of document.querySelectorAll(".chart svg, .stage, .pair svg")
 }
 return faults;
 """
-#: Windows in which the page must be whole [px].
-WIDTHS = (1280, 1024, 400)
 
 
 def proportional_memory(pid: int) -> int:
@@ -79,9 +77,7 @@ def proportional_memory(pid: int) -> int:
 
 def descendants(pid: int) -> list[int]:
     """Processes that a process, and these, have started."""
-    children = [
-        int(word) for task in Path(f"/proc/{pid}/task").iterdir() for word in (task / "children").read_text().split()
-    ]
+    children = [int(w) for task in Path(f"/proc/{pid}/task").iterdir() for w in (task / "children").read_text().split()]
     return children + [below for child in children for below in descendants(child)]
 
 
@@ -226,9 +222,7 @@ class Tab:
     def memory(self) -> int:
         """Of the processes that draw the page [byte]."""
         pids = descendants(self.driver.service.process.pid)
-        return sum(
-            proportional_memory(pid) for pid in pids if b"--type=renderer" in Path(f"/proc/{pid}/cmdline").read_bytes()
-        )
+        return sum(proportional_memory(p) for p in pids if b"--type=renderer" in Path(f"/proc/{p}/cmdline").read_bytes())
 
     def cut_words(self) -> list[str]:
         """Parts beyond the right edge, words that lie on others."""

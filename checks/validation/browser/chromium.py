@@ -49,9 +49,7 @@ class Look:
         out += [f"asked for {address}" for address in self.asked]
         if found["scroll"] > found["width"]:
             out.append(f"{found['scroll']} px wide in a window of {found['width']}: {found['wide'][:3]}")
-        out += [
-            f"figure '{name}' is not there" for name, natural, *shown in found["images"] if not natural or not min(shown)
-        ]
+        out += [f"figure '{name}' is not there" for name, own, *shown in found["images"] if not own or not min(shown)]
         out += ["a drawing has no size" for shown in found["drawings"] if not min(shown)]
         if found["small"]:
             out.append(f"{found['small']} texts are smaller than 11 px")
@@ -102,9 +100,7 @@ class Browser:
         self.driver.get(path.resolve().as_uri())
         self.run("return Promise.all([...document.images].map((e) => e.decode().catch(() => null)))")
         lines = [entry["message"] for entry in self.driver.get_log("browser")]
-        console = [
-            line for line in lines if "GL Driver Message (OpenGL, Performance" not in line
-        ]  # of the machine, not the page
+        console = [line for line in lines if "GL Driver Message (OpenGL, Performance" not in line]  # of the machine
         events = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         asked = [e["params"]["request"]["url"] for e in events if e["method"] == "Network.requestWillBeSent"]
         foreign = [address for address in asked if not address.startswith("data:") and address != path.resolve().as_uri()]

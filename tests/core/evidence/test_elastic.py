@@ -155,9 +155,7 @@ def on(mesh):
 
 def apart(found, wanted):
     """Largest relative difference of what is not zero."""
-    return largest(
-        found, {name: value for name, value in wanted.items() if abs(value) > 1e-6 * max(map(abs, wanted.values()))}
-    )
+    return largest(found, {name: k for name, k in wanted.items() if abs(k) > 1e-6 * max(map(abs, wanted.values()))})
 
 
 @pytest.mark.parametrize("name", MESHES)

@@ -49,9 +49,7 @@ def rings(inner):
         found.append((mesh.volume(), mesh.facet_areas("raceway").sum()))
         lines = [halved(line) for line in lines]
     low, high = shape.edges
-    radius = shape.centre_r + shape.sign * shape.groove * (np.sin(high) - np.sin(low)) / (
-        high - low
-    )  # of the arc's centroid
+    radius = shape.centre_r + shape.sign * shape.groove * (np.sin(high) - np.sin(low)) / (high - low)  # of its centroid
     return found, (shape.volume, 2.0 * pi * radius * shape.groove * (high - low))
 
 

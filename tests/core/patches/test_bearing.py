@@ -122,9 +122,7 @@ def test_balls_go_along_with_their_grooves_before_newton(free, monkeypatch):
 
 @pytest.mark.slow
 def test_balls_at_cage_speed_press_the_outer_race():
-    case, found = at_rest(
-        excitation={"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 300.0}
-    )
+    case, found = at_rest(excitation={"kind": "bidirectional", "speed_rpm": 12e3, "amplitude": "constant", "force": 300.0})
     radial = np.cos(found.angle_outer) * found.contact_force[12:] - np.cos(found.angle_inner) * found.contact_force[:12]
     # A pressure over points leans by some hundredths of a degree against the line through ball and groove centre.
     assert radial == pytest.approx(case.system.table[:, layout.CENTRIFUGAL], rel=0.02)

@@ -109,9 +109,7 @@ def test_the_mean_stiffness_is_the_mean_of_the_points_over_one_distance_of_rows(
     def stiffness(shift):
         place = coarse.place(5e-6, coarse.angle + shift * pitch)
         normal = place / np.hypot(*place)
-        return [
-            normal @ one @ normal for one in (contact.press(place, np.zeros(2)).stiffness, contact.mean_stiffness(place))
-        ]
+        return [normal @ k @ normal for k in (contact.press(place, np.zeros(2)).stiffness, contact.mean_stiffness(place))]
 
     point, mean = np.ptp([stiffness(shift) for shift in np.linspace(-0.25, 0.25, 5)], axis=0) / stiffness(0.0)[1]
     assert mean < 0.01 and mean < 0.4 * point

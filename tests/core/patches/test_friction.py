@@ -185,9 +185,7 @@ def test_the_moment_of_a_ball_has_exact_derivatives(load, traction):
     def of(moved):
         apart = [load * np.array([np.sin(a), np.cos(a)]) for a in (0.3, 0.25)]
         pressed = [force - contact @ change for force, change in zip(apart, (moved - places).reshape(2, 2), strict=True)]
-        states = [
-            SimpleNamespace(force=one, traction_state=None, stiffness=contact, along=np.zeros((2, 2))) for one in pressed
-        ]
+        states = [SimpleNamespace(force=f, traction_state=None, stiffness=contact, along=np.zeros((2, 2))) for f in pressed]
         return turned.of(moved[:2], moved[2:], states)
 
     now, step = of(places), 1e-9 * np.eye(4)
