@@ -8,9 +8,8 @@ import pytest
 import raceway as rw
 from checks.validation.scenes import built_in
 from raceway import SceneError
-from raceway.core.quantities.ratings import equivalent_loads, life_factor, reliability_factor, system_life
+from raceway.core.quantities.ratings import at_places, equivalent_loads, life_factor, reliability_factor, system_life
 from raceway.extend import layout, open_store
-from raceway.plugins.quantities import life as life_plugin
 from raceway.points.dataset import write_csv
 from raceway.scene.lubricant import Lubricant
 
@@ -212,8 +211,10 @@ def test_columns_have_the_lives_of_motions(radial):
 
 def test_balls_that_orbit_pass_the_same_pattern(monkeypatch):
     """Its places are interpolated between balls: 2 % of the life.  They travel at the cage speed that the forces know."""
-    travels, places = [], life_plugin.at_places
-    monkeypatch.setattr(life_plugin, "at_places", lambda turn, travel: (travels.append(travel), places(turn, travel))[1])
+    travels, places = [], at_places
+    monkeypatch.setattr(
+        "raceway.plugins.quantities.life.at_places", lambda turn, travel: (travels.append(travel), places(turn, travel))[1]
+    )
     orbiting = rw.run({**ROTATING, "kinematics": {"orbiting": True}})
     fixed = rw.run(ROTATING).quantities["l10r_million_revolutions"]
     assert orbiting.quantities["l10r_million_revolutions"] == pytest.approx(fixed, rel=0.03)

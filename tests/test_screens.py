@@ -14,8 +14,8 @@ from rich.console import Console
 
 import raceway as rw
 from checks.validation.command_line import ARTICLE, EXAMPLES, MINIMAL, invoke
-from raceway.answers import table
 from raceway.answers.quantities import C
+from raceway.answers.table import in_a_line
 from raceway.extend import Words, duration, equilibrium_table, rows_table
 from raceway.framework.estimate import Estimate, few_words
 from raceway.pipeline.run_parts import bodies_rows, cost_row, equilibrium_rows, loaded_balls, mounting_rows
@@ -158,10 +158,10 @@ def test_what_a_screen_has_no_room_for_is_told_when_it_is_asked_for(caplog):
 
 
 def test_a_line_that_is_cut_ends_at_a_part_of_its_sentence_or_at_a_word():
-    assert table.in_a_line("short", 20) == "short"
+    assert in_a_line("short", 20) == "short"
     words = "word " * 10
-    assert table.in_a_line(f"a part of a sentence: {words}", 40) == "a part of a sentence …"
-    assert table.in_a_line(f"a: {words}", 40) == f"a: {'word ' * 7}…"
+    assert in_a_line(f"a part of a sentence: {words}", 40) == "a part of a sentence …"
+    assert in_a_line(f"a: {words}", 40) == f"a: {'word ' * 7}…"
 
 
 def test_what_is_nothing_has_no_sign_and_a_direction_is_no_state():
@@ -302,7 +302,7 @@ def test_a_state_that_a_column_of_numbers_repeats_is_named_once_below_it():
 )  # fmt: skip
 def test_no_table_of_a_screen_names_a_state_twice(words, tmp_path, monkeypatch):
     tables, make = [], rows_table
-    monkeypatch.setattr(table, "rows_table", lambda *given: tables.append(make(*given)) or tables[-1])
+    monkeypatch.setattr("raceway.answers.table.rows_table", lambda *given: tables.append(make(*given)) or tables[-1])
     found = invoke(*words, *("--out", tmp_path))
     assert (tables or words[0] == "run") and not any(named_twice(column) for made in tables for column in made.columns)
     for made in tables:

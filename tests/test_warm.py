@@ -8,7 +8,6 @@ from numpy.testing import assert_allclose
 
 import raceway as rw
 from checks.validation.scenes import built_in
-from raceway.core.quantities.thermal import JOINT, oil_convection, rolling_contact, seat_emission
 from raceway.extend import open_store
 from tests.core.validation import warm as published
 
@@ -35,35 +34,6 @@ def test_energy_is_balanced_and_temperatures_are_those_computed_with():
     level = heat["temperatures_k"]
     surfaces = 0.25 * (level["inner"] + 2.0 * level["balls"] + level["outer"])
     assert_allclose(result.model.problem.lubricant.temperature_c, surfaces - 273.15, atol=1e-5)
-
-
-def test_conductances_are_the_correlations_with_sizes_and_film_of_the_bearing():
-    """Of both rows; contacts by the film of the quantity `film` and the speed of rolling at both races' angles, 1e-3 off their mean's."""
-    found = usual().to_dict()
-    (b, _), oil, w = usual().model.problem.bearing.of_rows, usual().model.problem.lubricant, 12_000.0 * np.pi / 30.0
-    capacity = oil.density * 2000.0
-    ratio = b.ball_diameter * np.cos(np.radians(15.0)) / b.pitch_diameter
-    h = oil_convection(w, ratio, oil.kinematic_viscosity, oil.conductivity, capacity, b.ball_diameter)
-    wetted = 1.0 - 12 * b.ball_diameter / (np.pi * b.pitch_diameter)
-    wanted = {
-        "throughput": capacity * 8e-6, "balls_oil": 2 * 12 * h * np.pi * b.ball_diameter**2,
-        "inner_oil": 2 * wetted * h * np.pi * (b.pitch_diameter - b.ball_diameter) * b.width,
-        "outer_oil": 2 * h * np.pi * (b.pitch_diameter + b.ball_diameter) * b.width,
-        "inner_shaft": 2 * JOINT * np.pi * b.bore * b.width, "outer_housing": 2 * JOINT * np.pi * b.outer_diameter * b.width,
-        "shaft_ambient": 2 * seat_emission(b.bore, b.bore + b.outer_diameter, b.width),
-        "housing_ambient": 2 * seat_emission(b.outer_diameter, b.bore + b.outer_diameter, b.width),
-    }  # fmt: skip
-    for race in ("inner", "outer"):
-        film, ball = found["film"][race], found["equilibrium"]["balls"][0]
-        axes = ball[f"semi_major_{race}_m"], ball[f"semi_minor_{race}_m"]
-        contact = rolling_contact(*axes, film["entraining_speed_m_per_s"], film["central_m"], oil.conductivity)
-        wanted[f"{race}_balls"] = 24 * float(contact)
-    stated, level, flows = (found["heat"][name] for name in ("conductances_w_per_k", "temperatures_k", "flows_w"))
-    assert stated == pytest.approx(wanted, rel=2e-3) and stated.keys() == wanted.keys()
-    for seat, ring in (("shaft", "inner"), ("housing", "outer")):
-        along = stated[f"{ring}_{seat}"] * (level[ring] - level[seat])
-        out = stated[f"{seat}_ambient"] * (level[seat] - 293.15)
-        assert [along, out] == pytest.approx([flows[seat], flows[seat]], rel=1e-9)
 
 
 def test_at_rest_hot_surroundings_are_told():

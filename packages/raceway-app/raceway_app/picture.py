@@ -197,7 +197,7 @@ class Curves:
             part |= {"points": x[name], "rows": len(scene.bearing.rows)}
             self._lost[name] = x[name], part["status"] != PointStatus.COMPUTED
             of_axis = {title: names for title, names in titles.items() if name == "speed" or title in _OVER_LOAD}
-            panels += [_panel(name, axis, title, names, part, quantities) for title, names in of_axis.items()]
+            panels += [panel(name, axis, title, names, part, quantities) for title, names in of_axis.items()]
         return panels
 
 
@@ -213,9 +213,7 @@ def _has(result: Result, name: str) -> bool:
     return scene.supports.tilt == "free" if name == "kyy_tilts_follow" else name in KNOWN or name in result.quantities
 
 
-def _panel(
-    name: str, axis: Axis, title: str, names: list[str], answer: Tables, quantities: Mapping[str, Quantity]
-) -> Tables:
+def panel(name: str, axis: Axis, title: str, names: list[str], answer: Tables, quantities: Mapping[str, Quantity]) -> Tables:
     valid = answer["status"] == PointStatus.COMPUTED
     lines: list[Tables] = []
     for curve, label, values in _curve_columns(names, answer, quantities):

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from raceway_app.picture import Curves, _panel, at_rest, axes_of, form, result_picture, titles_of
+from raceway_app.picture import Curves, at_rest, axes_of, form, result_picture, titles_of
+from raceway_app.picture import panel as panel_of
 from raceway_app.session import Session, groups
 from raceway_app.worker import Job, News, Worker
 
@@ -91,7 +92,9 @@ def test_curves_run_over_the_scene_and_temperatures_are_in_celsius():
     assert axis.low == 100.0 and axis.high >= axis.present == 1000.0 and axis.present in axis.numbers()
     status, quantities = np.array([PointStatus.COMPUTED, PointStatus.FAILED]), plugin_quantities(default_registry())
     answer = {"status": status, "points": status, "reason": ["", "why"], "temperature_inner_k": np.array([300.0, 310.0])}
-    panel = _panel("speed", axis, "temperature", ["temperature_inner_k"], answer, {n: q for n, (_, q) in quantities.items()})
+    panel = panel_of(
+        "speed", axis, "temperature", ["temperature_inner_k"], answer, {n: q for n, (_, q) in quantities.items()}
+    )
     assert panel["lines"][0]["y"] == [pytest.approx(26.85), None]
     assert (panel["unit"], panel["missing"], panel["why"]) == ("°C", [PointStatus.FAILED], "why")
 

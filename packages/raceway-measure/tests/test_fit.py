@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from raceway_measure.fit.estimate import Free, estimate, free_keys, judged
 from raceway_measure.fit.linear import LinearResiduals, free_parts
-from raceway_measure.fit.rig import _RigResiduals
+from raceway_measure.fit.rig import RigResiduals
 from raceway_measure.fit.shaft_angle import rotation_of
 from raceway_measure.fit.signals import recording_of, signals_of, write_recording
 from raceway_measure.fit.spectra import aliasing_error, largest_tone, spectra_of, spectrum_of, uneven_block
@@ -438,7 +438,7 @@ def test_a_rigs_residuals_are_weighed_by_all_that_disturbs_them(signals):
 
     def variances(run_out=0.0, angle=0.0):
         turned = attrs.evolve(component, angle_error=angle)
-        problem = _RigResiduals(scene, rig_of(scene), default_registry(), free, turned, RunOut(0j, run_out))
+        problem = RigResiduals(scene, rig_of(scene), default_registry(), free, turned, RunOut(0j, run_out))
         return np.square(problem._balance_at(scene, np.array([free[0].start])).errors)
 
     assert variances(run_out=1e-6) - variances() == pytest.approx([0.5e-12, 0.5e-12])

@@ -130,7 +130,7 @@ def coefficients(
         raise RacewayError("the swept scene is static and has a tangent only: choose --from tangent")
     stiffness, damping, certain, definition, notes = SOURCES[source](selection)
     damping_at = certain[..., 0, 0] & certain[..., 1, 1]
-    damping, changes = _without_noise(damping, certain, unresolved)
+    damping, changes = without_noise(damping, certain, unresolved)
     notes += [
         *radial_note(json.loads(selection.dataset.attrs.get("given", "{}"))),
         *changes,
@@ -164,7 +164,7 @@ def _without_direction(selection: Selection, array: np.ndarray) -> np.ndarray:
     return np.take(array, 0, axis=len(selection.axes) - 1) if DIRECTION in selection.axes else array
 
 
-def _without_noise(damping: np.ndarray, certain: np.ndarray, substitute: float) -> tuple[np.ndarray, list[str]]:
+def without_noise(damping: np.ndarray, certain: np.ndarray, substitute: float) -> tuple[np.ndarray, list[str]]:
     """Damping (..., 2, 2) with what is not resolved replaced, and what was done.
 
     Noise of either sign would be read as damping, and a negative one as instability.  A point whose cyy or czz is not resolved has

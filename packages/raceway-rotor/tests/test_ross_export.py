@@ -8,7 +8,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from raceway_rotor.coefficients import Coefficients, _without_noise, coefficients
+from raceway_rotor.coefficients import Coefficients, coefficients, without_noise
 from raceway_rotor.export import ross_table
 from raceway_rotor.ross_file import NAMES, ross_spline, through_points
 
@@ -164,7 +164,7 @@ def test_damping_that_is_not_resolved_is_zero_or_what_is_given():
     still = coefficients(select(data, {}), "tangent", 25.0)
     np.testing.assert_array_equal(still.damping, np.broadcast_to(25.0 * np.eye(2), still.damping.shape))
     # Cross terms alone would make the matrix indefinite.
-    assert not _without_noise(np.full((1, 2, 2), 5.0), np.array([[[False, True], [True, True]]]), 0.0)[0].any()
+    assert not without_noise(np.full((1, 2, 2), 5.0), np.array([[[False, True], [True, True]]]), 0.0)[0].any()
     for wrong in (-1.0, np.nan, np.inf):
         with pytest.raises(SceneError, match="must be a finite damping"):
             coefficients(select(data, {}), unresolved=wrong)

@@ -12,7 +12,6 @@ from raceway import SceneError, make_plan, scene_from_dict
 from raceway.bodies.model import calibration_error
 from raceway.core.fem import calibration
 from raceway.pipeline.uncertainty import elastic_change
-from raceway.plugins.bodies import condensed_bearing
 from raceway.testing import b7206c, run, settled
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
@@ -163,8 +162,8 @@ def test_the_calibration_holds_for_both_signs_of_the_angle():
 
 def test_a_point_is_the_same_alone_and_among_others_where_nothing_calibrates_its_contacts(monkeypatch):
     """A ball's own compliance follows the load of its point: by the least load of a block kyy was 0.4 % off."""
-    monkeypatch.setattr(condensed_bearing, "calibrated", lambda *_: None)
-    monkeypatch.setattr(condensed_bearing, "BODIES_BY_SECTION", {})
+    monkeypatch.setattr("raceway.plugins.bodies.condensed_bearing.calibrated", lambda *_: None)
+    monkeypatch.setattr("raceway.plugins.bodies.condensed_bearing.BODIES_BY_SECTION", {})
     scene = {"bearing": {"preset": "B7206C"}, "bodies": {"kind": "condensed"}, "load": {"axial": 1000.0}}
     function = rw.function(scene, ["load.axial"], ["kyy"])
     alone, among = (function(np.array(loads))["kyy"] for loads in ([400.0], [4.0, 400.0, 4000.0]))

@@ -131,7 +131,7 @@ class _Slope:
 
 
 @attrs.define(eq=False)
-class _RigResiduals:
+class RigResiduals:
     """Weighted residuals of the 1x response: ``raceway_measure.fit.estimate.Residuals``."""
 
     scene: Scene
@@ -231,7 +231,7 @@ def fit_rig(
         refuse_no_load(scene)
     with faults_at(signals.source):
         component = synchronous(rotation_of(recording_of(signals)))
-        problem = _RigResiduals(scene, rig, registry, free, component, run_out)
+        problem = RigResiduals(scene, rig, registry, free, component, run_out)
         refuse_few(problem.count, len(free), signals.source)
         answer = estimate(problem, free, stated=True)
     problem.residuals(answer.values)
