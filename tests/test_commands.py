@@ -226,7 +226,7 @@ def whole_files(folder):
 
 def files_of(name, folder):
     """Content of the text files that a command writes."""
-    out, texts = place(name, folder), {".csv", ".txt", ".md", ".toml", ".bdf", ".inp", ".geo"}
+    out, texts = place(name, folder), {".csv", ".txt", ".toml", ".bdf", ".inp", ".geo"}
     files = [path for path in sorted(out.rglob("*")) if path.suffix in {".json", *texts}] if out.is_dir() else []
     content = {str(path.relative_to(out)): path.read_text(encoding="utf-8").replace(str(folder), "FOLDER") for path in files}
     return {key: json.loads(text) if key.endswith(".json") else text.splitlines() for key, text in content.items()}

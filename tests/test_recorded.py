@@ -19,6 +19,9 @@ SLOW = {name for name in SCENES if name == "run_up" or name.startswith(("points,
 def test_a_result_is_as_recorded(name):
     scene, *changes = shlex.split(SCENES[name])
     base = rw.load_scene(EXAMPLES / f"{scene}.toml", changes)
-    load = attrs.evolve(base.load, axial=base.load.axial * (1.0 + float(os.environ.get("RACEWAY_RECORD", 0))))
+    nudge = float(os.environ.get("RACEWAY_RECORD", 0))
+    load = attrs.evolve(
+        base.load, axial=base.load.axial * (1.0 + nudge) + nudge * (base.bodies.name != "cylindrical_rollers")
+    )
     result = rw.run(attrs.evolve(base, load=load))
     assert not differences(name, result.to_dict())
