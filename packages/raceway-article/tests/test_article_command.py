@@ -147,6 +147,14 @@ def test_friction_is_run_through_time_at_every_other_speed_and_load():
     tables = made.point(orbiting, 400.0, 15000.0, default_registry())
     assert tables["contact"]["friction"] == 0.03 and tables["kinematics"]["orbiting"] is True
     assert tables["integrator"]["kind"] == "newmark" and tables["integrator"]["start"] == "ramp"
+    for tilt, held in {"locked": "locked", "free": "free", "shaft": made.shaft}.items():
+        tables = made.point(Setting("unidirectional", "constant", tilt, False, "rigid"), 400.0, 15000.0, default_registry())
+        assert (tables["supports"]["tilt"], tables["kinematics"]["ball_inertia"]) == (held, False)
+    scan = next(item.task[2] for item in driver._items(made, default_registry()) if item.name.startswith("tilt stiffness"))
+    assert [tables["excitation"]["speed_rpm"] for tables in scan[:2]] == [
+        made.speeds[0],
+        made.speeds[-1],
+    ]  # k* is last over first
     none = design(article_tables(), friction=0.0)
     assert all(setting.friction == "none" for setting in none.settings())
     assert len(design(article_tables(), bodies=("condensed",)).frictions) == 1
@@ -199,6 +207,8 @@ def test_page_says_what_failed(made_page):
 
 def test_runs_of_scan_and_rig_that_fail_are_listed_and_leave_an_empty_cell(tmp_path):
     found = study(curves(lambda s, load, w: 1e8 * (1.0 + w)))
+    # k* = 1.1 - 0.02 n at the nth stiffness is 1 at the fifth.
+    assert found.to_dict()["tilt_stiffness"][0]["turning_point"] == pytest.approx(driver.STIFFNESSES[5])
     found.scan[400.0][1] = row(15000.0, 400.0, None, "failed", "no motion, says the scan")
     found = attrs.evolve(found, rig=(*found.rig[1:], {**found.rig[0], **row(11000.0, 400.0, None, "refused", "not so")}))
     assert [one["reason"] for one in found.failed] == ["not so", "no motion, says the scan"]

@@ -6,9 +6,9 @@ import attrs
 import numpy as np
 import pytest
 from raceway_catalogue.catalogue import section_drawing
-from raceway_catalogue.infer import lines_by_size
+from raceway_catalogue.infer import infer_texts, lines_by_size
 from raceway_catalogue.inferred import infer_printed
-from raceway_catalogue.printed import Printed, Rating, printed_by, table_in_text
+from raceway_catalogue.printed import PairStiffness, Printed, Rating, printed_by, table_in_text
 from raceway_catalogue.rating_conventions import CONFORMITY, pair_stiffness
 
 import raceway as rw
@@ -214,6 +214,17 @@ TABLES = {
 def test_a_wrong_table_is_told_with_its_line(text, words):
     with pytest.raises(SceneError, match=words):
         table_in_text(text, "mine.csv")
+
+
+def test_a_table_is_read_in_si_units_and_words_of_the_command_as_numbers():
+    more = "static_factor,ball_count,ball_diameter_mm,pitch_diameter_mm,preload_1_n,stiffness_1_n_per_um,radial_stiffness_1_n_per_um"
+    (line,) = table_in_text(f"{HEAD},{more}\na,70,110,20,15,47e3,43e3,13.9,20,11.9,90,145,51,335", "all.csv").lines
+    assert (line.bore, line.outer_diameter, line.width) == pytest.approx((0.07, 0.11, 0.02))
+    assert line.ratings == (Rating(15.0, 47e3, 43e3, 13.9),) and line.pairs == (PairStiffness(15.0, 145.0, 51e6, 335e6),)
+    assert attrs.astuple(line.internals) == pytest.approx((20, 0.0119, 0.09))
+    words = {"width": "20 mm", "ratings": ["15:47 kN:43 kN"], "maker": "NSK", "conformity": 0.53}
+    found = infer_texts(bore="70 mm", outer_diameter="110 mm", **words)
+    assert (found.printed.width, found.conformity_inner.value) == pytest.approx((0.02, 0.53))
 
 
 def test_the_command_infers_one_bearing_and_a_table(tmp_path):

@@ -441,8 +441,9 @@ def test_a_rigs_residuals_are_weighed_by_all_that_disturbs_them(signals):
         problem = RigResiduals(scene, rig_of(scene), default_registry(), free, turned, RunOut(0j, run_out))
         return np.square(problem._balance_at(scene, np.array([free[0].start])).errors)
 
-    assert variances(run_out=1e-6) - variances() == pytest.approx([0.5e-12, 0.5e-12])
-    assert variances(angle=0.02) - variances() == pytest.approx([0.0, (0.02 * abs(component.forward) / 1.96) ** 2], rel=1e-3)
+    assert (variances(run_out=1e-6) - variances()) / 1e-12 == pytest.approx([0.5, 0.5])
+    across = (0.02 * abs(component.forward) / 1.96) ** 2
+    assert (variances(angle=0.02) - variances()) / across == pytest.approx([0.0, 1.0], rel=1e-3, abs=1e-9)
 
 
 @pytest.mark.parametrize(("free", "words"), [
