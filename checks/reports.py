@@ -24,33 +24,18 @@ OUTSIDE = ("closed form", "published", "other program")
 #: Block -> (report, the row's quantity, what it says).
 CHOSEN = {
     "readme": (
-        (
-            "published",
-            "NSK 7206C, axial stiffness of a pair at 4 preloads: largest relative error",
-            "axial stiffness of 7206C pairs against the maker's table, relative",
-        ),
-        (
-            "rigid",
-            "B7206C, 400, 1200, 2000 N axial: radial stiffness, tilt free: largest relative error",
-            "radial stiffness of a B7206C, tilt free, against another solver of rigid rings, relative",
-        ),
-        (
-            "published",
-            "7-ball deep-groove bearing, three load cases: displacements and tilt: largest relative error",
-            "displacements and tilt of a deep-groove bearing against MASTA, relative",
-        ),
-        (
-            "rigid",
-            "ball-pass frequency, 4, 7 and 12 balls, 300 N axial, 600 N radial, tilt locked and free: largest relative error",
-            "ball-pass frequency of a simulated motion, relative",
-        ),
-        (
-            "rigid",
-            "2900 of 29 160 extreme scenes (1 mN to 1 MN, conformity 0.501 to 0.9, 1 kN m): neither solved nor a motion left free",
-            "extreme scenes without an answer, of 2900",
-        ),
+        ("published", "NSK 7206C, axial stiffness of a pair at 4 preloads: largest relative error",
+         "axial stiffness of 7206C pairs against the maker's table, relative"),
+        ("rigid", "B7206C, 400, 1200, 2000 N axial: radial stiffness, tilt free: largest relative error",
+         "radial stiffness of a B7206C, tilt free, against another solver of rigid rings, relative"),
+        ("published", "7-ball deep-groove bearing, three load cases: displacements and tilt: largest relative error",
+         "displacements and tilt of a deep-groove bearing against MASTA, relative"),
+        ("rigid", "ball-pass frequency, 4, 7 and 12 balls, 300 N axial, 600 N radial, tilt locked and free: largest relative error",
+         "ball-pass frequency of a simulated motion, relative"),
+        ("rigid", "2900 of 29 160 extreme scenes (1 mN to 1 MN, conformity 0.501 to 0.9, 1 kN m): neither solved nor a motion left free",
+         "extreme scenes without an answer, of 2900"),
     )
-}
+}  # fmt: skip
 
 
 def machine() -> dict[str, Any]:

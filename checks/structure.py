@@ -234,25 +234,15 @@ def held() -> list[Row]:
     rings, up, meant = circles(), climbs(), meanings()
     return [
         below("functions whose name occurs once beside their definition", len(once), 600),
-        below(
-            "names that are one participle [%]",
-            round(100.0 * single / names, 2),
-            2.0,
-            ", ".join(w for w, _ in words.most_common(8)),
-        ),
+        below("names that are one participle [%]", round(100.0 * single / names, 2), 2.0, ", ".join(w for w, _ in words.most_common(8))),
         below("functions over 80 lines", len(long), 0, "; ".join(long)),
         below("modules of raceway that packages import beside raceway.extend", len(deep), 0, ", ".join(sorted(deep))),
-        below(
-            "modules of raceway that examples and templates import beside its doors",
-            len(beside),
-            0,
-            ", ".join(sorted(beside)),
-        ),
+        below("modules of raceway that examples and templates import beside its doors", len(beside), 0, ", ".join(sorted(beside))),
         below("branches on the name of a plug-in in raceway/", len(branches), 0, ", ".join(branches)),
         below("circles of files, annotations counted", len(rings), 0, "; ".join(" ".join(ring) for ring in rings)),
         below("folders' imports that run back up, annotations counted", len(up), 0, "; ".join(up)),
         below("top-level names with more than three meanings", len(meant), 0, ", ".join(meant)),
-    ]
+    ]  # fmt: skip
 
 
 def aims() -> list[Row]:

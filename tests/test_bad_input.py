@@ -35,35 +35,24 @@ SCENES = {
     "conformity at its limit": ("bearing.conformity_inner=0.5", "bearing.conformity_inner", "greater than 0.5"),
     "conformity below": ("bearing.conformity_outer=0.48", "bearing.conformity_outer", "greater than 0.5"),
     "too many balls": ("bearing.ball_count=20", "bearing", "do not fit a pitch circle of 0.046 m: at most 15"),
-    "ball larger than the pitch circle": ("bearing.ball_diameter=0.05", "bearing", "must be smaller than `pitch_diameter`"),
+    "ball larger than the pitch circle": ("bearing.ball_diameter=0.05", "bearing",
+        "must be smaller than `pitch_diameter`"),
     "preset with a typo": ("bearing.preset=B7206G", "bearing.preset", "say which); the nearest: B7206E, B7206C"),
     "length whose square is no number": ("bearing.row_distance=1e300", "bearing.row_distance", "less than 1000"),
     "force of zero": ("excitation.unbalance=0", "excitation", "delete the table"),
     "nodal on rigid bodies": ("contact.discretisation=nodal", "contact.discretisation", "use 'resultant'"),
-    "largest number": (
-        "integrator.kind=central_difference integrator.steps_per_turn=96 excitation.amplitude=constant excitation.force=1.7e308",
-        "integrator.steps_per_turn",
-        "steps per turn are needed",
-    ),
-    "clearance against angle": (
-        "bearing.radial_clearance=1e-4 bearing.contact_angle_deg=15.0",
-        "bearing",
-        "Give one of them",
-    ),
+    "largest number": ("integrator.kind=central_difference integrator.steps_per_turn=96 excitation.amplitude=constant excitation.force=1.7e308",
+        "integrator.steps_per_turn", "steps per turn are needed"),
+    "clearance against angle": ("bearing.radial_clearance=1e-4 bearing.contact_angle_deg=15.0", "bearing",
+        "Give one of them"),
     "no load": ("load.axial=0", "load.axial", "no load acts"),
-    "window": (
-        "identifier.kind=order_tracking identifier.window_turns=20.0",
-        "identifier.window_turns",
-        "is longer than the record of 12 turns",
-    ),
-    "step": (
-        "integrator.kind=central_difference integrator.steps_per_turn=8",
-        "integrator.steps_per_turn",
-        "far above the stable step",
-    ),
+    "window": ("identifier.kind=order_tracking identifier.window_turns=20.0", "identifier.window_turns",
+        "is longer than the record of 12 turns"),
+    "step": ("integrator.kind=central_difference integrator.steps_per_turn=8", "integrator.steps_per_turn",
+        "far above the stable step"),
     "--set without =": ("load.axial", "--set load.axial", "for instance load.axial=400"),
     "--set through a value": ("title.part=3", "--set title.part", "is not a table"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", SCENES)

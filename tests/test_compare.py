@@ -33,13 +33,8 @@ def test_lists_and_ranges():
         ["a.b=1,2.5,x,true", "load.radial=[0, 0],[1,2]", "s.rpm=10980:15000:5", "q.x=0.5:1:3", "t.w=3:9:1", 'k.n="1:2",z']
     )
     assert [axis.values for axis in axes] == [
-        (1, 2.5, "x", True),
-        ([0, 0], [1, 2]),
-        (10980, 11985, 12990, 13995, 15000),
-        (0.5, 0.75, 1.0),
-        (3,),
-        ("1:2", "z"),
-    ]
+        (1, 2.5, "x", True), ([0, 0], [1, 2]), (10980, 11985, 12990, 13995, 15000), (0.5, 0.75, 1.0), (3,), ("1:2", "z"),
+    ]  # fmt: skip
     assert all(isinstance(v, int) for v in axes[2].values)
     assert next(points(axes[:1])) == {"a.b": 1}
     assert [list(p.values()) for p in points(parse_axes(["a.b=1,2", "a.c=3,4"]))] == [[1, 3], [1, 4], [2, 3], [2, 4]]

@@ -66,21 +66,15 @@ def test_weights_of_differences_leave_the_fifth_power():
 
 SCENES = {
     "tilts free": LOADED,
-    "pair with preload and temperatures": LOADED
-    | {
-        "bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 200.0},
-        "mounting": {"inner_temperature": 12.0, "outer_temperature": 5.0},
-    },
-    "fast, with gyroscopic moments": LOADED
-    | {"supports": {"tilt": 2e4}, "kinematics": {"spin_speed_rpm": 15000.0, "gyroscopic": "outer_race"}},
+    "pair with preload and temperatures": LOADED | {
+        "bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 200.0}, "mounting": {"inner_temperature": 12.0, "outer_temperature": 5.0}},
+    "fast, with gyroscopic moments": LOADED | {
+        "supports": {"tilt": 2e4}, "kinematics": {"spin_speed_rpm": 15000.0, "gyroscopic": "outer_race"}},
     "held axially": LOADED | {"supports": {"axial": "displacement", "tilt": "free"}},
     "friction": LOADED | {"contact": {"friction": 0.05}},
-    "spring": LOADED
-    | {
-        "bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "preload_kind": "spring"},
-        "kinematics": {"spin_speed_rpm": 9000.0},
-    },
-}
+    "spring": LOADED | {
+        "bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "preload_kind": "spring"}, "kinematics": {"spin_speed_rpm": 9000.0}},
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -14,51 +14,31 @@ from tests.fake_site import LAW, FakeSite
 BROKEN = {
     "import": ("import a_module_that_nobody_has", "fails to import: ModuleNotFoundError"),
     "exit": ("import sys; sys.exit(3)", "fails to import: SystemExit"),
-    "import-beyond-exceptions": (
-        "class Odd(BaseException): pass\nraise Odd('not an Exception')",
-        "fails to import: Odd: not an Exception",
-    ),
-    "hook-exits": (
-        "import sys\nfrom raceway import hookimpl\n@hookimpl\ndef raceway_excitations(): sys.exit(4)",
-        "`raceway_excitations` raises SystemExit: 4",
-    ),
-    "name-raises": (
-        "import attrs\nfrom raceway import hookimpl\nclass Meta(type):\n    @property\n    def name(cls): raise KeyError('no name')\n"
+    "import-beyond-exceptions": ("class Odd(BaseException): pass\nraise Odd('not an Exception')",
+        "fails to import: Odd: not an Exception"),
+    "hook-exits": ("import sys\nfrom raceway import hookimpl\n@hookimpl\ndef raceway_excitations(): sys.exit(4)",
+        "`raceway_excitations` raises SystemExit: 4"),
+    "name-raises": ("import attrs\nfrom raceway import hookimpl\nclass Meta(type):\n    @property\n    def name(cls): raise KeyError('no name')\n"
         + "@attrs.frozen\nclass Law(metaclass=Meta): pass\n@hookimpl\ndef raceway_contact_laws(): return [Law]",
-        "raises KeyError: 'no name'",
-    ),
-    "repr-raises": (
-        "from raceway import hookimpl\nclass Odd:\n    def __repr__(self): raise KeyError('no repr')\n"
+        "raises KeyError: 'no name'"),
+    "repr-raises": ("from raceway import hookimpl\nclass Odd:\n    def __repr__(self): raise KeyError('no repr')\n"
         + "@hookimpl\ndef raceway_contact_laws(): return Odd()",
-        "returns an object of type Odd, which is not a list of classes",
-    ),
-    "hook-unknown": (
-        "from raceway import hookimpl\n@hookimpl\ndef raceway_contact_lows(): return []",
-        "does not fit the hooks: unknown hook 'raceway_contact_lows'",
-    ),
-    "hook-arguments": (
-        "from raceway import hookimpl\n@hookimpl\ndef raceway_contact_laws(scene): return []",
-        "does not fit the hooks",
-    ),
-    "hook-raises": (
-        "from raceway import hookimpl\n@hookimpl\ndef raceway_excitations(): raise RuntimeError('no licence')",
-        "`raceway_excitations` raises RuntimeError: no licence",
-    ),
-    "hook-returns": (
-        LAW.format(name="single", cls="Single").replace("return [Single]", "return Single"),
-        "which is not a list of classes",
-    ),
+        "returns an object of type Odd, which is not a list of classes"),
+    "hook-unknown": ("from raceway import hookimpl\n@hookimpl\ndef raceway_contact_lows(): return []",
+        "does not fit the hooks: unknown hook 'raceway_contact_lows'"),
+    "hook-arguments": ("from raceway import hookimpl\n@hookimpl\ndef raceway_contact_laws(scene): return []",
+        "does not fit the hooks"),
+    "hook-raises": ("from raceway import hookimpl\n@hookimpl\ndef raceway_excitations(): raise RuntimeError('no licence')",
+        "`raceway_excitations` raises RuntimeError: no licence"),
+    "hook-returns": (LAW.format(name="single", cls="Single").replace("return [Single]", "return Single"),
+        "which is not a list of classes"),
     "instance": (LAW.format(name="made", cls="Made").replace("[Made]", "[Made()]"), "is not a class"),
-    "duties": (
-        "import attrs\nfrom raceway import hookimpl\n@attrs.frozen\nclass Half:\n    name = 'half'\n"
+    "duties": ("import attrs\nfrom raceway import hookimpl\n@attrs.frozen\nclass Half:\n    name = 'half'\n"
         + "@hookimpl\ndef raceway_contact_laws(): return [Half]",
-        "has no `discretisations`, has no `state_size`, has no `dissipative`, has no `build`, has no `kernel`",
-    ),
-    "unnamed": (
-        LAW.format(name="x", cls="NoName").replace('    name: ClassVar[str] = "x"', "    pass"),
-        "has no class attribute `name`",
-    ),
-}
+        "has no `discretisations`, has no `state_size`, has no `dissipative`, has no `build`, has no `kernel`"),
+    "unnamed": (LAW.format(name="x", cls="NoName").replace('    name: ClassVar[str] = "x"', "    pass"),
+        "has no class attribute `name`"),
+}  # fmt: skip
 
 
 def test_tests_see_built_in_plug_ins_only(tmp_path, monkeypatch):

@@ -36,15 +36,11 @@ def crossed(number: int) -> tuple[Tables, Tables]:
         "load": {"axial": axial, "radial": [decades(1.0, 0.5 * axial) if rng.random() < 0.3 else 0.0, 0.0]},
         "supports": {"tilt": ["locked", "free", decades(1e3, 1e6)][int(rng.integers(3))]},
         "rotor": {"mass": decades(0.3, 100.0), "damping": decades(10.0, 1e4) if rng.random() < 0.6 else 0.0},
-        "excitation": {
-            "kind": str(rng.choice(["bidirectional", "unidirectional"])),
-            "speed_rpm": decades(2000.0, 20000.0),
-            "amplitude": "constant",
-            "force": axial * decades(0.01, 0.8),
-        },
+        "excitation": {"kind": str(rng.choice(["bidirectional", "unidirectional"])),
+            "speed_rpm": decades(2000.0, 20000.0), "amplitude": "constant", "force": axial * decades(0.01, 0.8)},
         "contact": {"kind": "hertz", "damping": float(rng.choice([1e-3, 1.0, 100.0])), "friction": friction},
         "kinematics": {"ball_inertia": bool(rng.random() < 0.5)},
-    }
+    }  # fmt: skip
     methods = rng.permutation(_TRANSIENTS if friction else _METHODS)[:2]
     starts = rng.permutation(_STARTS)[:2] if friction else rng.choice(["orbit", "orbit", "orbit", "ramp"], 2)
     pair = []

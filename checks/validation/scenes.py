@@ -67,22 +67,14 @@ def random_tables(rng: np.random.Generator, law: str = "hertz") -> dict[str, Any
         bearing["contact_angle_deg"] = float(rng.uniform(10.0, 40.0))
     moment = rng.normal(size=2) * axial * pitch / 4.0 if rng.random() < 1.0 / 3.0 else np.zeros(2)
     return {
-        "title": "random",
-        "bearing": bearing,
+        "title": "random", "bearing": bearing,
         "supports": {"tilt": ["locked", "free", float(10.0 ** rng.uniform(2.0, 7.0))][int(rng.integers(3))]},
-        "load": {
-            "axial": float(axial),
-            "radial": [float(radial * np.cos(direction)), float(radial * np.sin(direction))],
-            "moment": [float(part) for part in moment],
-        },
-        "kinematics": {
-            "ball_inertia": bool(rng.random() < 0.75),
-            "spin_speed_rpm": float(rng.uniform(0.0, 1e5)),
-            "gyroscopic": "none",
-            "ring_growth": False,
-        },
+        "load": {"axial": float(axial), "radial": [float(radial * np.cos(direction)),
+            float(radial * np.sin(direction))], "moment": [float(part) for part in moment]},
+        "kinematics": {"ball_inertia": bool(rng.random() < 0.75), "spin_speed_rpm": float(rng.uniform(0.0, 1e5)),
+            "gyroscopic": "none", "ring_growth": False},
         "contact": {"kind": law},
-    }
+    }  # fmt: skip
 
 
 def imbalance(model: Model, q: np.ndarray, ball: np.ndarray | None = None) -> float:

@@ -27,19 +27,15 @@ def scene_of(bearing: int, speed: int):
     axial, size = LOADS[(bearing + speed) % 2] * b.ball_count * b.ball_diameter**2, b.pitch_diameter / 46e-3
     return rw.scene_from_dict(
         {
-            "bearing": {"preset": BEARINGS[bearing]},
-            "load": {"axial": axial},
+            "bearing": {"preset": BEARINGS[bearing]}, "load": {"axial": axial},
             "supports": {"tilt": ("locked", "free")[(bearing + speed) // 2 % 2]},
             "rotor": {"mass": 2.0 * size**2, "transverse_inertia": 1e-3 * size**4},
-            "excitation": {
-                "kind": ("bidirectional", "unidirectional")[bearing // 2 % 2],
-                "speed_rpm": 1e-3 * SPEEDS[speed] / b.pitch_diameter,
-                "amplitude": "constant",
-                "force": (0.4 if (bearing + 2 * speed) % 3 else 0.1) * axial,
-            },
+            "excitation": {"kind": ("bidirectional", "unidirectional")[bearing // 2 % 2],
+                "speed_rpm": 1e-3 * SPEEDS[speed] / b.pitch_diameter, "amplitude": "constant",
+                "force": (0.4 if (bearing + 2 * speed) % 3 else 0.1) * axial},
             "contact": {"damping": 0.001},
         }
-    )
+    )  # fmt: skip
 
 
 def spread_and_runs(one):

@@ -47,15 +47,11 @@ def outcome(contact, excitation, integrator, bodies="rigid", steps=120):
     # Films are renewed in every step of a run-up: a fifth of the example's half second, to the same speed.
     short = {"duration_s": 0.1} if excitation == "run_up" and "film" in contact else {}
     tables = {
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 2000.0},
-        "rotor": {"mass": 2.0},
-        "bodies": {"kind": bodies},
-        "excitation": {"kind": excitation, **options("excitation", excitation), **short},
-        "contact": CONTACTS[contact],
+        "bearing": {"preset": "B7206C"}, "load": {"axial": 2000.0}, "rotor": {"mass": 2.0}, "bodies": {"kind": bodies},
+        "excitation": {"kind": excitation, **options("excitation", excitation), **short}, "contact": CONTACTS[contact],
         "integrator": {"kind": integrator, "turns": 6, "steps_per_turn": steps if implicit else "auto"},
         "identifier": {"kind": identifier, **options("identifier", identifier)},
-    }
+    }  # fmt: skip
     try:
         return run(scene_from_dict(tables, registry()), registry())
     except SceneError as refused:

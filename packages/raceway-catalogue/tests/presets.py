@@ -173,24 +173,15 @@ def _roller_kind(series: str) -> _Kind:
     )
     columns = _columns(_ROLLER_PRINT, "cylindrical rollers have none", "", "")
     columns |= {
-        "ball_count": (
-            "rollers: inferred, that fill the pitch circle as usual; scatter: one more or less",
-            True,
-            "count_scatter",
-        ),
+        "ball_count": ("rollers: inferred, that fill the pitch circle as usual; scatter: one more or less", True,
+            "count_scatter"),
         "ball_diameter": (f"of the rollers, (E - F) / 2; {races}", False, None),
         "pitch_diameter": (f"(E + F) / 2; {races}", False, None),
-        "radial_clearance": (
-            "ISO 5753-1, class CN (normal), middle of the range, a default: a suffix C2, C3 or C4 says another",
-            True,
-            "clearance_scatter",
-        ),
-        "bodies.roller_length": (
-            "effective length: inferred from the printed C0 by ISO 76, with the rollers' number",
-            True,
-            "length_scatter",
-        ),
-    }
+        "radial_clearance": ("ISO 5753-1, class CN (normal), middle of the range, a default: a suffix C2, C3 or C4 says another", True,
+            "clearance_scatter"),
+        "bodies.roller_length": ("effective length: inferred from the printed C0 by ISO 76, with the rollers' number", True,
+            "length_scatter"),
+    }  # fmt: skip
     title = f"cylindrical roller bearing of series {series}"
     needed = "a key of ball bearings, not used"
     constants = {"conformity_inner": (0.52, needed, None), "conformity_outer": (0.52, needed, None)}

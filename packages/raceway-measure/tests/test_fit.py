@@ -379,21 +379,16 @@ def test_tolerances_of_what_is_not_free_widen_the_interval():
 
 RECORD = record(5e7, 800.0, 2.0, 1)
 BAD_RECORDS = [
-    (RECORD, {"free": "stiffness"}, "no number of the linear model"),
-    (RECORD, {"free": ""}, "names no number"),
+    (RECORD, {"free": "stiffness"}, "no number of the linear model"), (RECORD, {"free": ""}, "names no number"),
     (RECORD, {"free": "K,mass", "mass": 1.0}, "either known or fitted"),
-    (RECORD, {"free": "K", "mass": -1.0}, "at least 0 kg"),
-    (RECORD, {"free": "K", "scene": LOADED}, "omit it"),
+    (RECORD, {"free": "K", "mass": -1.0}, "at least 0 kg"), (RECORD, {"free": "K", "scene": LOADED}, "omit it"),
     (RECORD, {"free": "K", "slow_roll": "a.csv"}, "belongs to the signals of a rig"),
     ({**RECORD, "time_s": np.cumsum(1.0 + 0.5 * (np.arange(4096) % 2))}, {"free": "K"}, "even ones"),
     ({**RECORD, "force_n": np.ones(4096)}, {"free": "K"}, "is constant"),
-    (
-        {"time_s": RECORD["time_s"], "force_y_n": RECORD["force_n"], "z_m": RECORD["x_m"]},
-        {"free": "K"},
-        "along the same axis",
-    ),
+    ({"time_s": RECORD["time_s"], "force_y_n": RECORD["force_n"],
+        "z_m": RECORD["x_m"]}, {"free": "K"}, "along the same axis"),
     ({"time_s": RECORD["time_s"], "force_n": RECORD["force_n"]}, {"free": "K"}, "along the same axis"),
-]
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("data", "given", "words"), BAD_RECORDS)

@@ -98,14 +98,8 @@ def test_sets_of_an_abaqus_file_are_on_the_elements_of_their_numbers(tmp_path):
     lines += [head, bricks[0], "*ELEMENT, TYPE=S4, ELSET=Skin", f"7, {', '.join(str(50 - n) for n in mesh.cells[0][:4])}"]
     lines += [head + ", ELSET=Some", bricks[1], head, bricks[2], head + ", ELSET=some", bricks[3]]
     lines += [
-        "*ELSET, ELSET=Range, GENERATE",
-        "70, 90, 10",
-        "*ELSET, ELSET=Both",
-        "Skin,",
-        "some",
-        "*ELSET, ELSET=Both",
-        "90",
-    ]
+        "*ELSET, ELSET=Range, GENERATE", "70, 90, 10", "*ELSET, ELSET=Both", "Skin,", "some", "*ELSET, ELSET=Both", "90",
+    ]  # fmt: skip
     lines += ["*NSET, NSET=More", "LOW, 42", "** sets", *(f"*SURFACE, NAME={n}\n{n}, S2" for n in ("Some", "Range", "Both"))]
     path.write_text("\n".join(lines))
     with pytest.warns(UserWarning, match="element sets skin are ignored"):

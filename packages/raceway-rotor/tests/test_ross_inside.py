@@ -169,13 +169,9 @@ def test_an_unbalance_turns_with_the_shaft():
 def test_the_bearing_s_force_is_that_at_the_end_of_a_step_of_a_gyroscopic_rotor():
     """Newmark's steps as ROSS takes them, with a force of k x + k_3 x^3: k x less that is on the right-hand side."""
     k, k3, w, dt, eye, gyro = (
-        1e6,
-        1e14,
-        300.0,
-        1e-4,
-        np.eye(3),
+        1e6, 1e14, 300.0, 1e-4, np.eye(3),
         np.array([[0.0, 0.8, 0.0], [-0.8, 0.0, 0.0], [0.0, 0.0, 0.0]]),
-    )
+    )  # fmt: skip
     own = types.SimpleNamespace(
         size=3,
         dynamic_stiffness=lambda *_: k * eye,

@@ -92,17 +92,13 @@ def test_noise_on_the_probe_moves_no_mark_on_the_whole(rate, part):
 
 
 FAULTY = {
-    "a mark that is missing": (
-        lambda r: attrs.evolve(r, key=np.where((r.time > 0.2) & (r.time < 0.2 + 1.0 / HZ), 0.0, r.key)),
-        "the turn at 0.195.* s takes 2.00 .* a pulse of `key` is missing there",
-    ),
-    "a speed that jumps": (
-        lambda r: attrs.evolve(r, key=None, speed=r.speed * np.where(r.time > 0.25, 1.05, 1.0)),
-        "% from one turn to the next at 0.2.* s",
-    ),
+    "a mark that is missing": (lambda r: attrs.evolve(r, key=np.where((r.time > 0.2) & (r.time < 0.2 + 1.0 / HZ), 0.0, r.key)),
+        "the turn at 0.195.* s takes 2.00 .* a pulse of `key` is missing there"),
+    "a speed that jumps": (lambda r: attrs.evolve(r, key=None, speed=r.speed * np.where(r.time > 0.25, 1.05, 1.0)),
+        "% from one turn to the next at 0.2.* s"),
     "a probe that sees nothing": (lambda r: attrs.evolve(r, key=0.0 * r.key, speed=None), "it has no pulse"),
     "noise of a fifth of the range": (lambda r: noisy(made(rate=400e3), 0.2, 1), "a pulse of `key` is double there"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(("fault", "words"), FAULTY.values(), ids=FAULTY)
