@@ -35,19 +35,11 @@ def bearing(scene: Any) -> ElasticBearing:
         return penalty_stiffness(modulus, 2.0 * np.sqrt(area))[:, None]
 
     data = BearingData(
-        geometry=basis.geometry,
-        azimuth=basis.azimuth,
-        rings=(b.rings.young, b.rings.poisson, b.rings.density),
-        balls=(b.balls.young, b.balls.poisson, b.balls.density),
-        reference_load=basis.ball_load,
-        law=linear,
-        params=params,
-        mass=np.diag([0.5, 0.5, 0.5, 1e-4, 1e-4]),
-        free=np.ones(5, dtype=bool),
-        load=np.array([1000.0, 0.0, 0.0, 0.0, 0.0]),
-        formulation="one_point",
-        friction=0.03,
-    )
+        geometry=basis.geometry, azimuth=basis.azimuth, rings=(b.rings.young, b.rings.poisson, b.rings.density),
+        balls=(b.balls.young, b.balls.poisson, b.balls.density), reference_load=basis.ball_load, law=linear, params=params,
+        mass=np.diag([0.5, 0.5, 0.5, 1e-4, 1e-4]), free=np.ones(5, dtype=bool), load=np.array([1000.0, 0.0, 0.0, 0.0, 0.0]),
+        formulation="one_point", friction=0.03,
+    )  # fmt: skip
     return ElasticBearing(mesh_bodies(resolve(scene)), data)
 
 

@@ -21,13 +21,8 @@ _ENVIRONMENT = "makes a virtual environment"
 _THREE = "three terminals; tests/test_dask.py does it"
 #: Commands that no test runs, each with the reason.
 NOT_RUN = {
-    "make demo": _ENVIRONMENT,
-    "make test": "runs this test",
-    "make": "lists targets",
-    "make test-all": "runs this test",
-    "make lint": "continuous integration does it",
-    "make docs": _ENVIRONMENT,
-    "make ross": _ENVIRONMENT,
+    "make demo": _ENVIRONMENT, "make test": "runs this test", "make": "lists targets", "make test-all": "runs this test",
+    "make lint": "continuous integration does it", "make docs": _ENVIRONMENT, "make ross": _ENVIRONMENT,
     "make evidence": "hours; makes the reports of this checkout",
     ".ci/other_pythons": _ENVIRONMENT,
     "python3 -m venv .venv": _ENVIRONMENT,
@@ -53,7 +48,7 @@ NOT_RUN = {
     "python -m checks.against_calculix --scene checks/b7206_elastic_60k.toml --deck bearing.inp": "CalculiX takes an hour",
     "python -m checks.against_calculix": "a minute; tests/core/evidence/test_elastic.py does it",
     "raceway run checks/b7206_elastic_60k.toml": "a minute; tests/core/evidence/test_elastic.py does it",
-}
+}  # fmt: skip
 #: Pages of more than some seconds; their commands run with the slow tests.
 SLOW = {
     "CONTRIBUTING", "article", "cluster", "coefficients", "compare", "elastic", "fit", "identify", "map", "mesh",

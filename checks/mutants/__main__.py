@@ -47,13 +47,7 @@ def main(words: list[str]) -> int:
 
 
 def tried(faults: list[Fault], quick: bool) -> list[Verdict]:
-    """Verdicts on faults, each put into one of two copies of the sources; shown as they come.
-
-    Raises
-    ------
-    SystemExit
-        A test fails without any fault.
-    """
+    """Verdicts on faults, each put into one of two copies of the sources; shown as they come; SystemExit: a test fails without any."""
     tests = sorted({test for fault in faults for test in fault.tests})
     files = sorted({test.partition("::")[0] for test in tests})
     parts = iter(

@@ -13,8 +13,6 @@ TABLE = Path(__file__).with_name("faults.toml")
 class Fault:
     """One line made wrong.
 
-    Attributes
-    ----------
     file : path from the root of the sources
     was, becomes : text, which occurs once in the file, and what replaces it
     tests : files or nodes of pytest that must catch it
@@ -28,13 +26,7 @@ class Fault:
     does: str
 
     def put(self, source: str) -> str:
-        """The file's text with the fault in it.
-
-        Raises
-        ------
-        ValueError
-            The text to replace does not occur, or more than once.
-        """
+        """The file's text with the fault in it; ValueError: the text to replace does not occur, or more than once."""
         if source.count(self.was) != 1:
             raise ValueError(f"{self.file}: `{self.was}` occurs {source.count(self.was)} times, must be once")
         return source.replace(self.was, self.becomes)

@@ -39,13 +39,7 @@ _TIMES = count()
 
 @attrs.frozen
 class Verdict:
-    """Whether the tests of a fault failed.
-
-    Attributes
-    ----------
-    caught : a test failed, or ran beyond the limit
-    how : the first test that failed, or what went wrong otherwise
-    """
+    """Whether a test of a fault failed or ran beyond the limit; the first that did, or what went wrong otherwise."""
 
     fault: Fault
     caught: bool
@@ -56,8 +50,6 @@ class Verdict:
 class Copy:
     """A copy of the sources.
 
-    Attributes
-    ----------
     place : root of the copied sources;  good : the cache of the sources without a fault;  warm : the process that runs tests here
     places : roots of the same sources, and the folder of the kernels of each
     """

@@ -146,22 +146,16 @@ def tables(cell: Combination) -> dict[str, Any]:
     points = {"mesh": {"kind": "structured", "nodes_per_semi_axis": 3, "element_size": 1.2e-3}}
     return {
         **(points if nodal else {}),
-        "title": str(cell),
-        "bearing": {"preset": "B7206C"},
-        "load": {"axial": 2000.0},
-        "rotor": {"mass": 2.0},
-        "supports": {"tilt": cell.tilt},
-        "bodies": {"kind": cell.bodies},
+        "title": str(cell), "bearing": {"preset": "B7206C"}, "load": {"axial": 2000.0}, "rotor": {"mass": 2.0},
+        "supports": {"tilt": cell.tilt}, "bodies": {"kind": cell.bodies},
         "excitation": {"kind": cell.excitation, **options("excitation", cell.excitation)},
         "contact": {"kind": cell.law, "discretisation": cell.discretisation, **options("contact_law", cell.law)},
         "integrator": {
-            "kind": cell.integrator,
-            "turns": turns,
-            "steps_per_turn": steps if implicit else "auto",
+            "kind": cell.integrator, "turns": turns, "steps_per_turn": steps if implicit else "auto",
             **options("integrator", cell.integrator),
         },
         "identifier": {"kind": cell.identifier, **options("identifier", cell.identifier)},
-    } | elastic_tables(cell)
+    } | elastic_tables(cell)  # fmt: skip
 
 
 @attrs.frozen
