@@ -10,7 +10,7 @@ from checks.validation.scenes import rotating
 from checks.validation.series_errors import SERIES, series
 from raceway import run
 from raceway.extend import number_within
-from raceway.pipeline.error import equilibria_of_second_series
+from raceway.pipeline.error import Part, equilibria_of_second_series
 from raceway.pipeline.simulate import model_at_speed, settles_elsewhere
 from raceway.planning.resolve import recorded_per_turn, samples_per_turn
 from raceway.testing import b7206c
@@ -64,6 +64,13 @@ def test_turns_that_repeat_far_from_the_steady_motion_are_another_motion():
     assert not settles_elsewhere(model, _turns(0.0, 3.0, 2.9), settled), "a transient that is on its way"
     assert not settles_elsewhere(model, _turns(0.0, 1.001, 1.0005), settled), "nearly there"
     assert not settles_elsewhere(model, _turns(3.0), settled), "a single turn repeats nothing"
+
+
+def test_parts_whose_phases_cancel_leave_half_the_larger(monkeypatch):
+    monkeypatch.setattr("raceway.pipeline.error._time_step", lambda run: (Part(0.02, "made up", 0.02j), None))
+    monkeypatch.setattr("raceway.pipeline.error._transient", lambda run, step: Part(0.019, "made up", -0.019j))
+    error = run(b7206c(excitation={"kind": "bidirectional", "speed_rpm": 9000.0, "unbalance": 1e-4})).to_dict()["error"]
+    assert error["total"] == pytest.approx(0.01 + error["identification"], abs=1e-12)
 
 
 def test_fits_over_speeds_and_run_ups_have_a_part_for_the_transient():

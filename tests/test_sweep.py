@@ -438,3 +438,11 @@ def test_the_map_of_hardening_has_the_trend_of_an_independent_solver():
     ):  # fmt: skip
         slow, fast = k.sel({"supports.tilt": tilt, "load.axial": load}).values
         assert slow == pytest.approx(first, rel=3e-3) and fast / slow == pytest.approx(ratio, abs=1e-3)
+
+
+def test_the_command_tries_failed_points_again(tmp_path, monkeypatch):
+    asked, words = [], ("--grid", "load.axial=900,1000", "--set", "identifier.kind=tangent", "--out", tmp_path)
+    monkeypatch.setattr("raceway.points.sweep.fill_store", lambda *given: (asked.append(given[2]), study(*given))[1])
+    for again in ((), ("--resume",), ("--retry-failed",)):
+        assert invoke("sweep", EXAMPLES / "minimal.toml", *words, *again).exit_code == 0
+    assert asked == [False, False, True]

@@ -198,7 +198,7 @@ def test_phase_is_the_kernels():
 
 def test_run_up_force_is_the_reaction_of_the_centre_of_mass():
     """-m d2/dt2 (e cos phase, e sin phase), by differences."""
-    force = RunUp(first_speed_rpm=3000.0, speed_rpm=9000.0, duration_s=0.1, unbalance=1e-3)
+    force = RunUp(first_speed_rpm=3000.0, speed_rpm=9000.0, duration_s=0.1, unbalance=2e-3, load_share=0.5)
     kernel, params, out, h = force.kernel(), force.parameters(), np.zeros(5), 1e-5
     for t in (0.01, 0.05, 0.09):
         phase = force.phase(np.array([t - h, t, t + h]))

@@ -24,8 +24,9 @@ def hunt_crossley(monkeypatch):
     return lambda *changes, **options: rw.law("hunt_crossley", None, *changes, plugins=[HUNT_CROSSLEY], **options)
 
 
-def test_hertz_is_hertz_and_stiffer_by_three_halves():
-    found = rw.law("hertz")
+@pytest.mark.parametrize("race", ["inner", "outer"])
+def test_hertz_is_hertz_and_stiffer_by_three_halves(race):
+    found = rw.law("hertz", race=race)
     assert [row["force_ratio"] for row in found.rows] == pytest.approx([1.0] * 5, rel=1e-14)
     assert [row["stiffness_ratio"] for row in found.rows] == pytest.approx([1.0] * 5, rel=1e-14)
     for row in found.rows:

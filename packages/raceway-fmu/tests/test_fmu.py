@@ -13,6 +13,7 @@ from fmpy.build import build_platform_binary
 from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 from raceway_fmu import unit
+from raceway_fmu.map import Interval, fit
 
 import raceway as rw
 from checks.validation.fmu import FORCES, MAP, RANGES, Instance, exported, force_difference, jeffcott, map_difference
@@ -71,6 +72,17 @@ def test_stated_error_of_loads_at_which_balls_lift_off(tmp_path: Path) -> None:
     expected = rw.function(scene, ranges, ["K"]).arrays(axial)
     values = np.array([instance(load)[0] for load in axial])
     assert np.abs(values / expected - 1.0).max() <= instance.value("relative_error.equivalent_stiffness") <= 1e-4
+
+
+def test_stated_error_holds_at_a_corner() -> None:
+    """Of a function that is steepest there: 1024 points inside see a part of its error."""
+
+    def steep(columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        values = np.prod([1.0 / (1.02 - column) for column in columns], axis=0)[None]
+        return values, np.ones_like(values)
+
+    made, corner = fit(steep, [Interval(0.0, 1.0)] * 2, 1e-12, 400), [np.array([1.0])] * 2
+    assert made.difference[0] >= np.abs(made(corner) - steep(corner)[0])[0, 0] > 0.0
 
 
 def test_map_says_that_its_tolerance_is_not_reached() -> None:

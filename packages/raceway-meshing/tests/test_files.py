@@ -8,6 +8,7 @@ import attrs
 import meshio
 import numpy as np
 import pytest
+from raceway_meshing.formats import used_only
 
 from checks.validation.command_line import EXAMPLES
 from checks.validation.cubes import block
@@ -112,6 +113,13 @@ def test_sets_of_an_abaqus_file_are_on_the_elements_of_their_numbers(tmp_path):
         path.write_text("\n".join(lines).replace(twice, f"{twice}\n{twice}"))
         with pytest.raises(MeshError, match=rf"parts.inp' cannot be read: .*{word} is given twice"):
             Abaqus().read(path)
+
+
+def test_points_without_a_cell_go_and_leave_sets_on_theirs(tmp_path):
+    body = block()
+    points, low = np.concatenate([[[9.0, 9.0, 9.0]], body.points, [[8.0, 8.0, 8.0]]]), [0, 3, 5, len(body.points) + 1]
+    kept = used_only(tmp_path / "made up", points, body.cells + 1, {"low": low}, {})
+    assert kept.points.tolist() == body.points.tolist() and kept.nodes("low").tolist() == [2, 4]
 
 
 @pytest.fixture

@@ -121,6 +121,14 @@ def test_unsymmetric_and_absent_entries_are_told_to_ansys():
     assert ["KEYOPT", "1", "3", "1"] in commands and ["RMORE", "0", "0"] in commands
     np.testing.assert_array_equal(found["K12_1"][1], 1e7)
     np.testing.assert_array_equal(found["K21_1"][1], -1e7)
+    found, _ = apdl(
+        ansys_text(
+            Coefficients(speed, None, turning, 1e-5 * turning, speed, "tangent", "made up", (), still, still, "locked"),
+            (),
+            1,
+        )
+    )
+    assert (found["C12_1"][1][0], found["C21_1"][1][0]) == pytest.approx((100.0, -100.0))
 
 
 def test_csv_and_json_hold_every_number(held, tmp_path):

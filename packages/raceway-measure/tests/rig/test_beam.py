@@ -104,6 +104,18 @@ def test_mass_and_symmetry():
     rigid = np.zeros(len(line.mass))
     rigid[::2] = 1.0
     assert rigid @ line.mass @ rigid == pytest.approx(rig.mass, rel=1e-12)
+    turned, inner, outer = (
+        np.column_stack([line.nodes, np.ones(len(line.nodes))]).ravel(),
+        0.5 * rig.shaft_diameter,
+        rig.disc_radius,
+    )
+    bar = (
+        rig.density * np.pi * inner**4 * rig.shaft_length
+    )  # a rigid shaft and the ring of the disc, about the axis and a diameter
+    ring = rig.density * np.pi * (outer**2 - inner**2) * rig.disc_thickness
+    polar = 0.5 * (bar + ring * (outer**2 + inner**2))
+    assert turned @ line.polar @ turned == pytest.approx(polar, rel=1e-9)
+    assert turned @ line.rotary @ turned == pytest.approx(0.5 * polar + ring * rig.disc_thickness**2 / 12.0, rel=1e-9)
     assert rig.disc_mass == pytest.approx(3.97, abs=0.005)
     for matrix in (line.stiffness, line.mass, line.rotary, line.polar):
         assert np.abs(matrix - matrix.T).max() <= 1e-12 * np.abs(matrix).max()

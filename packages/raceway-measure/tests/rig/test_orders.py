@@ -48,12 +48,15 @@ def test_the_standard_error_is_that_of_white_noise():
     assert found.residual == pytest.approx(np.sqrt(2.0) * noise / abs(LINE), rel=0.05)
 
 
-def test_the_doubt_of_marks_stays_where_sampling_keeps_step():
+def test_the_doubt_of_marks_stays_where_sampling_keeps_step(monkeypatch):
     apart = rotation_of(made(rate=10e3, sharp=100.0)).angle_error
     in_step = rotation_of(made(rate=50 * HZ, sharp=100.0)).angle_error
     # Flanks within one sample: half of it, 1/50 of a turn.
     assert in_step == pytest.approx(np.pi / 50, rel=0.1)
     assert apart < 0.2 * in_step
+    doubtful = lambda *record: attrs.evolve(pulses_of(*record), middle_error=1e-3 / HZ)  # noqa: E731
+    monkeypatch.setattr("raceway_measure.fit.shaft_angle.pulses_of", doubtful)
+    assert rotation_of(made()).angle_error == pytest.approx(1.96 * 2e-3 * np.pi, rel=0.1)  # of the range's middle alone
 
 
 BAD = {
