@@ -48,6 +48,8 @@ def test_viscosities_are_columns_where_their_keys_are():
             assert getattr(oil, name) == pytest.approx([getattr(one, name) for one in each], rel=1e-14)
     film = column_problem(resolve(scene(contact={"kind": "film"}, lubricant=OIL)), {"lubricant.temperature_c": warm})
     assert film.contact.law.dynamic_viscosity == pytest.approx(film.lubricant.dynamic_viscosity, rel=1e-14)
+    film = column_problem(resolve(scene(contact={"kind": "film", **OIL})), {"contact.temperature_c": warm})
+    assert film.lubricant.dynamic_viscosity == pytest.approx(problem.lubricant.dynamic_viscosity, rel=1e-14)
     # Of a viscosity alone beta is that of the mineral oil that has it at the temperature, within and beyond the grades.
     assert Oil(viscosity=0.03).beta == Oil(viscosity=0.03, temperature_c=40.0).beta
     for eta in (1e-4, 0.03, 3.0):

@@ -2,6 +2,7 @@
 
 from math import acos, cos, pi, radians, sin
 
+import attrs
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -9,10 +10,11 @@ from scipy.special import ellipe, ellipkm1
 
 from checks.validation.reference.hertz import contact
 from checks.validation.reference.ring import Ring
+from checks.validation.scenes import built_in
 from raceway import RacewayError, scene_from_dict
 from raceway.core.columns import elliptic_integrals
 from raceway.core.contact.hertz import ellipticity
-from raceway.extend import BallBearing, contact_modulus, ellipse
+from raceway.extend import BallBearing, ContactPairs, contact_modulus, ellipse
 from raceway.testing import run
 
 MODULUS = contact_modulus(212e9, 0.29, 212e9, 0.29)
@@ -91,6 +93,17 @@ def test_hertz_keeps_hertz_and_open_contacts_have_none():
     ball = found.to_dict()["equilibrium"]["balls"][0]
     load = ball["load_inner_n"]
     assert ball["peak_pressure_inner_pa"] == pytest.approx(float(found.model.inner.peak_pressure(load)), rel=1e-12)
+
+
+@pytest.mark.parametrize("area", [None, np.array([1e-9])])
+def test_a_penalty_is_calibrated_at_the_load_that_is_given(area):
+    pairs, penalty = (
+        ContactPairs(*np.array([[30.0], [250.0], [1.2e11], [1e10], [100.0]]), area=area),
+        built_in("contact_law", "penalty"),
+    )
+    heavy = attrs.evolve(pairs, reference_load=np.array([250.0]))
+    assert penalty(calibrate_at=250.0).build(pairs) == pytest.approx(penalty().build(heavy), rel=1e-14)
+    assert penalty().build(heavy) != pytest.approx(penalty().build(pairs), rel=1e-3)
 
 
 def test_the_error_of_a_law_is_that_of_its_stiffness_too():
