@@ -48,11 +48,9 @@ def machine() -> dict[str, Any]:
     vector = next((name for flag, name in (("avx512f", "AVX-512"), ("avx2", "AVX2")) if flag in flags), "")
     return {
         "cores": os.cpu_count(),
-        "processor": " ".join(part for part in (platform.machine(), vector) if part),
-        "system": platform.system(),
-        "python": platform.python_version(),
-        "numba": numba.__version__,
-    }
+        "processor": " ".join(part for part in (platform.machine(), vector) if part), "system": platform.system(),
+        "python": platform.python_version(), "numba": numba.__version__,
+    }  # fmt: skip
 
 
 def commit() -> str | None:

@@ -91,9 +91,7 @@ def test_several_mistakes_are_told_together():
 
 HEAD = '[bearing]\npreset = "B7206C"\n[load]\n'
 FILES = {
-    "missing": (None, "no such file"),
-    "empty": ("", "is empty"),
-    "blank": ("\n  \n", "is empty"),
+    "missing": (None, "no such file"), "empty": ("", "is empty"), "blank": ("\n  \n", "is empty"),
     "malformed": ("[bearing\npreset = 3", "is not valid TOML"),
     "malformed value": ('[load]\naxial = 1 000\n[bearing]\npreset = "B7206C"', "at line 2"),
     "not text": (b"\xff\xfe\x00\x01", "is not UTF-8 text"),
@@ -101,7 +99,7 @@ FILES = {
     "nested": (HEAD + "radial = " + "[" * 500 + "]" * 500, "nested too deep"),
     "digits": (HEAD + "axial = " + "9" * 5000, "a number has thousands of digits"),
     "large": (HEAD + "axial = " + "9" * 400, "must be a finite number"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", FILES)

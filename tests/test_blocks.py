@@ -33,12 +33,10 @@ STATIC: dict[str, Any] = {
 }  # fmt: skip
 #: The motion of a tenth of a micrometre about it, contacts with dashpots.
 ROTATING: dict[str, Any] = {
-    "rotor": {"mass": 2.0, "damping": 50.0},
-    "kinematics": {},
-    "contact": {"kind": "hertz", "damping": 0.001},
+    "rotor": {"mass": 2.0, "damping": 50.0}, "kinematics": {}, "contact": {"kind": "hertz", "damping": 0.001},
     "excitation": {"kind": "bidirectional", "speed_rpm": 9000.0, "unbalance": 3e-4},
     "integrator": {"kind": "periodic", "tolerance": 1e-11},
-}
+}  # fmt: skip
 #: What a run takes of 360 samples, or of another method.
 BOUNDS = {"damping": 1e-7, "peak": 1e-6, "min_": 1e-4, "p0": 1e-6, "z_imag": 1e-6, "equivalent_damping": 1e-6}
 #: What both methods estimate by themselves, or what rounding leaves.

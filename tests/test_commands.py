@@ -148,12 +148,9 @@ def place(name, folder):
 def words(name, seen, folder, out=None):
     """A line of the table with its places; what it reads of other commands is made first."""
     others = {
-        "sweep, picture": "sweep",
-        "export": "sweep",
-        "export, files": "sweep",
-        "fit, identify": "study rig",
+        "sweep, picture": "sweep", "export": "sweep", "export, files": "sweep", "fit, identify": "study rig",
         "fit, signals": "study rig",
-    }
+    }  # fmt: skip
     if name in others:
         look(others[name], seen, folder)
     out = out or place(name, folder)

@@ -12,12 +12,10 @@ from checks.validation.scenes import built_in
 from raceway import ConvergenceError, PluginError, RacewayError, SceneError
 
 SCENE = {
-    "title": "tools",
-    "bearing": {"preset": "B7206C"},
-    "load": {"axial": 1000.0},
+    "title": "tools", "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0},
     "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 10.0},
     "integrator": {"kind": "quasi_static"},
-}
+}  # fmt: skip
 STATIC = {name: SCENE[name] for name in ("title", "bearing", "load")}
 SPEED, SPIN = "excitation.speed_rpm", "kinematics.spin_speed_rpm"
 TOML = """

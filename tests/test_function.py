@@ -13,13 +13,10 @@ from raceway.extend import Tables, registry_with
 
 STATIC = {"bearing": {"preset": "B7206C"}, "load": {"axial": 1.0}, "supports": {"tilt": "free"}}
 TURNING = {
-    "bearing": {"preset": "B7206C"},
-    "load": {"axial": 1000.0},
-    "supports": {"tilt": "free"},
-    "rotor": {"mass": 1.0},
+    "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "supports": {"tilt": "free"}, "rotor": {"mass": 1.0},
     "excitation": {"kind": "bidirectional", "speed_rpm": 9000.0, "unbalance": 1e-5},
     "integrator": {"kind": "periodic", "tolerance": 1e-11},
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("first", [0, 10, *(pytest.param(k, marks=pytest.mark.slow) for k in range(20, 100, 10))])

@@ -223,11 +223,9 @@ def test_a_contact_at_the_edge_is_told():
 
 
 BAD = [
-    ("load.axail", LOADED, "did you mean 'load.axial'"),
-    ("bearing.ball_count", LOADED, "no continuous key"),
-    ("integrator.kind", LOADED, "setting of a method"),
-    ("contact.damping", LOADED, "end of its range"),
-]
+    ("load.axail", LOADED, "did you mean 'load.axial'"), ("bearing.ball_count", LOADED, "no continuous key"),
+    ("integrator.kind", LOADED, "setting of a method"), ("contact.damping", LOADED, "end of its range"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("path", "tables", "words"), BAD)

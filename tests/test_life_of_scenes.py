@@ -37,10 +37,8 @@ def test_a_run_states_the_published_life():
     assert found["l10r_hours"] == pytest.approx(1630.5367e6 / 60.0, rel=1e-4)
     assert found["equivalent_load_n"] == pytest.approx(23400.0 * 1630.5367 ** (-1 / 3), rel=1e-4)
     assert (found["rating_n"], found["rating_from"], found["rows"][0]["static_rating_from"]) == (
-        23400.0,
-        "catalogue",
-        "geometry",
-    )
+        23400.0, "catalogue", "geometry",
+    )  # fmt: skip
     assert found["loads"] == "constant"
 
 

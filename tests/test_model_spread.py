@@ -8,12 +8,10 @@ from raceway.points.dataset import values_of
 
 STATIC = {"bearing": {"preset": "7014A"}, "load": {"axial": 400.0}, "kinematics": {"spin_speed_rpm": 5000.0}}
 MOVING = {
-    "bearing": {"preset": "7014C"},
-    "load": {"axial": 800.0},
-    "rotor": {"mass": 3.0},
+    "bearing": {"preset": "7014C"}, "load": {"axial": 800.0}, "rotor": {"mass": 3.0},
     "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 200.0},
     "integrator": {"kind": "periodic"},
-}
+}  # fmt: skip
 SPRUNG = {"arrangement": "DB", "preload": 600.0, "preload_kind": "spring"}
 KINDS = {
     "rigid": {},

@@ -16,12 +16,9 @@ Rigid = built_in("bodies", "rigid")
 Fft1x = built_in("identifier", "fft_1x")
 
 SCENE = {
-    "bearing": {"preset": "B7206C"},
-    "load": {"axial": 1000.0},
-    "rotor": {"mass": 1.0},
-    "excitation": {"kind": "bidirectional", "speed_rpm": 9000.0, "unbalance": 1e-5},
-    "integrator": {"kind": "periodic"},
-}
+    "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0}, "rotor": {"mass": 1.0},
+    "excitation": {"kind": "bidirectional", "speed_rpm": 9000.0, "unbalance": 1e-5}, "integrator": {"kind": "periodic"},
+}  # fmt: skip
 
 
 @attrs.frozen

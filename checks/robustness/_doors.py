@@ -33,11 +33,9 @@ _SPEED, _AXIAL = "excitation.speed_rpm", "load.axial"
 _TABLE = {"axial [N]": [400.0, 1000.0, 2000.0], "kxx [N/um]": [39.38, 67.43, 98.77]}
 _ANGLE = np.arange(0.0, 0.1, 5e-5) * 400.0 * np.pi
 _SIGNALS = {
-    "time_s": _ANGLE / (400.0 * np.pi),
-    "y_um": 15.0 * np.cos(_ANGLE),
-    "z_um": 15.0 * np.sin(_ANGLE),
+    "time_s": _ANGLE / (400.0 * np.pi), "y_um": 15.0 * np.cos(_ANGLE), "z_um": 15.0 * np.sin(_ANGLE),
     "speed_rpm": 0.0 * _ANGLE + 12e3,
-}
+}  # fmt: skip
 _RATINGS = {15: ("47 kN", "43 kN"), 25: ("44.5 kN", "41 kN")}
 #: Arguments of each function that reads its own by name: what it takes, a tuple is a choice; beside its scene.
 GOOD: dict[str, Tables] = {

@@ -16,11 +16,9 @@ _MANY, _BLOCK = 10**7, 100_000
 #: Of a worker: pages of a block's arrays stay with the process, see docs/points.md.
 _MEMORY = {"MALLOC_MMAP_THRESHOLD_": 2**25, "MALLOC_TRIM_THRESHOLD_": 2**28}
 STATIC: dict[str, Any] = {
-    "bearing": {"preset": "B7206C"},
-    "load": {"axial": 1.0, "radial": [0.0, 0.0]},
-    "supports": {"tilt": "free"},
+    "bearing": {"preset": "B7206C"}, "load": {"axial": 1.0, "radial": [0.0, 0.0]}, "supports": {"tilt": "free"},
     "kinematics": {"spin_speed_rpm": 12000.0},
-}
+}  # fmt: skip
 PAIR = {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distance": 0.016}
 _SET = STATIC | {"bearing": PAIR}
 

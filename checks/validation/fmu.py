@@ -19,12 +19,10 @@ from raceway.extend import as_scene
 
 #: A map's scene with load, force and speed for inputs, and ranges over which no ball lifts off.
 MAP: dict[str, Any] = {
-    "bearing": {"preset": "B7206C"},
-    "rotor": {"mass": 2.0},
-    "load": {"axial": 1000.0},
+    "bearing": {"preset": "B7206C"}, "rotor": {"mass": 2.0}, "load": {"axial": 1000.0},
     "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 200.0},
     "contact": {"damping": 300.0},
-}
+}  # fmt: skip
 RANGES = {"load.axial": (400.0, 2000.0), "excitation.force": (50.0, 300.0), "excitation.speed_rpm": (3000.0, 15000.0)}
 _STATIC: dict[str, Any] = {
     "bearing": {"preset": "B7206C"},

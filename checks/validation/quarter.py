@@ -76,11 +76,9 @@ def quarter_groove(
         return np.column_stack([chosen.ravel(), np.full(chosen.size, face)])
 
     sets = {
-        "raceway": facets(mesh_cells[:, 0], 1),
-        "base": facets(mesh_cells[:, -1], 0),
-        "side_x": facets(mesh_cells[:, :, 0], 5),
-        "side_y": facets(mesh_cells[0], 2),
-    }
+        "raceway": facets(mesh_cells[:, 0], 1), "base": facets(mesh_cells[:, -1], 0),
+        "side_x": facets(mesh_cells[:, :, 0], 5), "side_y": facets(mesh_cells[0], 2),
+    }  # fmt: skip
     points[number[:, :, 0].ravel(), 0] = 0.0
     points[number[0].ravel(), 1] = 0.0
     return HexMesh(points, cells, {name: nodes_of(cells, f) for name, f in sets.items()}, sets)

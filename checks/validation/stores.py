@@ -12,11 +12,9 @@ from raceway.testing import b7206c
 DOFS = ["x", "y", "z", "tilt_y", "tilt_z"]
 MASS = 2.061
 UNITS = {
-    "excitation.speed_rpm": "r/min",
-    "load.axial": "N",
-    "excitation.direction_deg": "deg",
+    "excitation.speed_rpm": "r/min", "load.axial": "N", "excitation.direction_deg": "deg",
     "kinematics.spin_speed_rpm": "r/min",
-}
+}  # fmt: skip
 SPEEDS = np.linspace(2000.0, 30000.0, 9)
 
 

@@ -55,11 +55,9 @@ def timed(count: int, *more: str, bodies: str = "rigid") -> dict[str, float]:
     if process.returncode or states["done"] != count:
         raise RuntimeError(f"a sweep of {count} points ended with code {process.returncode}, {states}")
     return {
-        "wall_s": wall,
-        "cpu_s": used.ru_utime + used.ru_stime,
-        "points_cpu_s": points,
+        "wall_s": wall, "cpu_s": used.ru_utime + used.ru_stime, "points_cpu_s": points,
         "peak_bytes": used.ru_maxrss * 1024.0,
-    }
+    }  # fmt: skip
 
 
 def overhead(count: int = 400) -> dict[str, float]:

@@ -202,12 +202,10 @@ def test_an_unknown_maker_is_refused():
 
 
 TABLES = {
-    "head": ("name,bore\n7014C,70\n", "unknown column"),
-    "empty": (HEAD + "\n", "has no line"),
-    "words": (HEAD + "\n7014C,wide,110,20,15,47000,43000\n", "line 2"),
-    "short": (HEAD + "\n7014C,70,110\n", "line 2"),
+    "head": ("name,bore\n7014C,70\n", "unknown column"), "empty": (HEAD + "\n", "has no line"),
+    "words": (HEAD + "\n7014C,wide,110,20,15,47000,43000\n", "line 2"), "short": (HEAD + "\n7014C,70,110\n", "line 2"),
     "contradiction": (HEAD + "\n7014C,70,110,20,15,18.5,0.02\n", "line 2: 7014C: static rating"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(("text", "words"), TABLES.values(), ids=TABLES)

@@ -76,13 +76,10 @@ def whole(at):
     """A full symmetric tangent that differs from point to point."""
     base = np.array(
         [
-            [6e7, 2e6, 0, 0, 4e5],
-            [2e6, 2e8, 1e7, 3e5, 1e6],
-            [0, 1e7, 3e8, -1e6, 2e5],
-            [0, 3e5, -1e6, 2e4, 0],
+            [6e7, 2e6, 0, 0, 4e5], [2e6, 2e8, 1e7, 3e5, 1e6], [0, 1e7, 3e8, -1e6, 2e5], [0, 3e5, -1e6, 2e4, 0],
             [4e5, 1e6, 2e5, 0, 3e4],
         ]
-    )
+    )  # fmt: skip
     return base * (1.0 + at[SPEED][..., None, None] / 1e5)
 
 
@@ -127,11 +124,9 @@ def test_directions_give_both_columns_and_the_cross_terms():
         return find
 
     changes = {
-        "z_real": lambda at: (1.0 / along(at)[1]).real,
-        "z_imag": lambda at: (1.0 / along(at)[1]).imag,
-        "forward_amplitude": amplitude(1),
-        "backward_amplitude": amplitude(-1),
-    }
+        "z_real": lambda at: (1.0 / along(at)[1]).real, "z_imag": lambda at: (1.0 / along(at)[1]).imag,
+        "forward_amplitude": amplitude(1), "backward_amplitude": amplitude(-1),
+    }  # fmt: skip
     tables = scene(excitation={"kind": "unidirectional"})
     found = table(made({SPEED: SPEEDS, DIRECTION: [0, 45, 90]}, tables, **changes))
     assert found.source == "directions"

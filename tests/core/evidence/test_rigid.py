@@ -113,10 +113,8 @@ def test_ball_pass(claim):
         tables = passing_scene(bearing={"ball_count": balls}, supports={"tilt": tilt})
         model = model_of(tables)
         record, expected, static = (
-            simulate(model, solve_equilibrium(model)).whole,
-            passing_hz(model),
-            static_amplitude(tables),
-        )
+            simulate(model, solve_equilibrium(model)).whole, passing_hz(model), static_amplitude(tables),
+        )  # fmt: skip
         for direction in (0, 1):
             motion = record.displacement[:, direction : direction + 1]
             found = sharpest(record.time, motion[:, 0], expected, 0.03)

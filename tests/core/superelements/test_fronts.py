@@ -10,11 +10,9 @@ from raceway.extend import HexOperator
 from tests.core.superelements.bearings import STEEL, assembled, schur, unknowns
 
 MESHES = {
-    "block": elastic.block((0.03, 0.02, 0.01), (14, 9, 7)),
-    "ball": elastic.ball(3e-3, 10),
-    "ring": elastic.ring(0.015, 0.02, 0.008, (5, 4, 40)),
-    "one leaf": elastic.block((1.0, 1.0, 1.0), (3, 3, 3)),
-}
+    "block": elastic.block((0.03, 0.02, 0.01), (14, 9, 7)), "ball": elastic.ball(3e-3, 10),
+    "ring": elastic.ring(0.015, 0.02, 0.008, (5, 4, 40)), "one leaf": elastic.block((1.0, 1.0, 1.0), (3, 3, 3)),
+}  # fmt: skip
 
 
 @pytest.fixture(params=MESHES, scope="module")

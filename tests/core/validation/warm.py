@@ -122,11 +122,8 @@ def heat_at_rest() -> float:
 
 #: NASA TP-2275 as read off a figure, docs/measurements.md: r/min, heat [W], inner and outer ring [K].
 MEASURED = (
-    (28e3, 350.0, 422.0, 413.0),
-    (48e3, 700.0, 443.0, 425.0),
-    (64e3, 1100.0, 458.0, 435.0),
-    (72e3, 1400.0, 468.0, 443.0),
-)
+    (28e3, 350.0, 422.0, 413.0), (48e3, 700.0, 443.0, 425.0), (64e3, 1100.0, 458.0, 435.0), (72e3, 1400.0, 468.0, 443.0),
+)  # fmt: skip
 #: Bearings of that report by bore: ball and pitch diameter, bore, outer diameter, width [m], balls, angle [deg], axial load [N].
 _SIZES = {
     35: (7.14e-3, 46.5e-3, 0.035, 0.062, 0.014, 16, 24.0, 667.0),

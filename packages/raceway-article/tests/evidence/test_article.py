@@ -115,11 +115,9 @@ def test_trends_of_an_independent_solver(claim, studies):
 def test_verdicts_are_those_of_the_documents(studies):
     verdicts = studies["rigid and condensed bodies, with friction"].content["verdicts"]
     words = {
-        "without friction": "N",
-        "friction on balls that stand": "S",
-        "friction on balls that orbit": "O",
+        "without friction": "N", "friction on balls that stand": "S", "friction on balls that orbit": "O",
         "|Z|": r"\|Z\|",
-    }
+    }  # fmt: skip
     text = "\n".join(f"| {one['number']} | {one['region']} |" for one in verdicts if one["region"])
     for word, sign in words.items():
         text = text.replace(word, sign)

@@ -25,11 +25,9 @@ pytestmark = [pytest.mark.release, pytest.mark.xdist_group("article mesh")]
 SCENE = EXAMPLES / "b7206_article_mesh.toml"
 #: The article's four load cases: changes of the scene.
 CASES = {
-    "1000 N": {},
-    "400 N": {"load.axial": "400"},
-    "2000 N": {"load.axial": "2000"},
+    "1000 N": {}, "400 N": {"load.axial": "400"}, "2000 N": {"load.axial": "2000"},
     "1000 N, 500 N radial": {"load.radial": "[500.0, 0.0]"},
-}
+}  # fmt: skip
 #: Why a case misses its limit, by quantity and case.
 MISSES = {
     ("pressure", "400 N"): "too few nodes in the small ellipse",

@@ -105,10 +105,8 @@ def test_mass_and_symmetry():
     rigid[::2] = 1.0
     assert rigid @ line.mass @ rigid == pytest.approx(rig.mass, rel=1e-12)
     turned, inner, outer = (
-        np.column_stack([line.nodes, np.ones(len(line.nodes))]).ravel(),
-        0.5 * rig.shaft_diameter,
-        rig.disc_radius,
-    )
+        np.column_stack([line.nodes, np.ones(len(line.nodes))]).ravel(), 0.5 * rig.shaft_diameter, rig.disc_radius,
+    )  # fmt: skip
     bar = (
         rig.density * np.pi * inner**4 * rig.shaft_length
     )  # a rigid shaft and the ring of the disc, about the axis and a diameter
