@@ -282,11 +282,9 @@ def test_a_rigid_pair_runs_away_where_a_hand_calculation_says(preload):
 def test_a_bearing_that_its_own_heat_closes_is_an_answer():
     """A pair of 7014C in steel at 16 000 r/min: the grooves leave its balls no room."""
     scene = published.warm_pair(
-        {"oil_inlet_c": 25.0, "oil_flow": "300 cm3/min"},
-        bearing={"preset": "7014C"},
-        kinematics={"spin_speed_rpm": 16_000.0, "ring_growth": True},
-        mounting={"shaft_interference": 5e-6},
-    )
+        {"oil_inlet_c": 25.0, "oil_flow": "300 cm3/min"}, bearing={"preset": "7014C"},
+        kinematics={"spin_speed_rpm": 16_000.0, "ring_growth": True}, mounting={"shaft_interference": 5e-6},
+    )  # fmt: skip
     with pytest.raises(
         rw.ConvergenceError, match="the bearing cannot run at its steady temperatures, inner at .* close the bearing"
     ) as fault:

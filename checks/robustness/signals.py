@@ -68,12 +68,10 @@ class Ended:
 def started(words: tuple[str, ...], out: Path) -> subprocess.Popen[bytes]:
     """A command in a session of its own, with Python's own Ctrl-C: what a shell starts in the background ignores it."""
     return subprocess.Popen(
-        [sys.executable, "-m", "raceway", *words, "--out", str(out)],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
+        [sys.executable, "-m", "raceway", *words, "--out", str(out)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
         start_new_session=True,
         preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
-    )
+    )  # fmt: skip
 
 
 def handled(process: subprocess.Popen[bytes]) -> None:

@@ -143,12 +143,9 @@ def test_small_forces(claim):
     claim(quantity, max(ratios), at_most=1.0, basis="own other method", source=source)
     quantity = f"{where}: relative distance of Z at 1e-3"
     claim(
-        quantity,
-        max(last),
-        at_most=1e-6,
-        basis="own other method",
+        quantity, max(last), at_most=1e-6, basis="own other method",
         source=f"{source}; it falls with the square of the force",
-    )
+    )  # fmt: skip
     ratios, last = [], []
     for integrator in ("newmark", "generalized_alpha"):
         tangent = small_force("tangent", integrator, 1e-4).identification.dynamic_stiffness

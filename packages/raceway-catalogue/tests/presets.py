@@ -187,11 +187,9 @@ def _roller_kind(series: str) -> _Kind:
     constants = {"conformity_inner": (0.52, needed, None), "conformity_outer": (0.52, needed, None)}
     scene = {"bodies.kind": "cylindrical_rollers", "contact.kind": "line", "supports.axial": "displacement"}
     return _Kind(
-        title,
-        ("rollers", "rollers_clearance", "makers_rollers"),
-        columns,
+        title, ("rollers", "rollers_clearance", "makers_rollers"), columns,
         constants | {key: (word, "of cylindrical rollers", None) for key, word in scene.items()},
-    )
+    )  # fmt: skip
 
 
 def _roller_texts() -> dict[str, str]:

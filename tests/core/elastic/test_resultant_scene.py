@@ -12,12 +12,10 @@ from tests.core.test_elastic_scene import EXCITED
 
 #: Three balls on 864 hexahedra: every path, some accuracy.
 TINY: dict[str, Any] = b7206c(
-    bearing={"ball_count": 3},
-    bodies={"kind": "elastic", "formulation": "incompatible"},
+    bearing={"ball_count": 3}, bodies={"kind": "elastic", "formulation": "incompatible"},
     mesh={"kind": "structured", "element_size": 3.2e-3, "nodes_per_semi_axis": 0, "azimuth_cells": 12},
-    rotor={"mass": 0.5},
-    contact={"kind": "hertz"},
-)
+    rotor={"mass": 0.5}, contact={"kind": "hertz"},
+)  # fmt: skip
 
 
 def scene(**tables):

@@ -13,11 +13,9 @@ from raceway.extend import CAGE, compiled, layout, surrogate
 from raceway.testing import b7206c, model_of, run, settled
 
 NODAL = b7206c(
-    bodies={"kind": "condensed"},
-    contact={"kind": "unilateral", "discretisation": "nodal"},
-    mesh={"kind": "structured", "nodes_per_semi_axis": 3, "element_size": 1.2e-3},
-    load={"radial": [500.0, 0.0]},
-)
+    bodies={"kind": "condensed"}, contact={"kind": "unilateral", "discretisation": "nodal"},
+    mesh={"kind": "structured", "nodes_per_semi_axis": 3, "element_size": 1.2e-3}, load={"radial": [500.0, 0.0]},
+)  # fmt: skip
 RESULTANT = {"kind": "hertz", "discretisation": "resultant"}
 
 
