@@ -251,8 +251,7 @@ def aims() -> list[Row]:
     must = [name for name in raceway if MUST_READ.fullmatch(name.removeprefix("raceway/"))]
     _, private = foreign(tests())
     return [
-        below("raceway/: lines", lines(raceway), 60_000),
-        below("raceway/: files", len(raceway), 265),
+        below("raceway/: lines", lines(raceway), 60_000), below("raceway/: files", len(raceway), 265),
         below("files over 400 lines", sum(lines([name]) > 400 for name in product()), 0),
         below("lines that the smallest run imports", lines(small), 16_000, f"{len(small)} files"),
         below("lines that a newcomer must read", lines(must), 25_000, f"{len(must)} files"),
@@ -260,7 +259,7 @@ def aims() -> list[Row]:
         below("tests and checks: lines", lines(tests()), 48_000),
         below("modules of raceway that tests and checks import, beside their own", len(beside_their_own()), 80),
         below("private names that tests and checks import", len(private), 0),
-    ]
+    ]  # fmt: skip
 
 
 def main() -> int:
@@ -271,9 +270,8 @@ def main() -> int:
     if arguments.list:
         listed = {
             "once": used_once,
-            "participles": lambda: [f"{w} {n}" for w, n in participles()[2].most_common()],
-            "circles": circles,
-        }
+            "participles": lambda: [f"{w} {n}" for w, n in participles()[2].most_common()], "circles": circles,
+        }  # fmt: skip
         print(*listed[arguments.list](), sep="\n")
         return 0
     gate = held()

@@ -78,10 +78,9 @@ def test_what_is_no_value_cannot_be_a_key():
 #: What is left of a file's content.
 HARMS = {
     "cut": lambda content: content[:-5],
-    "a bit flipped": lambda content: content[:-9] + bytes([content[-9] ^ 1]) + content[-8:],
-    "empty": lambda content: b"",
+    "a bit flipped": lambda content: content[:-9] + bytes([content[-9] ^ 1]) + content[-8:], "empty": lambda content: b"",
     "another head": lambda content: b'{"kind": 3}\n' + content.split(b"\n", 1)[1],
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("harm", HARMS.values(), ids=HARMS)

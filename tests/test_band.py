@@ -132,9 +132,8 @@ def test_samples_without_an_answer_are_counted_and_no_indices_told():
 
 TURNING = {
     "rotor": {"mass": 2.0, "damping": 200.0},
-    "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4},
-    "supports": {"tilt": 1e4},
-}
+    "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 1e-4}, "supports": {"tilt": 1e4},
+}  # fmt: skip
 TWO_WAYS = [
     ({}, {"bearing.ball_diameter": "+2.2 mm -0.1 mm", "bearing.pitch_diameter": "+0.1 mm -2 mm"}),  # some balls do not fit
     ({"mounting": {"shaft_interference": 4e-6}}, {"class": "P4", "load.radial[0]": "+50 N -0 N"}),

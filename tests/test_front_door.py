@@ -45,12 +45,11 @@ def test_a_scene_in_any_form_is_the_same(form, forms):
 NO_SCENES = {
     "neither file nor text": ("b7206", "is neither a file nor the TOML text of a scene"),
     "missing file": (EXAMPLES / "b7207.toml", "no such file (did you mean 'b7206.toml'?)"),
-    "no TOML": ("[load\naxial = 3", "is not valid TOML"),
-    "empty": ("", "is empty"),
+    "no TOML": ("[load\naxial = 3", "is not valid TOML"), "empty": ("", "is empty"),
     "folder": (EXAMPLES, "is a folder; scenes in it"),
     "something else": (3, "must be a file, TOML text, a dict of tables or a Scene, not int"),
     "nothing": (None, "not NoneType"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", NO_SCENES)

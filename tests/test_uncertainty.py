@@ -54,9 +54,8 @@ def differences(scene):
         if quantity is K:
             size = content["identification"]["equivalent_stiffness_error"] / abs(entry["value"])
         hertz, elastic = (
-            other.stiffness[1, 1] / result.stiffness[1, 1] - 1.0,
-            0.0 if isinstance(change, str) else change["kyy"],
-        )
+            other.stiffness[1, 1] / result.stiffness[1, 1] - 1.0, 0.0 if isinstance(change, str) else change["kyy"],
+        )  # fmt: skip
         hypotheses = spread.get(quantity.name) or spread.get("kyy") or (0.0, 0.0)
         for end, sign in enumerate((-1.0, 1.0)):
             signed = sum(max(sign * part, 0.0) for part in (hypotheses[end], hertz, elastic)) + left

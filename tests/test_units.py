@@ -48,8 +48,7 @@ def test_what_pi_converts_is_right_to_the_last_digits():
 REFUSED = {
     "a length for a force": ("load.axial=12 mm", "'mm' is not a unit of this key"),
     "a symbol in the wrong case": ("load.axial=1 kn", "did you mean 'kN'?"),
-    "no unit": ('load.axial="400"', "without a unit"),
-    "decimal comma": ("load.axial=1,5 kN", "is no unit"),
+    "no unit": ('load.axial="400"', "without a unit"), "decimal comma": ("load.axial=1,5 kN", "is no unit"),
     "in a list": ('load.radial=["1 m", 0.0]', "'m' is not a unit of this key"),
     "beside words": ("supports.tilt=3 N", "must be a number in N m/rad"),
     "against the rule": ("rotor.mass=-3 g", "must be at least 0"),
@@ -58,7 +57,7 @@ REFUSED = {
     "beyond all numbers": ("load.axial=1e999 kN", "must be a finite number"),
     "beyond all powers": ("load.axial=1 mm^999999999", "is no unit"),
     "an inverse time for a speed": ("excitation.speed_rpm=100 1/s", "r/min, rpm, Hz or rad/s"),
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize(("change", "words"), REFUSED.values(), ids=REFUSED)

@@ -198,9 +198,8 @@ def test_points_warn_of_oil_beyond_its_data_as_runs_do(tmp_path):
     rw.sweep(scene, {key: speeds}, store=tmp_path / "s")
     with open_store(tmp_path / "s") as store:
         assert [(row["status"], row["reason"], row["warnings"]) for row in store.rows()] == [
-            ("computed", "", []),
-            ("computed", "", [beyond]),
-        ]
+            ("computed", "", []), ("computed", "", [beyond]),
+        ]  # fmt: skip
 
 
 def test_a_motion_says_that_the_heat_gives_its_k_no_band():

@@ -189,10 +189,9 @@ def _tolerances(chance: Chance) -> Tables:
         chance.one(*scene_keys()).name: chance.one("±10 %", "±5 um", "0 to 1", "10", "") for _ in range(chance.whole(0, 2))
     }
     classes = {
-        "class": chance.one("P4", "P2", "P0", "ABEC 7", "P9"),
-        "balls": chance.one("G5", "G10", "X"),
+        "class": chance.one("P4", "P2", "P0", "ABEC 7", "P9"), "balls": chance.one("G5", "G10", "X"),
         "load.axial": "±10 %",
-    }
+    }  # fmt: skip
     return some | {name: word for name, word in classes.items() if chance.happens(0.5)}
 
 

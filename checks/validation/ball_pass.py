@@ -12,11 +12,10 @@ SPEED = 9000.0
 def passing_scene(turns: int = 12, steps: int = 120, **tables: Any) -> dict[str, Any]:
     """A static radial load on orbiting balls; the excitation is there to tell the turns and is next to nothing."""
     base = {
-        "load": {"axial": 300.0, "radial": [600.0, 0.0]},
-        "kinematics": {"orbiting": True},
+        "load": {"axial": 300.0, "radial": [600.0, 0.0]}, "kinematics": {"orbiting": True},
         "excitation": {"kind": "bidirectional", "speed_rpm": SPEED, "amplitude": "constant", "force": 1e-7},
         "integrator": {"kind": "quasi_static", "turns": turns, "steps_per_turn": steps},
-    }
+    }  # fmt: skip
     return b7206c(**base, **tables)
 
 

@@ -25,22 +25,20 @@ MAP: dict[str, Any] = {
 }  # fmt: skip
 RANGES = {"load.axial": (400.0, 2000.0), "excitation.force": (50.0, 300.0), "excitation.speed_rpm": (3000.0, 15000.0)}
 _STATIC: dict[str, Any] = {
-    "bearing": {"preset": "B7206C"},
-    "load": {"axial": 1000.0},
+    "bearing": {"preset": "B7206C"}, "load": {"axial": 1000.0},
     "kinematics": {"spin_speed_rpm": 12000.0, "gyroscopic": "none", "ring_growth": False},
-}
+}  # fmt: skip
 _SPIN = _STATIC["kinematics"]
 #: Scenes of the force: weightless balls, centrifugal force, gyroscopic moments by all hypotheses, growth, another law, a pair.
 FORCES: dict[str, dict[str, Any]] = {
-    "weightless": _STATIC | {"kinematics": _SPIN | {"ball_inertia": False}},
-    "centrifugal": _STATIC,
+    "weightless": _STATIC | {"kinematics": _SPIN | {"ball_inertia": False}}, "centrifugal": _STATIC,
     "outer race": _STATIC | {"kinematics": _SPIN | {"gyroscopic": "outer_race"}},
     "shared": _STATIC | {"kinematics": _SPIN | {"gyroscopic": "shared"}},
     "traction": _STATIC | {"kinematics": _SPIN | {"gyroscopic": "traction", "ring_growth": "with_shaft"}},
     "growth": _STATIC | {"kinematics": _SPIN | {"ring_growth": True}},
     "penalty": _STATIC | {"contact": {"kind": "penalty"}},
     "DB": _STATIC | {"bearing": {"preset": "B7206C", "arrangement": "DB", "preload": 300.0, "row_distance": 0.016}},
-}
+}  # fmt: skip
 
 
 class Instance:
@@ -122,10 +120,9 @@ def force_difference(instance: Instance, scene: dict[str, Any], count: int = 60)
             q = np.array([x, *rng.normal(size=2) * 8e-6, *rng.normal(size=2) * 3e-4])
             out, core = instance(*q, rpm * np.pi / 30.0, 0.0), ring.evaluate(q)
             parts = {
-                "force": (-out[:5] * lengths, core.force * lengths),
-                "load": (out[7 : 7 + 2 * balls], core.contact_force),
+                "force": (-out[:5] * lengths, core.force * lengths), "load": (out[7 : 7 + 2 * balls], core.contact_force),
                 "stiffness": (out[7 + 2 * balls :].reshape(5, 5) * areas, core.stiffness * areas),
-            }
+            }  # fmt: skip
             size = core.contact_force.max()
             for kind, (ours, theirs) in parts.items():
                 scale = size if kind != "stiffness" else np.abs(theirs).max()

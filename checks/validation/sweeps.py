@@ -35,9 +35,8 @@ def words(count: int, store: Path, *more: str, bodies: str = "rigid") -> list[st
     return [
         *("sweep", str(SCENE)),
         *(word for setting in settings for word in ("--set", setting)),
-        *(word for axis in axes for word in ("--grid", axis)),
-        *("--out", str(store), *more),
-    ]
+        *(word for axis in axes for word in ("--grid", axis)), *("--out", str(store), *more),
+    ]  # fmt: skip
 
 
 def timed(count: int, *more: str, bodies: str = "rigid") -> dict[str, float]:

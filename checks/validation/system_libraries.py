@@ -46,11 +46,10 @@ def _pictures() -> str:
 
 #: What a test may need -> what it is called, and a function that tells why it is missing ("" where it is there).
 NEEDS: dict[str, tuple[str, Callable[[], str]]] = {
-    "gmsh": ("gmsh's system libraries", _gmsh),
-    "pyvista": ("pyvista's system libraries", _pictures),
+    "gmsh": ("gmsh's system libraries", _gmsh), "pyvista": ("pyvista's system libraries", _pictures),
     "browser": ("a browser (chromium with chromedriver)", lambda: _programs("chromium", "chromedriver")),
     "ccx": ("CalculiX (ccx)", lambda: _programs("ccx")),
-}
+}  # fmt: skip
 _REASON = "missing: "
 
 

@@ -90,10 +90,9 @@ def test_a_fault_touches_what_is_made_of_its_statement_and_nothing_else():
     found = kernels.touched(Fault(file, "weight * (bulk + twice * zz)", "", (), ""))
     hexahedron, elastic = "raceway.core.fem.hexahedron", "raceway.core.fem.elastic"
     assert {
-        f"{hexahedron}.stiffness.range_point_force",
-        f"{hexahedron}.operator.HexOperator",
+        f"{hexahedron}.stiffness.range_point_force", f"{hexahedron}.operator.HexOperator",
         f"{elastic}.assembly.BodyForces",
-    } <= found
+    } <= found  # fmt: skip
     assert (
         not {f"{hexahedron}.stiffness.range_force", f"{elastic}.assembly.add_rows", "raceway.core.time.compiled.jit"} & found
     )

@@ -27,9 +27,8 @@ TABLES = {
     name: table for name, table in CylindricalRollers.example_scene().items() if name not in ("excitation", "integrator")
 } | {
     "bodies": {"kind": "cylindrical_rollers", "roller_length": LENGTH, "crown": 0.0},
-    "contact": {"kind": "line", "constant": "palmgren"},
-    "load": {"radial": [FORCE, 0.0]},
-}
+    "contact": {"kind": "line", "constant": "palmgren"}, "load": {"radial": [FORCE, 0.0]},
+}  # fmt: skip
 #: Many thin rollers, whose sum is near the integral.
 MANY = {"ball_count": 100, "ball_diameter": 4e-3, "pitch_diameter": 0.2, "bore": 0.15}
 

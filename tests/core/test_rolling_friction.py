@@ -153,9 +153,8 @@ def test_the_compiled_loop_sums_the_terms(sizes, outer_race):
     speed, row = 10.0 ** rng.uniform(0.0, 3.5, n), np.repeat([0, 1], 7)
     columns = attrs.evolve(oil, viscosity=oil.viscosity[:, None, None])
     compiled, terms = (
-        losses(balls.compiled(row), oil, speed, 0.0, outer_race),
-        published.torques(balls, columns, speed, outer_race),
-    )
+        losses(balls.compiled(row), oil, speed, 0.0, outer_race), published.torques(balls, columns, speed, outer_race),
+    )  # fmt: skip
     for k in (0, 1):
         for name, term in terms.items():
             of_row = term[..., row == k]

@@ -13,9 +13,8 @@ def rubbing(friction=0.03, turns=3, **tables):
     base = {
         "contact": {"friction": friction, **tables.pop("contact", {})},
         "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "unbalance": 3.2e-4},
-        "integrator": {"turns": turns, "steps_per_turn": 120, **tables.pop("integrator", {})},
-        "rotor": {"mass": 2.0},
-    }
+        "integrator": {"turns": turns, "steps_per_turn": 120, **tables.pop("integrator", {})}, "rotor": {"mass": 2.0},
+    }  # fmt: skip
     return b7206c(**base, **tables)
 
 
@@ -207,11 +206,10 @@ def test_stick_stiffness_by_default_is_the_ellipses_along_the_groove(built):
 def test_balls_without_mass_rub_as_slow_ones_do():
     """Centrifugal forces of 1e-2 r/min are 1e-12 N; what is rubbed begins at the balls' own places, with mass or without."""
     scene = {
-        "load": {"axial": 400.0, "radial": [300.0, 0.0]},
-        "contact": {"friction": 0.05},
+        "load": {"axial": 400.0, "radial": [300.0, 0.0]}, "contact": {"friction": 0.05},
         "excitation": {"kind": "bidirectional", "speed_rpm": 3000.0, "unbalance": 1e-4},
         "integrator": {"kind": "newmark", "turns": 3, "steps_per_turn": 120},
-    }
+    }  # fmt: skip
     light, slow = (
         run(b7206c(**scene, kinematics=own)).identification.dynamic_stiffness
         for own in ({"ball_inertia": False}, {"spin_speed_rpm": 1e-2})

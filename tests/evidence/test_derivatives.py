@@ -23,12 +23,11 @@ def drawn(rng, bodies):
     axial = float(10.0 ** rng.uniform(1.7, 3.3))
     names = sorted(file.stem for file in PRESETS.glob("*.toml"))
     tables = {
-        "bearing": {"preset": "B7206C" if bodies == "condensed" else str(rng.choice(names))},
-        "bodies": {"kind": bodies},
+        "bearing": {"preset": "B7206C" if bodies == "condensed" else str(rng.choice(names))}, "bodies": {"kind": bodies},
         "load": {"axial": axial, "radial": (axial * rng.uniform(-0.3, 0.3, 2)).tolist()},
         "supports": {"tilt": ["locked", "free", float(10.0 ** rng.uniform(3.0, 6.0))][rng.integers(3)]},
         "mounting": {"inner_temperature": float(rng.uniform(1.0, 15.0))},
-    }
+    }  # fmt: skip
     if rng.random() < 0.5:
         tables["kinematics"] = {"spin_speed_rpm": float(rng.uniform(500.0, 12000.0))}
         if bodies == "rigid" and rng.random() < 0.3:
@@ -128,11 +127,10 @@ def test_derivatives_beside_a_resonance(claim):
 
 def moving(kind, damping, speed, force):
     return {
-        "rotor": {"mass": 2.0, "transverse_inertia": 1e-3},
-        "contact": {"damping": damping},
+        "rotor": {"mass": 2.0, "transverse_inertia": 1e-3}, "contact": {"damping": damping},
         "excitation": {"kind": kind, "speed_rpm": speed, "amplitude": "constant", "force": force},
         "integrator": {"kind": "periodic", "tolerance": 1e-10},
-    }
+    }  # fmt: skip
 
 
 def error_of_orbit(tables, step):
@@ -173,10 +171,9 @@ def test_cost_of_all_derivatives(claim):
         "columns of the rings' inertia and orbits of a turn for loads across the axis"
     )
     parts = (
-        ("static", static[:1], 1.0),
-        ("static, condensed bodies", static[1:], 2.0),
+        ("static", static[:1], 1.0), ("static, condensed bodies", static[1:], 2.0),
         ("steady orbit of a turn and of a pitch", orbits, 2.0),
-    )
+    )  # fmt: skip
     for words, scenes, limit in parts:
         ratios = []
         for scene in scenes:

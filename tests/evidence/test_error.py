@@ -87,10 +87,9 @@ def test_of_sudden_and_ramped_starts(claim):
     good = [right(one.estimate, one.true) for one in found]
     begins = [one.start.tables["integrator"]["start"] for one in found]
     groups = {
-        "sudden starts": [kind == "static" for kind in begins],
-        "ramped starts": [kind == "ramp" for kind in begins],
+        "sudden starts": [kind == "static" for kind in begins], "ramped starts": [kind == "ramp" for kind in begins],
         "starts within a tenth of a resonance": [abs(one.start.ratio - 1.0) <= 0.1 for one in found],
-    }
+    }  # fmt: skip
     bounds = {"at_least": SHARE, "basis": "own other method"}
     for words, chosen in groups.items():
         ours = [ok for ok, in_group in zip(good, chosen, strict=True) if in_group]

@@ -63,9 +63,8 @@ def test_hypotheses_left_at_their_defaults(claim):
     claim(f"{where}: those without a range of K", lost, at_most=0.1 * len(found), basis="regression", source=source)
     off = np.nanmax(found[:, :2])
     quantity, source = (
-        f"{where}: distance of K and kyy from complete runs over their spread, largest",
-        "runs under each hypothesis",
-    )
+        f"{where}: distance of K and kyy from complete runs over their spread, largest", "runs under each hypothesis",
+    )  # fmt: skip
     claim(quantity, off, at_most=0.01, basis="own other method", source=source)
     quantity, source = f"{where}: change of kyy over its closed bound, largest", "a bound"
     claim(quantity, found[:, 2].max(), at_most=1.0, basis="closed form", source=source)

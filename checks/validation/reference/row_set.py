@@ -41,9 +41,8 @@ def warmed(ring: Ring, strains: tuple[float, float, float], side: float = 1.0, p
     axial = side * ((1.0 + inner) * place - (1.0 + outer) * (place - side * (ring.li + ring.lo) * np.sin(alpha)))
     ring.rest = np.array([axial, (1.0 + inner) * circle_i - (1.0 + outer) * circle_o])
     ring.li, ring.lo = (
-        (1.0 + inner) * (ring.li + half) - (1.0 + ball) * half,
-        (1.0 + outer) * (ring.lo + half) - (1.0 + ball) * half,
-    )
+        (1.0 + inner) * (ring.li + half) - (1.0 + ball) * half, (1.0 + outer) * (ring.lo + half) - (1.0 + ball) * half,
+    )  # fmt: skip
     ring.distance = ring.li + ring.lo
     return ring
 

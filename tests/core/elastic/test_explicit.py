@@ -15,10 +15,9 @@ CentralDifference = built_in("integrator", "central_difference")
 STEEL = (2.12e11, 0.29, 7810.0)
 #: Friction on rigid seats, with dashpots, a damped rotor and free tilts.
 CASE = {
-    "contact": {"friction": 0.1, "damping": 300.0},
-    "rotor": {"damping": 200.0, "transverse_inertia": 1e-4},
+    "contact": {"friction": 0.1, "damping": 300.0}, "rotor": {"damping": 200.0, "transverse_inertia": 1e-4},
     "supports": {"tilt": 3000.0},
-}
+}  # fmt: skip
 
 
 @pytest.fixture(scope="module")

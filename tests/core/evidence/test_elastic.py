@@ -196,9 +196,8 @@ def half_held(mesh, folder):
     # A file holds a ball about its centre: x rolling, y across, z towards the outer contact.
     bearing, one = scene.bearing, found["ball_00"]
     towards, rolling = (
-        np.array([np.sin(bearing.contact_angle), np.cos(bearing.contact_angle), 0.0]),
-        np.array([0.0, 0.0, 1.0]),
-    )
+        np.array([np.sin(bearing.contact_angle), np.cos(bearing.contact_angle), 0.0]), np.array([0.0, 0.0, 1.0]),
+    )  # fmt: skip
     axes = np.stack([rolling, np.cross(towards, rolling), towards], axis=1)
     ball = attrs.evolve(one, points=(one.points - [0.0, 0.5 * bearing.pitch_diameter, 0.0]) @ axes)
     names = {}

@@ -74,10 +74,9 @@ def test_nothing_penetrates_and_nothing_pulls(coarse):
 def test_the_tangent_is_the_derivative(coarse, law):
     """While the points in contact stay the same, to the error of central differences."""
     laws = {
-        "none": None,
-        "linear": linear(coarse, 0.05),
+        "none": None, "linear": linear(coarse, 0.05),
         "hardening": PointLaw(hardening, np.array([linear(coarse, 0.05).params[1], 1e-6, 1e-3]), coarse.patch.area),
-    }
+    }  # fmt: skip
     contact = Contact(coarse.patch, laws[law])
     place, step = coarse.place(5e-6, coarse.angle + 0.004), 1e-11
     now = contact.press(place, np.zeros(2))

@@ -108,11 +108,10 @@ def test_the_tangent_is_the_derivative_while_some_points_slide():
 
 
 ROTATING = {
-    "load": {"axial": 1000.0, "radial": [0.0, 0.0]},
-    "mesh": {"nodes_per_semi_axis": 2},
+    "load": {"axial": 1000.0, "radial": [0.0, 0.0]}, "mesh": {"nodes_per_semi_axis": 2},
     "excitation": {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "constant", "force": 200.0},
     "rotor": {"mass": 2.0},
-}
+}  # fmt: skip
 
 
 def test_a_bearing_with_friction_has_exact_tangents_and_a_history():

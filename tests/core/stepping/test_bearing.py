@@ -25,11 +25,10 @@ def case(integrator: str, **changes: Any):
 
 
 CHANGES = [
-    {},
-    {"inertia": False},
+    {}, {"inertia": False},
     {"contact": {"damping": 300.0, "friction": 0.05}, "kinematics": {"orbiting": True}},
     {"rotor": {"mass": 2.0, "polar_inertia": 8e-3, "damping": 200.0}, "supports": {"tilt": 2000.0}},
-]
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("changes", CHANGES, ids=["inertial", "weightless", "friction orbiting", "gyroscopic"])

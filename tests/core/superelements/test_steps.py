@@ -18,9 +18,8 @@ GeneralizedAlpha = built_in("integrator", "generalized_alpha")
 TURNING = {
     "excitation": {"kind": "bidirectional", "speed_rpm": 15000.0, "amplitude": "constant", "force": 300.0},
     "contact": {"friction": 0.03, "damping": 200.0},
-    "rotor": {"mass": 0.5, "damping": 300.0, "transverse_inertia": 1e-4},
-    "supports": {"tilt": "free"},
-}
+    "rotor": {"mass": 0.5, "damping": 300.0, "transverse_inertia": 1e-4}, "supports": {"tilt": "free"},
+}  # fmt: skip
 HELD = {"fastened": {}, "on beds": {"supports": {"tilt": "free", "inner_seat": 1e12, "outer_seat": 2e12}}}
 STEP = 1e-5
 

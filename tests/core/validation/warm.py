@@ -102,10 +102,9 @@ def isothermal_difference() -> float:
     cold = rw.run(given).equilibrium
     level = np.array(list(warm.to_dict()["heat"]["temperatures_k"].values()))
     pairs = (
-        (level, np.array([313.15])),
-        (warm.equilibrium.stiffness, cold.stiffness),
+        (level, np.array([313.15])), (warm.equilibrium.stiffness, cold.stiffness),
         (warm.equilibrium.contact_force, cold.contact_force),
-    )
+    )  # fmt: skip
     return float(max(np.abs(a - b).max() / np.abs(b).max() for a, b in pairs))
 
 

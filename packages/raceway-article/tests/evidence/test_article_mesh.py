@@ -41,9 +41,8 @@ CONDENSED = {"bodies.kind": "condensed", "mesh": None, "contact.kind": "hertz", 
 #: Meshes for the plan: changes, and what they are called.
 SIZES = {
     "elements of 1.6 mm, 2 nodes to the semi-axis": {"mesh.element_size": "1.6e-3", "mesh.nodes_per_semi_axis": "2"},
-    "elements of 1.0 mm": {"mesh.element_size": "1.0e-3"},
-    "the article's mesh": {},
-}
+    "elements of 1.0 mm": {"mesh.element_size": "1.0e-3"}, "the article's mesh": {},
+}  # fmt: skip
 #: One operating point in motion: 12 000 r/min, the rig's unbalance, friction; both excitations.
 MOTION = {
     "rotor.mass": "2.0", "excitation.speed_rpm": "12000", "excitation.unbalance": "6.39e-4", "excitation.load_share": "0.5",

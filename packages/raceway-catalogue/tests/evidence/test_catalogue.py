@@ -76,9 +76,8 @@ def test_stiffness_of_pairs(claim):
     errors = np.abs(of_scenes("nsk")[0][:, 0, 0])
     assert len(errors) == found["pair_stiffnesses"]
     where, source = (
-        f"{len(errors)} printed axial stiffnesses of pairs, series 70, one conformity",
-        f"{NSK}: two or three digits",
-    )
+        f"{len(errors)} printed axial stiffnesses of pairs, series 70, one conformity", f"{NSK}: two or three digits",
+    )  # fmt: skip
     for word, own, scenes, limit in (
         ("median", found["pair_stiffness_error_median"], np.median(errors), 0.01),
         ("90 % within", found["pair_stiffness_error_90"], np.quantile(errors, 0.9), 0.04),
@@ -185,9 +184,8 @@ def test_stiffness_of_a_series_left_out(claim):
     quantity, source = "axial stiffnesses of series 70 in the grooves of 7206: 90 % within", f"{NSK}; what an answer states"
     claim(quantity, np.quantile(np.abs(series[:, best(sizes)]), 0.9), at_most=stated, basis="published", source=source)
     quantity, source = (
-        "axial stiffnesses of 7206C and 7206A in the grooves of series 70: largest error",
-        "NSK; as in report published",
-    )
+        "axial stiffnesses of 7206C and 7206A in the grooves of series 70: largest error", "NSK; as in report published",
+    )  # fmt: skip
     claim(quantity, np.abs(sizes[:, best(series)]).max(), at_most=0.04, basis="published", source=source)
     parts = defaultdict(list)
     for one in printed_by("gmn"):

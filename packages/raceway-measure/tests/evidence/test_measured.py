@@ -259,10 +259,9 @@ def fits_to_grooves(count):
             exact = np.array([run(evolve(true, f"load.axial={load}")).stiffness[0, 0] for load in loads])
             error = 0.001 * exact
             data = {
-                "load.axial [N]": loads,
-                "kxx [N/m]": exact + error * random.standard_normal(4),
+                "load.axial [N]": loads, "kxx [N/m]": exact + error * random.standard_normal(4),
                 "kxx error [N/m]": 1.96 * error,
-            }
+            }  # fmt: skip
             one = fit(data, scene, ANGLE)
             pairs.append((abs(one[ANGLE] - 17.0), one.half_width(ANGLE)))
         yield np.array(pairs).T

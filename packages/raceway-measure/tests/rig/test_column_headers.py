@@ -35,9 +35,8 @@ FILES = {
     "quotes": text('"Time (s)","X [um]","Y [um]","Key (V)"', quoted=True),
     "quotes, semicolons and decimal commas": text('"Time (s)";"X [um]";"Y [um]";"Key (V)"', ";", ",", quoted=True),
     "gaps by words": text("t / s,Gap Y / um,Gap Z / um,Key"),
-    "blanks": text(" time_s , Displacement X (um) , Displacement Y (um) , mark "),
-    "other columns between": text(OURS),
-}
+    "blanks": text(" time_s , Displacement X (um) , Displacement Y (um) , mark "), "other columns between": text(OURS),
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("case", FILES)
