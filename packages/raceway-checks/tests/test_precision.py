@@ -75,7 +75,7 @@ def test_the_front_falls_and_the_cheapest_are_on_it(ladder):
     assert times == sorted(times) and errors == sorted(errors, reverse=True)
     assert [float(name) for name in content["cheapest"]] == list(THRESHOLDS)
     assert all(place in content["front"] for place in content["cheapest"].values())
-    doubtful = {name: attrs.evolve(reference, bound=THRESHOLDS[0]) for name, reference in ladder.references.items()}
+    doubtful = {name: attrs.evolve(reference, bounds=reference.values) for name, reference in ladder.references.items()}
     assert not any(attrs.evolve(ladder, references=doubtful).cheapest(next(iter(doubtful))).values())
 
 
