@@ -11,9 +11,8 @@ from checks.validation.command_line import invoke
 from raceway import SceneError, scene_from_dict
 from raceway.extend import default_registry, stated_columns, tolerances_of
 from raceway.pipeline.first_order import limits
-from raceway.points.band import summary
 from raceway.points.sensitivities import design, indices
-from raceway.testing import b7206c
+from raceway.testing import b7206c, band_of_samples
 
 LOADED = b7206c(load={"axial": 500.0})
 
@@ -28,7 +27,7 @@ def test_indices_of_ishigamis_function_are_the_closed_form():
     whole = v1 + v2 + v13
     assert np.abs(found.first[0] - np.array([v1, v2, 0.0]) / whole).max() < 0.02
     assert np.abs(found.total[0] - np.array([v1 + v13, v2, v13]) / whole).max() < 0.02
-    made = summary("T", (), {"y": 0.0}, {}, [{"y": value} for value in y], 3)
+    made = band_of_samples("T", (), {"y": 0.0}, {}, [{"y": value} for value in y], 3)
     assert (made.first["y"], made.total["y"]) == (found.first[0].tolist(), found.total[0].tolist())
     shares = [(y[: 2 * 4096] < end).mean() for end in (made.low["y"], made.high["y"])]  # of what is drawn at random
     assert shares == pytest.approx([0.025, 0.975], abs=1e-3)

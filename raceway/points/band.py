@@ -248,7 +248,7 @@ def _steady(scene: Scene) -> Scene:
     return scene_from_dict(tables, default_registry())
 
 
-def summary(
+def band_of_samples(
     title: str, tolerances: tuple[Tolerance, ...], nominal: dict[str, float], words: dict[str, str], rows: list[Tables], dimensions: int
 ) -> Band:  # fmt: skip
     reasons = [row["why"] for row in rows if "why" in row]
@@ -333,7 +333,7 @@ def band(
     with telling(progress) as report, written(kept) as store:
         chunk_rows, _ = work_through(sampled, items, store, local(registry, processes), registry, files, report)
     single = (row for chunk in chunk_rows for row in chunk["rows"])
-    return summary(read.title, widths, nominal, words, [row or next(single) for row in rows], len(widths))
+    return band_of_samples(read.title, widths, nominal, words, [row or next(single) for row in rows], len(widths))
 
 
 @door

@@ -43,12 +43,14 @@ _PUBLIC = {
     **dict.fromkeys(("drive", "example_pairs", "exponents"), "raceway.testing.contact_law"),
     **dict.fromkeys(("ball_growth", "groove_depth", "load_at_edge", "ring_inertia"), "raceway.scene.growth"),
     "samples": "raceway.testing.signals",
-    "Model": "raceway.bodies.model",
+    **dict.fromkeys(("Model", "calibration_error"), "raceway.bodies.model"),
     **dict.fromkeys(("PATIENCE", "Allowance", "run"), "raceway.pipeline.run"),
     **dict.fromkeys(("peak_at_nodes", "peak_at_points"), "raceway.plugins.bodies.elastic_stress"),
     "pressure_field": "raceway.plugins.bodies.patch_bearing",
     "solve_equilibrium": "raceway.pipeline.equilibrium",
     "simulate": "raceway.pipeline.simulate",
+    "series_warnings": "raceway.pipeline.identified",
+    "band_of_samples": "raceway.points.band",
 }
 __all__ = sorted([*_PUBLIC, "SUITES", "check", "check_named", "suite_of"])
 

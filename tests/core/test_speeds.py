@@ -9,8 +9,7 @@ from checks.validation.scenes import built_in
 from raceway import ConvergenceError, SceneError, make_plan, run, scene_from_dict
 from raceway.core.ring.energy import friction_energy
 from raceway.extend import CAGE, Schedule, SteppedBearing, at_rest, integrate, layout
-from raceway.pipeline.identified import series_warnings
-from raceway.testing import b7206c, ring_inertia
+from raceway.testing import b7206c, ring_inertia, series_warnings
 
 RunUp = built_in("excitation", "run_up")
 

@@ -9,10 +9,9 @@ import pytest
 import raceway as rw
 from checks.validation.command_line import EXAMPLES, invoke
 from raceway import SceneError, make_plan, scene_from_dict
-from raceway.bodies.model import calibration_error
 from raceway.core.fem import calibration
 from raceway.pipeline.uncertainty import elastic_change
-from raceway.testing import b7206c, run, settled
+from raceway.testing import b7206c, calibration_error, run, settled
 
 ROTATING = {"kind": "bidirectional", "speed_rpm": 12000.0, "amplitude": "unbalance", "unbalance": 6.39e-4, "load_share": 0.5}
 
