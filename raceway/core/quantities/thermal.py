@@ -73,7 +73,7 @@ class Network:
         balance, arising = np.zeros((n, len(names), len(names))), np.zeros((n, len(names)))
         for node in range(len(NODES)):
             arising[:, group[node]] += self.heats[:, node]
-        for link in LINKS.keys() - infinite:
+        for link in (link for link in LINKS if link not in infinite):  # in their order, which a set's is not
             i, j = (group[names.index(node)] for node in LINKS[link])
             for end, part in self._away[link]:
                 k, conductance = group[names.index(end)], part * self.conductances[link]
