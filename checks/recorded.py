@@ -1,6 +1,6 @@
 """Answers beside those in ``tests/recorded``: what a change does to numbers and words that no test of its own looks at.
 
-A record holds what is alike to seven digits on processors with and without AVX-512 and under a load that differs by 1e-9 of it and 1e-9 N; the rest, which
+A record holds what is alike to six digits on processors with and without AVX-512 and under a load that differs by 1e-9 of it and 1e-9 N; the rest, which
 is rounding, and what depends on time and place is "~".  An answer that changes on purpose, which CHANGELOG tells: delete its record and let
 the tests write it, then again as the other processor, as ``.ci/run`` sets it:
 

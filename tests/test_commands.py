@@ -106,7 +106,7 @@ QUICK = {"plan", "dev plugins", "dev new-plugin", "dev new-scene", "dev schema",
 #: Commands with a scene of their own, those that write more than their answer, and what a quicker one does, too: no run of theirs is repeated in quick tests.
 SLOW = {"study article", "fit, signals", "catalogue --infer, table"}
 #: Commands about this installation, and those whose answer is run time.
-UNRECORDED = {"dev cache", "dev plugins", "dev schema", "precision"}
+UNRECORDED = {"dev cache", "dev plugins", "dev schema", "precision", *SLOW}
 #: Studies that go on where they were stopped.
 GOES_ON = ("compare", "stability", "band", "study rig", "study article", "sweep", "precision")
 
@@ -290,6 +290,7 @@ def test_a_screen_fits_80_columns_and_breaks_no_number(name, seen, folder):
         assert all(line in found.stdout.replace("\u00a0", " ") for line in narrow if line.strip())
     assert name != "view" or {"bearing.png", "contacts.png", "ball-loads.png"} <= {*whole_files(place(name, folder))}
     assert whole_files(place(name, folder)) or "--out" not in COMMANDS[name]
+    assert name != "dev plugins" or {"newmark", "hertz"} <= set(found.stdout.split())
     assert name in UNRECORDED or not differences(f"command {name}", {"printed": wide, **files_of(name, folder)})
 
 

@@ -54,9 +54,10 @@ def test_the_doubt_of_marks_stays_where_sampling_keeps_step(monkeypatch):
     # Flanks within one sample: half of it, 1/50 of a turn.
     assert in_step == pytest.approx(np.pi / 50, rel=0.1)
     assert apart < 0.2 * in_step
-    doubtful = lambda *record: attrs.evolve(pulses_of(*record), middle_error=1e-3 / HZ)  # noqa: E731
-    monkeypatch.setattr("raceway_measure.fit.shaft_angle.pulses_of", doubtful)
-    assert rotation_of(made()).angle_error == pytest.approx(1.96 * 2e-3 * np.pi, rel=0.1)  # of the range's middle alone
+    record = made()
+    doubtful = attrs.evolve(pulses_of(record.time, record.key), middle_error=1e-3 / HZ)
+    monkeypatch.setattr("raceway_measure.fit.shaft_angle.pulses_of", lambda *_: doubtful)
+    assert rotation_of(record).angle_error == pytest.approx(1.96 * 2e-3 * np.pi, rel=0.1)  # of the range's middle alone
 
 
 BAD = {
